@@ -1,0 +1,30 @@
+# Debian packages, installed by scripts/setup.sh. OpenCV's CMake config comes only with all of
+# libopencv-dev, so its modules are found one by one.
+find_package(Threads REQUIRED)
+find_package(TBB 2021 REQUIRED CONFIG)
+find_package(embree 3.13 REQUIRED CONFIG)
+find_package(OpenEXR 3.1 REQUIRED CONFIG)
+find_package(nanoflann 1.4 REQUIRED CONFIG)
+find_package(CLI11 REQUIRED CONFIG)
+find_package(nlohmann_json 3.11 REQUIRED CONFIG)
+find_package(tomlplusplus 3.3 REQUIRED CONFIG)
+find_package(fmt 9 REQUIRED CONFIG)
+find_package(Bullet REQUIRED)  # module mode: the config mode has relative include folders
+if(GLINT_TESTS)
+  find_package(Catch2 2.13 REQUIRED CONFIG)
+endif()
+
+find_path(GLINT_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
+foreach(module core imgproc imgcodecs calib3d)
+  find_library(GLINT_OPENCV_${module} opencv_${module} REQUIRED)
+  add_library(opencv::${module} UNKNOWN IMPORTED)
+  set_target_properties(
+    opencv::${module}
+    PROPERTIES IMPORTED_LOCATION ${GLINT_OPENCV_${module}} INTERFACE_INCLUDE_DIRECTORIES
+                                                          ${GLINT_OPENCV_INCLUDE}
+  )
+endforeach()
+
+add_library(bullet INTERFACE)
+target_include_directories(bullet SYSTEM INTERFACE ${BULLET_INCLUDE_DIRS})
+target_link_libraries(bullet INTERFACE ${BULLET_LIBRARIES})

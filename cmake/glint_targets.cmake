@@ -1,0 +1,57 @@
+# glint_add_library(name [OBJECT] SRCS ... [LINK ...]): a library folder::name with our warnings.
+# glint_add_program(name SRCS ... [LINK ...]): a program in bin/.
+# glint_add_test(SRC file [LABELS ...] [LINK ...]): one test program per file, named by its path.
+# glint_kernel_sources(...): files with tile kernels: AVX2, no contraction (forward and backward must
+# round alike), no -ffast-math.
+add_library(glint_warnings INTERFACE)
+target_compile_options(
+  glint_warnings
+  INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall
+            -Wextra
+            -Wconversion
+            -Wno-sign-conversion
+            -Wdouble-promotion
+            -Wno-psabi
+            -Wno-missing-field-initializers
+            -Werror>
+)
+target_include_directories(glint_warnings INTERFACE ${CMAKE_SOURCE_DIR})
+
+function(glint_add_library name)
+  cmake_parse_arguments(ARG "OBJECT" "" "SRCS;LINK" ${ARGN})
+  if(ARG_OBJECT)
+    add_library(${name} OBJECT ${ARG_SRCS})
+  else()
+    add_library(${name} STATIC ${ARG_SRCS})
+  endif()
+  target_link_libraries(${name} PUBLIC ${ARG_LINK} glint_warnings)
+endfunction()
+
+function(glint_add_program name)
+  cmake_parse_arguments(ARG "" "" "SRCS;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SRCS})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} glint_warnings)
+endfunction()
+
+function(glint_kernel_sources)
+  set_source_files_properties(
+    ${ARGN} PROPERTIES COMPILE_OPTIONS "-O3;-mavx2;-mfma;-mbmi2;-ffp-contract=off;-fno-math-errno;-fno-trapping-math"
+  )
+endfunction()
+
+# tests/a/b_test.cpp -> program test_a_b, CTest name a/b; LABELS default to "unit".
+function(glint_add_test)
+  cmake_parse_arguments(ARG "" "SRC" "LABELS;LINK" ${ARGN})
+  string(REGEX REPLACE "_test\\.cpp$" "" path ${ARG_SRC})
+  string(REPLACE "/" "_" target test_${path})
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS unit)
+  endif()
+  add_executable(${target} ${ARG_SRC})
+  target_link_libraries(${target} PRIVATE ${ARG_LINK} glint_catch_main glint_warnings)
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  add_test(NAME ${path} COMMAND ${target} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+  set_tests_properties(
+    ${path} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600
+  )
+endfunction()

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Loaders: one file each, registered by name; load_scene() asks each whether it knows the folder.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "glint/core/files.h"
+#include "glint/scene/scene.h"
+
+namespace glint {
+
+struct LoadOptions {
+  ImageSize size;              // images resized to this (area average); {0, 0}: as stored
+  double max_pixels = 0;       // or: shrink so that width x height stays below; 0: as stored
+  int test_every = 8;          // view index % test_every == 0 is a test view (unless the data says)
+  bool with_truth = true;      // read gt/
+  bool with_priors = true;     // read diffrens/
+};
+
+struct LoaderSpec {
+  std::string name;
+  std::function<bool(const fs::path&)> can_load;
+  std::function<Scene(const fs::path&, const LoadOptions&)> load;
+};
+
+bool register_loader(LoaderSpec spec);
+const std::vector<LoaderSpec>& loader_registry();
+// Errors (kBadReference): no loader knows the folder (what each looks for is listed), bad data.
+Scene load_scene(const fs::path& folder, const LoadOptions& options);
+
+struct Finding {  // of `dataset check`
+  std::string check;     // "ray-length-depth", "normal-axes", "intrinsics-size", "missing-file", ...
+  std::string where;     // file or view, and field
+  std::string message;   // found, expected, how to mend
+};
+// Everything wrong with a dataset folder, not only the first thing. Empty: clean.
+std::vector<Finding> check_dataset(const fs::path& folder);
+
+}  // namespace glint
+
+#define GLINT_REGISTER_LOADER(...) \
+  namespace {                      \
+  [[maybe_unused]] const bool loader_registered = ::glint::register_loader(__VA_ARGS__); \
+  }

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// GlassRoom: procedural rooms with a glass container, to the recipe of GLINT's 3D-FRONT-T. They are
+// our own rooms, never called 3D-FRONT-T. One call writes a whole scene folder.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "glint/core/files.h"
+#include "glint/core/config.h"
+
+namespace glint {
+
+struct GlassRoomOptions {
+  std::string scene = "room_1";   // "room_1" ... "room_5"; the name seeds the layout
+  int width = 160, height = 90;   // pixels
+  int views = 64;                 // along the camera path; every 8th is a test view
+  int spp = 256;                  // samples a pixel
+  std::uint64_t seed = 0;         // varies the layout of the same recipe
+  std::string assets;             // optional folder with glTF furniture; empty: procedural only
+
+  template <class V>
+  void visit(V&& v) {
+    v("scene", scene, "room_1 ... room_5");
+    v("width", width, "pixels");
+    v("height", height, "pixels");
+    v("views", views, "views along the camera path");
+    v("spp", spp, "samples a pixel");
+    v("seed", seed, "varies the layout");
+    v("assets", assets, "folder with glTF furniture");
+  }
+};
+
+// Hash of the options and of the generator's version: the cache key, written to scene.json.
+std::string glassroom_hash(const GlassRoomOptions& options);
+
+// Makes the scene in `folder` unless it is there already with the same hash (then returns false).
+// Rendered into a temporary folder and renamed, so an interrupted run leaves no half scene.
+bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder);
+
+}  // namespace glint

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// Path tracer on Embree: next-event estimation with multiple importance sampling, Russian roulette
+// (up to 200 bounces), thin dielectrics as specular slabs; shadow rays go straight through thin glass
+// with its transmittance. Deterministic: the random numbers of a pixel depend on (seed, view, pixel,
+// sample) only.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "datasets/glassroom/trace_scene.h"
+#include "glint/scene/camera.h"
+#include "glint/scene/ply.h"
+
+namespace glint {
+
+struct PathTracerSettings {
+  int spp = 64;             // samples a pixel, stratified in the pixel
+  int max_bounces = 200;
+  std::uint64_t seed = 0;
+  std::uint64_t view = 0;   // stream of this view
+};
+
+// Radiance is linear. Geometry buffers are of the ray through the pixel centre (no anti-aliasing).
+struct PathTracerOutput {
+  Image radiance;        // [H][W][3]
+  Image depth;           // [H][W][1] planar z of the first surface, glass included; 0: none
+  Image normal;          // [H][W][3] camera space, OpenCV axes, facing the camera
+  Image albedo;          // [H][W][3] diffuse albedo of the first surface (glass: 0, black)
+  Image basecolor;       // [H][W][3] base colour (glass: its near-white tint)
+  MaskImage glass;       // 255: first surface is thin dielectric
+  Image behind_depth;    // first surface that is not glass, along the straight ray
+  Image behind_normal;
+  Image transmitted;     // [H][W][3] part of radiance that passed the first surface where it is glass
+  Image reflected;       // [H][W][3] part that the first surface mirrored; sum = radiance on glass
+};
+
+class PathTracer {
+ public:
+  explicit PathTracer(const TraceScene& scene);  // builds the BVH; keeps a reference to `scene`
+  ~PathTracer();
+  PathTracerOutput render(const Camera& camera, const PathTracerSettings& settings) const;
+
+  // First hit along a ray, glass included or passed through; for visibility and camera placement.
+  struct FirstHit {
+    bool hit = false;
+    float t = 0;              // in units of |direction|
+    Vec3f position{}, normal{};  // geometric normal facing the origin
+    Vec3f albedo{};           // linear, textured
+    int mesh = -1;
+    bool glass = false;
+  };
+  FirstHit first_hit(Vec3f origin, Vec3f direction, bool skip_glass) const;
+  bool occluded(Vec3f from, Vec3f to) const;  // by opaque surfaces only
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// Reflectance of a thin slab of index `ior` at angle cosine `cos_i`, all orders summed, unpolarised:
+// per polarisation R = 2r / (1 + r) without absorption.
+float thin_slab_reflectance(float cos_i, float ior);
+
+}  // namespace glint

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// What the path tracer renders: triangle meshes with materials, area lights. World: metres, z up.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "glint/core/image.h"
+#include "glint/core/vec.h"
+
+namespace glint {
+
+enum class MaterialKind { kDiffuse, kRoughConductor, kRoughPlastic, kThinDielectric };
+
+struct Material {
+  std::string name;
+  MaterialKind kind = MaterialKind::kDiffuse;
+  Vec3f albedo{0.5f, 0.5f, 0.5f};  // linear; diffuse reflectance, or specular colour of a conductor
+  int texture = -1;                // index into TraceScene::textures; multiplies albedo
+  float roughness = 0.3f;          // GGX alpha = roughness^2 of conductor and plastic coat
+  float ior = 1.5f;                // thin dielectric, plastic coat
+  Vec3f tint{1, 1, 1};             // thin dielectric: transmittance of one pass inside the slab
+  Vec3f emission{};                // radiance, linear; > 0 makes every triangle with it an area light
+};
+
+struct TraceMesh {
+  std::string name;
+  std::vector<Vec3f> vertices;  // metres, world
+  std::vector<Vec3f> normals;   // shading normals per vertex, or empty (flat)
+  std::vector<Vec2f> uvs;       // per vertex, or empty
+  std::vector<std::array<std::int32_t, 3>> faces;
+  int material = 0;
+};
+
+struct TraceScene {
+  std::vector<Material> materials;
+  std::vector<Image> textures;   // linear RGB, repeated
+  std::vector<TraceMesh> meshes;
+  Vec3f environment{};           // radiance of rays that leave the scene
+};
+
+}  // namespace glint

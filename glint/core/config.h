@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Configuration structs. A component lists its fields once:
+//
+//   struct Config {
+//     float rate = 0.05f;
+//     template <class V> void visit(V&& v) { v("rate", rate, "learning rate of opacity"); }
+//   };
+//
+// and gets JSON, `name=value` overrides and documentation from it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <string_view>
+
+#include "glint/core/error.h"
+
+namespace glint {
+
+using Json = nlohmann::ordered_json;
+
+// The fields as a JSON object, in the order of visit().
+template <class Config>
+Json config_to_json(const Config& config) {
+  Json json = Json::object();
+  Config copy = config;
+  copy.visit([&](const char* name, auto& field, const char*) { json[name] = field; });
+  return json;
+}
+
+// Sets every field named in `json`. Errors (kUsage): unknown name (the known ones are listed), wrong
+// type. `where` opens the message.
+template <class Config>
+void config_from_json(Config& config, const Json& json, std::string_view where) {
+  for (const auto& [key, value] : json.items()) {
+    bool found = false;
+    std::string known;
+    config.visit([&](const char* name, auto& field, const char*) {
+      known += (known.empty() ? "" : ", ") + std::string(name);
+      if (key != name) return;
+      found = true;
+      try {
+        value.get_to(field);
+      } catch (const nlohmann::json::exception&) {
+        throw Error(
+            ExitCode::kUsage, fmt::format("{}: {} cannot be {}", where, key, value.dump())
+        );
+      }
+    });
+    GLINT_CHECK(found, kUsage, "{}: no field '{}'; known fields: {}", where, key, known);
+  }
+}
+
+// "name=value": the value is JSON where it parses as such, text otherwise.
+template <class Config>
+void config_override(Config& config, std::string_view assignment, std::string_view where) {
+  const std::size_t equals = assignment.find('=');
+  GLINT_CHECK(
+      equals != std::string_view::npos, kUsage, "{}: expected name=value, found '{}'", where, assignment
+  );
+  const std::string text(assignment.substr(equals + 1));
+  Json value = Json::parse(text, nullptr, false);
+  if (value.is_discarded()) value = text;
+  Json object = Json::object();
+  object[std::string(assignment.substr(0, equals))] = value;
+  config_from_json(config, object, where);
+}
+
+}  // namespace glint

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "glint/core/files.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <unistd.h>
+
+#include "glint/core/error.h"
+
+namespace glint {
+
+std::string read_file(const fs::path& path) {
+  std::error_code code;
+  GLINT_CHECK(fs::exists(path, code), kBadReference, "{}: no such file", path.string());
+  GLINT_CHECK(
+      !fs::is_directory(path, code), kBadReference, "{}: is a folder, expected a file", path.string()
+  );
+  std::ifstream in(path, std::ios::binary);
+  GLINT_CHECK(
+      in.good(), kBadReference, "{}: cannot be opened ({})", path.string(), std::strerror(errno)
+  );
+  std::string content(std::istreambuf_iterator<char>(in), {});
+  GLINT_CHECK(!in.bad(), kBadReference, "{}: reading failed", path.string());
+  return content;
+}
+
+void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+  std::error_code code;
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), code);
+  GLINT_CHECK(
+      !code, kEnvironment, "{}: cannot create its folder ({})", path.string(), code.message()
+  );
+  // The extension stays last: image writers choose the format by it.
+  const fs::path temporary =
+      path.parent_path() /
+      fmt::format(".{}.{}{}", path.stem().string(), ::getpid(), path.extension().string());
+  try {
+    write(temporary);
+    fs::rename(temporary, path);
+  } catch (const fs::filesystem_error& error) {
+    fs::remove(temporary, code);
+    throw Error(ExitCode::kEnvironment, fmt::format("{}: {}", path.string(), error.what()));
+  } catch (...) {
+    fs::remove(temporary, code);
+    throw;
+  }
+}
+
+void write_file(const fs::path& path, std::string_view content) {
+  write_atomically(path, [&](const fs::path& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+    out.close();
+    GLINT_CHECK(
+        out.good(),
+        kEnvironment,
+        "{}: writing failed ({}); free some disk space or choose another --out",
+        path.string(),
+        std::strerror(errno)
+    );
+  });
+}
+
+void append_line(const fs::path& path, std::string_view line) {
+  std::error_code code;
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), code);
+  bool torn = false;
+  if (fs::exists(path, code) && fs::file_size(path, code) > 0) {
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(-1, std::ios::end);
+    torn = in.get() != '\n';
+  }
+  std::ofstream out(path, std::ios::binary | std::ios::app);
+  out << (torn ? "\n" : "") << line << '\n';
+  out.close();
+  GLINT_CHECK(
+      out.good(), kEnvironment, "{}: appending failed ({})", path.string(), std::strerror(errno)
+  );
+}
+
+bool natural_less(std::string_view a, std::string_view b) {
+  const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!digit(a[i]) || !digit(b[j])) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+      continue;
+    }
+    std::size_t i_end = i, j_end = j;
+    while (i_end < a.size() && digit(a[i_end])) ++i_end;
+    while (j_end < b.size() && digit(b[j_end])) ++j_end;
+    std::string_view x = a.substr(i, i_end - i), y = b.substr(j, j_end - j);
+    x.remove_prefix(std::min(x.find_first_not_of('0'), x.size()));
+    y.remove_prefix(std::min(y.find_first_not_of('0'), y.size()));
+    if (x.size() != y.size()) return x.size() < y.size();
+    if (x != y) return x < y;
+    i = i_end, j = j_end;
+  }
+  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+  return a < b;
+}
+
+std::vector<fs::path> list_files(
+    const fs::path& folder, const std::vector<std::string>& extensions
+) {
+  std::error_code code;
+  GLINT_CHECK(
+      fs::is_directory(folder, code), kBadReference, "{}: not a folder", folder.string()
+  );
+  std::vector<fs::path> files;
+  fs::directory_iterator it(folder, code);
+  GLINT_CHECK(
+      !code, kBadReference, "{}: folder cannot be read ({})", folder.string(), code.message()
+  );
+  for (const fs::directory_entry& entry : it) {
+    std::string extension = entry.path().extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
+      return static_cast<char>(std::tolower(c));
+    });
+    const bool wanted = extensions.empty() ||
+                        std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+    const bool hidden = entry.path().filename().string().starts_with('.');
+    if (entry.is_regular_file(code) && wanted && !hidden) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return natural_less(a.filename().string(), b.filename().string());
+  });
+  return files;
+}
+
+bool glob_match(std::string_view pattern, std::string_view text) {
+  return ::fnmatch(std::string(pattern).c_str(), std::string(text).c_str(), 0) == 0;
+}
+
+}  // namespace glint

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Files read whole and written safely: a writer fills a temporary name and renames it, so a reader
+// never sees half a file and a full disk leaves nothing under the final name.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+namespace fs = std::filesystem;
+
+// The whole file. Errors (kBadReference): missing, unreadable, a folder.
+std::string read_file(const fs::path& path);
+
+// Calls `write(temporary)`, then renames to `path`; on any exception removes the temporary and throws
+// on. Creates the parent folder. Errors (kEnvironment): cannot create, write, or rename.
+void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write);
+void write_file(const fs::path& path, std::string_view content);
+
+// Appends one line and flushes it; a torn last line of an earlier crash is closed first.
+void append_line(const fs::path& path, std::string_view line);
+
+// Regular files in a folder whose extension (lower case, with dot) is one of `extensions` (all when
+// empty), in natural order ("2" before "10"). Errors (kBadReference): not a readable folder.
+std::vector<fs::path> list_files(
+    const fs::path& folder, const std::vector<std::string>& extensions = {}
+);
+
+// "img2" < "img10": digit runs compare by value.
+bool natural_less(std::string_view a, std::string_view b);
+
+// '*' any run, '?' one character, '[ab]' a set. Used by --only and --skip.
+bool glob_match(std::string_view pattern, std::string_view text);
+
+}  // namespace glint

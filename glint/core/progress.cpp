@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "glint/core/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace glint {
+
+namespace {
+bool quiet = false;
+}
+
+void set_quiet(bool value) { quiet = value; }
+bool is_quiet() { return quiet; }
+
+namespace log {
+void info(std::string_view message) {
+  if (!quiet) fmt::print(stderr, "{}\n", message);
+}
+void warn(std::string_view message) { fmt::print(stderr, "warning: {}\n", message); }
+}  // namespace log
+
+std::string format_duration(double seconds) {
+  if (seconds < 60) return fmt::format("{:.1f}s", seconds);
+  const auto whole = static_cast<long>(seconds);
+  if (whole < 3600) return fmt::format("{}m {:02}s", whole / 60, whole % 60);
+  return fmt::format("{}h {:02}m", whole / 3600, (whole / 60) % 60);
+}
+
+Progress::Progress(std::string title, std::size_t total)
+    : title_(std::move(title)),
+      total_(total),
+      start_(std::chrono::steady_clock::now()),
+      last_draw_(start_),
+      terminal_(::isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() { draw(last_note_, true); }
+
+double Progress::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void Progress::advance(std::size_t steps, std::string_view note) {
+  done_ += steps;
+  if (drawing_.exchange(true)) return;  // another thread draws
+  const auto now = std::chrono::steady_clock::now();
+  if (!note.empty()) last_note_ = note;
+  if (now - last_draw_ > std::chrono::milliseconds(terminal_ ? 100 : 10000)) {
+    last_draw_ = now;
+    draw(last_note_, false);
+  }
+  drawing_ = false;
+}
+
+void Progress::draw(std::string_view note, bool last) {
+  if (quiet) return;
+  const std::size_t done = done_;
+  const double elapsed = seconds();
+  const double left =
+      done > 0 ? elapsed * static_cast<double>(total_ - done) / static_cast<double>(done) : 0.0;
+  const double percent =
+      total_ > 0 ? 100.0 * static_cast<double>(done) / static_cast<double>(total_) : 100.0;
+  const std::string time = last ? format_duration(elapsed) : format_duration(left) + " left";
+  fmt::print(
+      stderr,
+      "{}{} {:3.0f}% {}/{} {} {}{}",
+      terminal_ ? "\r\x1b[K" : "",
+      title_,
+      percent,
+      done,
+      total_,
+      time,
+      note,
+      terminal_ && !last ? "" : "\n"
+  );
+  std::fflush(stderr);
+}
+
+}  // namespace glint

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// What a number type T must offer to the shared maths: float, double (here) and Float8 (simd.h).
+// Data-dependent branches are written as select(mask, a, b). No exp of the C library: see exp_fast.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#if defined(__CUDACC__)
+#define GLINT_HD __host__ __device__ inline
+#else
+#define GLINT_HD inline
+#endif
+
+namespace glint {
+
+// Comparison results: bool for scalars, a lane mask for Float8.
+template <class T>
+struct MaskOf {
+  using type = bool;
+};
+template <class T>
+using Mask = typename MaskOf<T>::type;
+
+GLINT_HD float select(bool mask, float a, float b) { return mask ? a : b; }
+GLINT_HD double select(bool mask, double a, double b) { return mask ? a : b; }
+GLINT_HD bool any(bool mask) { return mask; }
+GLINT_HD bool all(bool mask) { return mask; }
+
+GLINT_HD float min_of(float a, float b) { return a < b ? a : b; }
+GLINT_HD double min_of(double a, double b) { return a < b ? a : b; }
+GLINT_HD float max_of(float a, float b) { return a > b ? a : b; }
+GLINT_HD double max_of(double a, double b) { return a > b ? a : b; }
+GLINT_HD float abs_of(float a) { return fabsf(a); }
+GLINT_HD double abs_of(double a) { return fabs(a); }
+GLINT_HD float sqrt_of(float a) { return sqrtf(a); }
+GLINT_HD double sqrt_of(double a) { return sqrt(a); }
+// a * b + c in one rounding, on every backend: forward and backward passes must agree to the bit.
+GLINT_HD float fma_of(float a, float b, float c) { return fmaf(a, b, c); }
+GLINT_HD double fma_of(double a, double b, double c) { return fma(a, b, c); }
+
+// Building blocks of exp_fast: nearest integer, and 2^k for integral k in [-126, 127].
+GLINT_HD float round_of(float a) { return rintf(a); }
+GLINT_HD float exp2_integer(float k) {
+  const std::int32_t bits = (static_cast<std::int32_t>(k) + 127) << 23;
+  float result;
+  memcpy(&result, &bits, sizeof result);
+  return result;
+}
+
+// e^x for x in [-87, 87] (clamped outside). Splits off 2^k and evaluates a degree-6 polynomial on
+// [-ln2/2, ln2/2]; relative error below 2e-7. One text for float and Float8.
+template <class T>
+GLINT_HD T exp_fast(T x) {
+  x = min_of(max_of(x, T(-87.0f)), T(87.0f));
+  const T k = round_of(x * T(1.44269504088896341f));
+  // Cody-Waite: ln2 in two parts keeps the remainder exact.
+  T r = fma_of(k, T(-0.693145751953125f), x);
+  r = fma_of(k, T(-1.42860682030941723e-6f), r);
+  T p = T(1.3888889e-3f);
+  p = fma_of(p, r, T(8.3333333e-3f));
+  p = fma_of(p, r, T(4.1666667e-2f));
+  p = fma_of(p, r, T(0.16666667f));
+  p = fma_of(p, r, T(0.5f));
+  p = fma_of(p, r, T(1.0f));
+  p = fma_of(p, r, T(1.0f));
+  return p * exp2_integer(k);
+}
+GLINT_HD double exp_fast(double x) { return exp(x); }
+
+template <class T>
+GLINT_HD T square(T a) {
+  return a * a;
+}
+
+}  // namespace glint

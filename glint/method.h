@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// The contract of a method, and the registry. One file in baselines/ per method; it registers itself
+// and is then trained, rendered, scored, tabulated and tested without another line anywhere.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "glint/core/config.h"
+#include "glint/scene/scene.h"
+
+namespace glint {
+
+struct StepStats {
+  int iteration = 0;
+  double loss = 0;
+  double psnr = 0;               // of the training view of this step
+  std::size_t num_surfels = 0;
+  std::map<std::string, double> terms;  // each loss term, weighted
+};
+
+// Maps of one view, all of the camera's size. Empty images: the method does not produce them.
+struct RenderOutput {
+  Image rgb;           // [H][W][3] as displayed, not clamped
+  Image depth;         // [H][W][1] planar z in metres; 0: nothing hit
+  Image normal;        // [H][W][3] unit, camera space, facing the camera; zero: nothing hit
+  Image alpha;         // [H][W][1]
+  std::map<std::string, Image> layers;  // "transparency", "interface", "transmission", "reflection", ...
+};
+
+// Options of one run that every method gets.
+struct RunOptions {
+  int iterations = 30000;     // schedules scale with it
+  std::uint64_t seed = 0;
+};
+
+class Method {
+ public:
+  virtual ~Method() = default;
+  // Called once before step(). `scene` outlives the method; only scene.train and scene.points may be
+  // looked at. Errors: kUsage (config), kBadReference (scene lacks what the method needs).
+  virtual void initialize(const Scene& scene, const RunOptions& options) = 0;
+  virtual StepStats step(int iteration) = 0;  // iteration counts from 0
+  virtual RenderOutput render(const Camera& camera) const = 0;
+  // Surfel sets as PLY files and whatever else is needed to render again.
+  virtual void save(const std::string& folder) const = 0;
+  virtual void load(const std::string& folder) = 0;
+  virtual Json config() const = 0;
+  // Throws Error naming the parameter array and surfel when a parameter is not finite.
+  virtual void check_finite() const = 0;
+  virtual std::size_t num_surfels() const = 0;
+  virtual std::vector<std::string> warnings() const { return {}; }  // losses off, missing priors
+};
+
+struct MethodSpec {
+  std::string id;            // "2dgs"; ablations and controls: "glint/no-trans", "2dgs/prior"
+  std::string title;         // as printed in tables
+  std::string citation;      // BibTeX key
+  std::string paper_row;     // row of reports/paper/glint.json, empty when the paper has none
+  std::string description;   // one line
+  Json overrides = Json::object();  // config fields that make this variant
+  std::function<std::unique_ptr<Method>(const Json& config)> create;  // config: overrides + user's
+};
+
+// All registered methods by id, in the order of their ids.
+const std::map<std::string, MethodSpec>& method_registry();
+// Errors (kUsage): unknown id; the message lists the known ones and the nearest.
+const MethodSpec& find_method(const std::string& id);
+bool register_method(MethodSpec spec);
+
+}  // namespace glint
+
+#define GLINT_REGISTER_CONCAT2(a, b) a##b
+#define GLINT_REGISTER_CONCAT(a, b) GLINT_REGISTER_CONCAT2(a, b)
+// Registers a MethodSpec at program start. Object libraries only: static ones drop it.
+#define GLINT_REGISTER(...)                                                          \
+  namespace {                                                                        \
+  [[maybe_unused]] const bool GLINT_REGISTER_CONCAT(registered_, __LINE__) =         \
+      ::glint::register_method(__VA_ARGS__);                                         \
+  }

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Image files: PNG and JPEG through OpenCV, EXR through OpenEXR, NPY maps. Colours stay as stored
+// (sRGB-encoded values in [0, 1]); nothing here changes a transfer function. Writers are atomic.
+// Errors (kBadReference) name the file and say what was found and expected: truncated files, wrong
+// channel counts, sizes that do not match the header, tiled or deep EXR, missing EXR channels.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glint/core/files.h"
+#include "glint/core/image.h"
+
+namespace glint {
+
+// 8- and 16-bit PNG, JPEG, EXR, NPY by extension. Grey images get one channel, colour three, in the
+// order R G B; an alpha channel is dropped. Integers are divided by their maximum.
+Image read_image(const fs::path& path);
+// The same, always `channels` channels (1 or 3; grey is repeated, colour to grey is an error).
+Image read_image(const fs::path& path, int channels);
+MaskImage read_mask(const fs::path& path);  // non-zero (>= half of the range) counts
+
+// [0, 1] clamped, times 255, rounded half to even. 1 or 3 channels.
+void write_png(const fs::path& path, ImageView image);
+// float32 channels: Z for 1, R G B for 3 (or X Y Z when `xyz`), scan lines, ZIP.
+void write_exr(const fs::path& path, ImageView image, bool xyz = false);
+void write_npy(const fs::path& path, ImageView image);
+
+// Area average for shrinking, bilinear for growing (OpenCV).
+Image resize_image(ImageView image, ImageSize size);
+
+// IEC 61966-2-1. Values outside [0, 1] are continued (encode clamps below at 0).
+float srgb_encode(float linear);
+float srgb_decode(float encoded);
+
+// Colour maps for people: depth over [low, high], normals as n * 0.5 + 0.5 with y, z turned towards
+// the viewer (the field's habit), scalar maps in grey.
+Image colorize_depth(ImageView depth, float low, float high);
+Image colorize_normal(ImageView normal);
+
+}  // namespace glint

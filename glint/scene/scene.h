@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// What a method trains on and is scored against: posed images, priors, points and, where it exists,
+// ground truth. Loaders (datasets/) fill it; nothing here knows a file format.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glint/core/image.h"
+#include "glint/core/vec.h"
+#include "glint/scene/camera.h"
+#include "glint/scene/surfels.h"
+
+namespace glint {
+
+// Per-image predictions of other networks, or simulated ones. Empty images: not available.
+struct Priors {
+  Image normal;    // [H][W][3] unit, camera space, OpenCV axes; zero where missing
+  Image depth;     // [H][W][1] relative, larger = farther, 0 where missing
+  Image albedo;    // [H][W][3] diffuse albedo in [0, 1] as stored
+  Image basecolor; // [H][W][3]
+};
+
+// Both layers of glass. Empty images: not available.
+struct GroundTruth {
+  Image depth;            // [H][W][1] planar z in metres of the first surface, 0: none
+  Image normal;           // [H][W][3] unit, camera space, OpenCV axes, facing the camera
+  Image albedo;           // [H][W][3]
+  MaskImage glass;        // [H][W][1] 255 where the first surface is glass
+  Image behind_depth;     // [H][W][1] first opaque surface along the straight ray
+  Image behind_normal;    // [H][W][3]
+  Image transmitted;      // [H][W][3] linear radiance that came through the glass
+  Image reflected;        // [H][W][3] linear radiance that the glass mirrored
+};
+
+struct View {
+  std::string name;
+  Camera camera;
+  Image rgb;  // [H][W][3] as displayed (sRGB-encoded), [0, 1]
+  Priors priors;
+  GroundTruth truth;
+};
+
+struct Scene {
+  std::string name;
+  std::string dataset;           // "glassroom", "nerfstudio", ...
+  bool simulated_priors = false;
+  std::vector<View> train, test;
+  PointCloud points;             // sparse points; empty when the dataset has none
+  Vec3f bounds_min{}, bounds_max{};  // metres; 0.5 and 99.5 percentiles of the points
+  float spatial_scale = 1;       // 1.1 x largest distance of train cameras to their mean
+  std::string spec_hash;         // identifies the data; part of every record
+};
+
+// 1.1 x the largest distance of a camera centre to the mean of the centres.
+float camera_extent(const std::vector<View>& views);
+
+}  // namespace glint

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// A set of 2D Gaussians ("surfels"), structure of arrays, raw (pre-activation) parameters.
+// Activations: scale = exp(log_scale), opacity = sigmoid(opacity_logit), rotation = q / |q|,
+// extra channels (transparency, specularity) = sigmoid(logit).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "glint/core/vec.h"
+
+namespace glint {
+
+inline constexpr int kShCoefficients = 16;  // degree 3
+
+// One parameter array of a cloud: `width` floats a surfel.
+struct SurfelCloud {
+  std::vector<float> means;           // [N][3] metres, world
+  std::vector<float> log_scales;      // [N][2]
+  std::vector<float> rotations;       // [N][4] quaternion w x y z, not normalised
+  std::vector<float> opacity_logits;  // [N][1]
+  std::vector<float> sh_dc;           // [N][3] coefficient 0 of R, G, B
+  std::vector<float> sh_rest;         // [N][15][3] coefficients 1..15, colour fastest
+  std::vector<float> extra_logits;    // [N][extra_names.size()]
+  std::vector<std::string> extra_names;  // e.g. "transparency", "specular"
+
+  std::size_t size() const { return opacity_logits.size(); }
+  std::size_t num_extra() const { return extra_names.size(); }
+  void resize(std::size_t count);  // new rows are zero
+
+  // Calls f(name, array, width) for every parameter array, always in the same order: the one list
+  // that optimiser, densification, files and tests walk over.
+  template <class F>
+  void for_each_array(F&& f) { for_each(*this, f); }
+  template <class F>
+  void for_each_array(F&& f) const { for_each(*this, f); }
+
+ private:
+  template <class Self, class F>
+  static void for_each(Self& self, F& f) {
+    f("means", self.means, std::size_t{3});
+    f("log_scales", self.log_scales, std::size_t{2});
+    f("rotations", self.rotations, std::size_t{4});
+    f("opacity_logits", self.opacity_logits, std::size_t{1});
+    f("sh_dc", self.sh_dc, std::size_t{3});
+    f("sh_rest", self.sh_rest, std::size_t{45});
+    f("extra_logits", self.extra_logits, self.extra_names.size());
+  }
+};
+
+// Coloured points as structure from motion gives them.
+struct PointCloud {
+  std::vector<Vec3f> positions;  // metres, world
+  std::vector<Vec3f> colors;     // [0, 1]; same length as positions
+  std::vector<Vec3f> normals;    // unit, or empty
+};
+
+struct InitialSurfels {
+  float opacity = 0.1f;
+  std::vector<std::string> extra_names;
+  std::vector<float> extra_values;  // activated, one per name
+  std::uint64_t seed = 0;           // random rotations
+};
+
+// Surfels at the points: isotropic scale = root mean squared distance to the 3 nearest neighbours,
+// random rotation, SH degree 0 from the colour. Errors (kBadReference): fewer than 4 points.
+SurfelCloud surfels_from_points(const PointCloud& points, const InitialSurfels& options);
+
+// Root mean squared distance of each point to its 3 nearest neighbours, floor 1e-4 (metres).
+std::vector<float> neighbor_distances(std::span<const Vec3f> points);
+
+}  // namespace glint
