@@ -1,8 +1,6 @@
 # glint_add_library(name [OBJECT] SRCS ... [LINK ...]): a library folder::name with our warnings.
 # glint_add_program(name SRCS ... [LINK ...]): a program in bin/.
 # glint_add_test(SRC file [LABELS ...] [LINK ...]): one test program per file, named by its path.
-# glint_kernel_sources(...): files with tile kernels: AVX2, no contraction (forward and backward must
-# round alike), no -ffast-math.
 add_library(glint_warnings INTERFACE)
 target_compile_options(
   glint_warnings
@@ -31,12 +29,6 @@ function(glint_add_program name)
   cmake_parse_arguments(ARG "" "" "SRCS;LINK" ${ARGN})
   add_executable(${name} ${ARG_SRCS})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} glint_warnings)
-endfunction()
-
-function(glint_kernel_sources)
-  set_source_files_properties(
-    ${ARGN} PROPERTIES COMPILE_OPTIONS "-O3;-mavx2;-mfma;-mbmi2;-ffp-contract=off;-fno-math-errno;-fno-trapping-math"
-  )
 endfunction()
 
 # tests/a/b_test.cpp -> program test_a_b, CTest name a/b; LABELS default to "unit".

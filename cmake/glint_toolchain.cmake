@@ -8,6 +8,14 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
+# One instruction set for the whole project (no function is compiled twice with different flags):
+# AVX2 + FMA. No contraction: forward and backward passes must round alike. No -ffast-math.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-march=x86-64-v3>)
+endif()
+add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off> $<$<COMPILE_LANGUAGE:CXX>:-fno-math-errno>
+                    $<$<COMPILE_LANGUAGE:CXX>:-fno-trapping-math>)
+
 find_program(GLINT_CCACHE ccache)
 if(GLINT_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${GLINT_CCACHE})
