@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // PLY files, binary little-endian and ASCII in, binary out: surfel clouds in the field order that
 // common viewers read, coloured points, triangle meshes. Readers never trust a count: it is checked
-// against the file's size before anything is allocated. Errors as in image_files.h.
+// against the file's size before anything is allocated. Errors (kBadReference) name the file and
+// the first value that is not finite, missing properties, faces that refer to no vertex, cut-off
+// rows.
 #pragma once
 
 #include <array>
@@ -12,21 +14,24 @@
 
 namespace glint {
 
-// Fields: x y z nx ny nz f_dc_0..2 f_rest_0..44 (all R, all G, all B) opacity scale_0 scale_1 scale_2
-// rot_0..3 then extra channels by name, all raw. scale_2 = log(1e-6) so that 3DGS viewers accept it.
+// Fields: x y z nx ny nz f_dc_0..2 f_rest_0..44 (all R, all G, all B) opacity scale_0 scale_1
+// scale_2 rot_0..3 then extra channels by name, all raw. scale_2 = log(1e-6) so that 3DGS viewers
+// accept it.
 void write_surfel_ply(const fs::path& path, const SurfelCloud& cloud);
 // scale_2 may be absent; extra float properties become extra channels.
 SurfelCloud read_surfel_ply(const fs::path& path);
 
 void write_point_ply(const fs::path& path, const PointCloud& points);
+// Without colours in the file: mid-grey.
 PointCloud read_point_ply(const fs::path& path);
 
 struct TriangleMesh {
-  std::vector<Vec3f> vertices;                 // metres
+  std::vector<Vec3f> vertices;  // metres
   std::vector<std::array<std::int32_t, 3>> faces;
-  std::vector<Vec3f> colors;                   // per vertex, [0, 1]; may be empty
+  std::vector<Vec3f> colors;  // per vertex, [0, 1]; may be empty
 };
 void write_mesh_ply(const fs::path& path, const TriangleMesh& mesh);
+// Polygons become fans of triangles.
 TriangleMesh read_mesh_ply(const fs::path& path);
 
 }  // namespace glint

@@ -15,22 +15,22 @@ namespace glint {
 
 // Per-image predictions of other networks, or simulated ones. Empty images: not available.
 struct Priors {
-  Image normal;    // [H][W][3] unit, camera space, OpenCV axes; zero where missing
-  Image depth;     // [H][W][1] relative, larger = farther, 0 where missing
-  Image albedo;    // [H][W][3] diffuse albedo in [0, 1] as stored
-  Image basecolor; // [H][W][3]
+  Image normal;     // [H][W][3] unit, camera space, OpenCV axes; zero where missing
+  Image depth;      // [H][W][1] relative, larger = farther, 0 where missing
+  Image albedo;     // [H][W][3] diffuse albedo in [0, 1] as stored
+  Image basecolor;  // [H][W][3]
 };
 
 // Both layers of glass. Empty images: not available.
 struct GroundTruth {
-  Image depth;            // [H][W][1] planar z in metres of the first surface, 0: none
-  Image normal;           // [H][W][3] unit, camera space, OpenCV axes, facing the camera
-  Image albedo;           // [H][W][3]
-  MaskImage glass;        // [H][W][1] 255 where the first surface is glass
-  Image behind_depth;     // [H][W][1] first opaque surface along the straight ray
-  Image behind_normal;    // [H][W][3]
-  Image transmitted;      // [H][W][3] linear radiance that came through the glass
-  Image reflected;        // [H][W][3] linear radiance that the glass mirrored
+  Image depth;          // [H][W][1] planar z in metres of the first surface, 0: none
+  Image normal;         // [H][W][3] unit, camera space, OpenCV axes, facing the camera
+  Image albedo;         // [H][W][3]
+  MaskImage glass;      // [H][W][1] 255 where the first surface is glass
+  Image behind_depth;   // [H][W][1] first opaque surface along the straight ray
+  Image behind_normal;  // [H][W][3]
+  Image transmitted;    // [H][W][3] linear radiance that came through the glass
+  Image reflected;      // [H][W][3] linear radiance that the glass mirrored
 };
 
 struct View {
@@ -43,16 +43,21 @@ struct View {
 
 struct Scene {
   std::string name;
-  std::string dataset;           // "glassroom", "nerfstudio", ...
+  std::string dataset;  // "glassroom", "nerfstudio", ...
   bool simulated_priors = false;
   std::vector<View> train, test;
-  PointCloud points;             // sparse points; empty when the dataset has none
-  Vec3f bounds_min{}, bounds_max{};  // metres; 0.5 and 99.5 percentiles of the points
-  float spatial_scale = 1;       // 1.1 x largest distance of train cameras to their mean
-  std::string spec_hash;         // identifies the data; part of every record
+  PointCloud points;                 // sparse points; empty when the dataset has none
+  Vec3f bounds_min{}, bounds_max{};  // metres; see set_extent
+  float spatial_scale = 1;           // 1.1 x largest distance of train cameras to their mean
+  std::string spec_hash;             // identifies the data; part of every record
 };
 
 // 1.1 x the largest distance of a camera centre to the mean of the centres.
 float camera_extent(const std::vector<View>& views);
+
+// Sets spatial_scale from the train cameras (1 when they stand in one place), and the bounds from
+// the points: their 0.5 and 99.5 percentiles. Without points, the bounds are the box of the train
+// cameras and of the points 2 x spatial_scale in front of them.
+void set_extent(Scene& scene);
 
 }  // namespace glint

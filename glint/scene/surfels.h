@@ -18,13 +18,13 @@ inline constexpr int kShCoefficients = 16;  // degree 3
 
 // One parameter array of a cloud: `width` floats a surfel.
 struct SurfelCloud {
-  std::vector<float> means;           // [N][3] metres, world
-  std::vector<float> log_scales;      // [N][2]
-  std::vector<float> rotations;       // [N][4] quaternion w x y z, not normalised
-  std::vector<float> opacity_logits;  // [N][1]
-  std::vector<float> sh_dc;           // [N][3] coefficient 0 of R, G, B
-  std::vector<float> sh_rest;         // [N][15][3] coefficients 1..15, colour fastest
-  std::vector<float> extra_logits;    // [N][extra_names.size()]
+  std::vector<float> means;              // [N][3] metres, world
+  std::vector<float> log_scales;         // [N][2]
+  std::vector<float> rotations;          // [N][4] quaternion w x y z, not normalised
+  std::vector<float> opacity_logits;     // [N][1]
+  std::vector<float> sh_dc;              // [N][3] coefficient 0 of R, G, B
+  std::vector<float> sh_rest;            // [N][15][3] coefficients 1..15, colour fastest
+  std::vector<float> extra_logits;       // [N][extra_names.size()]
   std::vector<std::string> extra_names;  // e.g. "transparency", "specular"
 
   std::size_t size() const { return opacity_logits.size(); }
@@ -34,9 +34,13 @@ struct SurfelCloud {
   // Calls f(name, array, width) for every parameter array, always in the same order: the one list
   // that optimiser, densification, files and tests walk over.
   template <class F>
-  void for_each_array(F&& f) { for_each(*this, f); }
+  void for_each_array(F&& f) {
+    for_each(*this, f);
+  }
   template <class F>
-  void for_each_array(F&& f) const { for_each(*this, f); }
+  void for_each_array(F&& f) const {
+    for_each(*this, f);
+  }
 
  private:
   template <class Self, class F>

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// One reader and writer per image file format, behind image_files.h.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "glint/core/files.h"
+#include "glint/core/image.h"
+
+namespace glint::detail {
+
+Image read_png_or_jpeg(const fs::path& path);
+Image read_exr(const fs::path& path);
+Image read_npy(const fs::path& path);
+
+// What a file's header claims about the picture inside.
+struct ClaimedSize {
+  std::int64_t width = 0, height = 0, channels = 0;
+};
+
+// Throws (kBadReference) unless a picture of that size can come out of `file_bytes` bytes: no
+// header makes us allocate more than 256 MiB that the file cannot fill.
+void check_claimed_size(const fs::path& path, ClaimedSize size, std::size_t file_bytes);
+
+// Throws (kBadReference) "path: not a complete <format> file (<detail>); ...".
+[[noreturn]] void fail_incomplete(
+    const fs::path& path, std::string_view format, std::string_view detail
+);
+
+}  // namespace glint::detail

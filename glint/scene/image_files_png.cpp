@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// PNG and JPEG, and resizing, by OpenCV. Decoders report damage on standard error and hand out
+// half-grey pictures, so the container is walked first: every chunk of a PNG, the headers of a
+// JPEG.
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "glint/core/error.h"
+#include "glint/scene/image_files.h"
+#include "glint/scene/image_files_formats.h"
+
+namespace glint {
+namespace {
+
+using namespace std::string_view_literals;
+using detail::ClaimedSize;
+
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
+constexpr std::string_view kJpegSignature = "\xff\xd8\xff"sv;
+
+std::uint32_t big_endian(std::string_view bytes) {
+  std::uint32_t value = 0;
+  for (const char c : bytes) value = value << 8 | static_cast<unsigned char>(c);
+  return value;
+}
+
+struct PictureHeader {
+  ClaimedSize size;
+  bool grey = false;
+};
+
+// IHDR, after checking that every chunk up to IEND lies inside the file.
+PictureHeader walk_png(const fs::path& path, std::string_view file) {
+  constexpr std::size_t kOverhead = 12;  // length, type, checksum
+  std::size_t at = kPngSignature.size();
+  while (true) {
+    if (file.size() - at < kOverhead)
+      detail::fail_incomplete(path, "PNG", "it ends inside a chunk");
+    const std::size_t length = big_endian(file.substr(at, 4));
+    if (file.size() - at - kOverhead < length)
+      detail::fail_incomplete(path, "PNG", "it ends inside a chunk");
+    if (file.substr(at + 4, 4) == "IEND") break;
+    at += kOverhead + length;
+  }
+  if (file.substr(12, 4) != "IHDR" || at < 33)
+    detail::fail_incomplete(path, "PNG", "it has no header");
+  const int color_type = file[25];
+  constexpr int kColorBit = 2;
+  const bool grey = (color_type & kColorBit) == 0;
+  return {{big_endian(file.substr(16, 4)), big_endian(file.substr(20, 4)), 4}, grey};
+}
+
+// The frame header (SOF0 ... SOF15), after checking that the file ends with an end marker.
+PictureHeader walk_jpeg(const fs::path& path, std::string_view file) {
+  const std::size_t end = file.find_last_not_of("\0\n\r "sv);
+  if (end == std::string_view::npos || file.substr(end - 1, 2) != "\xff\xd9"sv)
+    detail::fail_incomplete(path, "JPEG", "the end marker is missing");
+  std::size_t at = 2;
+  while (at + 9 < file.size() && static_cast<unsigned char>(file[at]) == 0xff) {
+    const auto marker = static_cast<unsigned char>(file[at + 1]);
+    const bool frame =
+        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (frame) {
+      const int channels = file[at + 9];
+      return {
+          {big_endian(file.substr(at + 7, 2)), big_endian(file.substr(at + 5, 2)), channels},
+          channels == 1};
+    }
+    at += marker == 0xff ? 1 : 2 + big_endian(file.substr(at + 2, 2));
+  }
+  detail::fail_incomplete(path, "JPEG", "it has no frame header");
+}
+
+PictureHeader walk(const fs::path& path, std::string_view file) {
+  if (file.starts_with(kPngSignature)) return walk_png(path, file);
+  if (file.starts_with(kJpegSignature)) return walk_jpeg(path, file);
+  GLINT_CHECK(
+      !file.empty(), kBadReference, "{}: the file is empty; expected a PNG or JPEG", path.string()
+  );
+  throw Error(
+      ExitCode::kBadReference,
+      fmt::format("{}: neither a PNG nor a JPEG, whatever its name says", path.string())
+  );
+}
+
+cv::Mat decode(const fs::path& path, const std::string& file, std::string_view format) {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  const cv::Mat bytes(
+      1, static_cast<int>(file.size()), CV_8UC1, const_cast<char*>(file.data())  // read only
+  );
+  cv::Mat pixels;
+  try {
+    pixels = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception& error) {
+    detail::fail_incomplete(path, format, error.err);
+  }
+  if (pixels.empty()) detail::fail_incomplete(path, format, "its data cannot be decoded");
+  return pixels;
+}
+
+// BGR[A] or grey integers to RGB or grey floats. `grey` keeps one of the equal channels.
+template <class T>
+Image to_floats(const cv::Mat& pixels, bool grey) {
+  const int stored = pixels.channels(), kept = grey || stored < 3 ? 1 : 3;
+  constexpr auto kFullRange = static_cast<float>(std::numeric_limits<T>::max());
+  Image image(pixels.cols, pixels.rows, kept);
+  for (int y = 0; y < pixels.rows; ++y) {
+    const T* from = pixels.ptr<T>(y);
+    float* to = image.pixel(0, y);
+    for (int x = 0; x < pixels.cols; ++x, from += stored, to += kept)
+      for (int c = 0; c < kept; ++c) to[c] = static_cast<float>(from[kept - 1 - c]) / kFullRange;
+  }
+  return image;
+}
+
+unsigned char to_byte(float value) {
+  if (!(value > 0)) return 0;  // NaN too: the caller's metrics report it, a PNG cannot hold it
+  return static_cast<unsigned char>(std::nearbyint(std::min(value, 1.0f) * 255.0f));
+}
+
+cv::Mat to_bgr_bytes(ImageView image) {
+  cv::Mat bytes(image.height, image.width, CV_8UC(image.channels));
+  const int n = image.channels;
+  for (int y = 0; y < image.height; ++y) {
+    const float* from = image.pixel(0, y);
+    unsigned char* to = bytes.ptr<unsigned char>(y);
+    for (int x = 0; x < image.width; ++x, from += n, to += n)
+      for (int c = 0; c < n; ++c) to[c] = to_byte(from[n - 1 - c]);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Image detail::read_png_or_jpeg(const fs::path& path) {
+  const std::string file = read_file(path);
+  const PictureHeader header = walk(path, file);
+  check_claimed_size(path, header.size, file.size());
+  const cv::Mat pixels = decode(path, file, file.starts_with(kPngSignature) ? "PNG" : "JPEG");
+  switch (pixels.depth()) {
+    case CV_8U:
+      return to_floats<unsigned char>(pixels, header.grey);
+    case CV_16U:
+      return to_floats<unsigned short>(pixels, header.grey);
+    default:
+      fail_incomplete(path, "image", "values are neither 8- nor 16-bit integers");
+  }
+}
+
+void write_png(const fs::path& path, ImageView image) {
+  GLINT_CHECK(
+      !image.empty() && (image.channels == 1 || image.channels == 3),
+      kUsage,
+      "{}: cannot write a PNG of {} x {} pixels with {} channels; expected 1 or 3 channels",
+      path.string(),
+      image.width,
+      image.height,
+      image.channels
+  );
+  std::vector<unsigned char> file;
+  cv::imencode(".png", to_bgr_bytes(image), file);
+  write_file(path, {reinterpret_cast<const char*>(file.data()), file.size()});
+}
+
+Image resize_image(ImageView image, ImageSize size) {
+  Image result(size.width, size.height, image.channels);
+  const int type = CV_32FC(image.channels);
+  const cv::Mat from(image.height, image.width, type, const_cast<float*>(image.data));  // read only
+  cv::Mat to(size.height, size.width, type, result.data());
+  const bool shrinks = size.width <= image.width && size.height <= image.height;
+  cv::resize(from, to, to.size(), 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+  return result;
+}
+
+}  // namespace glint
