@@ -16,23 +16,27 @@ namespace glint {
 
 struct PathTracerSettings {
   int spp = 64;             // samples a pixel, stratified in the pixel
-  int max_bounces = 200;
+  int max_bounces = 200;    // scatterings of a path; going straight through glass is none
   std::uint64_t seed = 0;
   std::uint64_t view = 0;   // stream of this view
+  bool next_event_estimation = true;  // off: BSDF sampling alone (same mean, much noise; for checks)
 };
 
 // Radiance is linear. Geometry buffers are of the ray through the pixel centre (no anti-aliasing).
 struct PathTracerOutput {
   Image radiance;        // [H][W][3]
   Image depth;           // [H][W][1] planar z of the first surface, glass included; 0: none
-  Image normal;          // [H][W][3] camera space, OpenCV axes, facing the camera
-  Image albedo;          // [H][W][3] diffuse albedo of the first surface (glass: 0, black)
+  Image normal;          // [H][W][3] shading normal in camera space, OpenCV axes, facing the camera
+  Image albedo;          // [H][W][3] diffuse albedo of the first surface (glass and conductors: 0)
   Image basecolor;       // [H][W][3] base colour (glass: its near-white tint)
   MaskImage glass;       // 255: first surface is thin dielectric
   Image behind_depth;    // first surface that is not glass, along the straight ray
   Image behind_normal;
-  Image transmitted;     // [H][W][3] part of radiance that passed the first surface where it is glass
-  Image reflected;       // [H][W][3] part that the first surface mirrored; sum = radiance on glass
+  // Where `glass` is set (0 elsewhere): the part of radiance that passed the first surface, and the part
+  // that it mirrored; transmitted + reflected == radiance exactly. Only the first pane splits. Samples of
+  // a border pixel that miss the pane count as transmitted.
+  Image transmitted;     // [H][W][3]
+  Image reflected;       // [H][W][3]
 };
 
 class PathTracer {
@@ -46,7 +50,7 @@ class PathTracer {
     bool hit = false;
     float t = 0;              // in units of |direction|
     Vec3f position{}, normal{};  // geometric normal facing the origin
-    Vec3f albedo{};           // linear, textured
+    Vec3f albedo{};           // linear, textured; 0 for glass
     int mesh = -1;
     bool glass = false;
   };

@@ -12,31 +12,33 @@
 
 namespace glint {
 
+// How opaque kinds scatter: bsdf.h. A thin dielectric is a sheet without thickness that stands for a
+// whole pane: ONE layer of triangles each pane, not a closed slab.
 enum class MaterialKind { kDiffuse, kRoughConductor, kRoughPlastic, kThinDielectric };
 
 struct Material {
   std::string name;
   MaterialKind kind = MaterialKind::kDiffuse;
-  Vec3f albedo{0.5f, 0.5f, 0.5f};  // linear; diffuse reflectance, or specular colour of a conductor
+  Vec3f albedo{0.5f, 0.5f, 0.5f};  // linear, <= 1; diffuse reflectance, or a conductor's F0
   int texture = -1;                // index into TraceScene::textures; multiplies albedo
   float roughness = 0.3f;          // GGX alpha = roughness^2 of conductor and plastic coat
   float ior = 1.5f;                // thin dielectric, plastic coat
   Vec3f tint{1, 1, 1};             // thin dielectric: transmittance of one pass inside the slab
-  Vec3f emission{};                // radiance, linear; > 0 makes every triangle with it an area light
+  Vec3f emission{};  // radiance, linear; > 0 makes every triangle with it an area light, on both sides
 };
 
 struct TraceMesh {
   std::string name;
   std::vector<Vec3f> vertices;  // metres, world
   std::vector<Vec3f> normals;   // shading normals per vertex, or empty (flat)
-  std::vector<Vec2f> uvs;       // per vertex, or empty
+  std::vector<Vec2f> uvs;       // per vertex, or empty; (0, 0) is the first texel's outer corner
   std::vector<std::array<std::int32_t, 3>> faces;
   int material = 0;
 };
 
 struct TraceScene {
   std::vector<Material> materials;
-  std::vector<Image> textures;   // linear RGB, repeated
+  std::vector<Image> textures;   // linear RGB in [0, 1], repeated, bilinear; v grows with the rows
   std::vector<TraceMesh> meshes;
   Vec3f environment{};           // radiance of rays that leave the scene
 };

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/glassroom/path_integrator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/glassroom/path_tracer.h"
+
+namespace glint::path_tracing {
+
+namespace {
+
+constexpr int kRouletteStart = 3;  // bounces before Russian roulette
+constexpr float kMaxSurvival = 0.95f;
+// A straight line through more panes than this is cut: it bounds the loop, not the picture.
+constexpr int kMaxPanes = 1000;
+
+// Power heuristic with exponent 2, [Veach97] Eq. 9.13, of a strategy against one other.
+float power_heuristic(float pdf, float other) {
+  const float p2 = pdf * pdf, q2 = other * other;
+  return p2 / (p2 + q2);
+}
+
+Vec3f mirror(Vec3f direction, Vec3f normal) {
+  return direction - 2 * dot(direction, normal) * normal;
+}
+
+float max_component(Vec3f v) { return std::max({v.x, v.y, v.z}); }
+
+}  // namespace
+
+// A path under way: its next segment and what it carries.
+struct PathIntegrator::Path {
+  Vec3f origin, direction;  // unit
+  Vec3f throughput{1, 1, 1};
+  int bounces = 0, panes = 0;
+  // Of the last vertex with a finite density: that density, and the distance come since along the
+  // straight line. 0: the camera or a mirror, which next-event estimation cannot serve.
+  float pdf = 0, distance = 0;
+
+  bool alive(int max_bounces) const {
+    return max_component(throughput) > 0 && bounces <= max_bounces && panes < kMaxPanes;
+  }
+  void reflect(const Surface& surface) {
+    direction = mirror(direction, surface.normal);
+    origin = RayScene::leave(surface, direction);
+    pdf = 0;
+    ++bounces;
+  }
+  void pass(const Surface& surface) {
+    origin = RayScene::leave(surface, direction);
+    distance += surface.t;
+    ++panes;
+  }
+  void continue_from(const Surface& surface, Vec3f wi, Vec3f carried, float density) {
+    direction = wi;
+    origin = RayScene::leave(surface, wi);
+    throughput = carried;
+    pdf = density;
+    distance = 0;
+  }
+};
+
+// How one opaque vertex scatters.
+struct PathIntegrator::Scattering {
+  Bsdf bsdf;
+  Frame frame;
+  Vec3f back;  // world, towards the path's origin
+  Vec3f wo() const { return frame.to_local(back); }
+};
+
+PathIntegrator::Split PathIntegrator::radiance(
+    Vec3f origin, Vec3f direction, Sampler& sampler, Sampler& reflection_sampler
+) const {
+  Path path{origin, direction};
+  const std::optional<Surface> first = scene_.intersect(origin, direction, RayMask::kAll);
+  if (!first) return {scene_.scene().environment, {}, false};
+  if (!scene_.is_glass(*first)) return {follow(path, sampler, first), {}, false};
+  const Material& glass = scene_.material(*first);
+  const float mirrored = thin_slab_reflectance(-dot(direction, first->normal), glass.ior);
+  Path reflection = path;
+  path.throughput = (1 - mirrored) * glass.tint;
+  path.pass(*first);
+  reflection.throughput = {mirrored, mirrored, mirrored};
+  reflection.reflect(*first);
+  return {follow(path, sampler), follow(reflection, reflection_sampler), true};
+}
+
+Vec3f PathIntegrator::follow(Path path, Sampler& sampler, std::optional<Surface> next) const {
+  Vec3f sum{};
+  while (path.alive(settings_.max_bounces)) {
+    if (!next) next = scene_.intersect(path.origin, path.direction, RayMask::kAll);
+    if (!next) return sum + hadamard(path.throughput, scene_.scene().environment);
+    if (scene_.is_glass(*next)) {
+      cross_glass(path, *next, sampler);
+    } else {
+      sum += emitted(path, *next);
+      sum += scatter(path, *next, sampler);
+    }
+    next.reset();
+  }
+  return sum;
+}
+
+// Reflects with probability R, otherwise passes straight through.
+void PathIntegrator::cross_glass(Path& path, const Surface& surface, Sampler& sampler) const {
+  const Material& glass = scene_.material(surface);
+  const float mirrored = thin_slab_reflectance(-dot(path.direction, surface.normal), glass.ior);
+  if (sampler.next_1d() < mirrored) return path.reflect(surface);
+  path.throughput = hadamard(path.throughput, glass.tint);
+  path.pass(surface);
+}
+
+Vec3f PathIntegrator::emitted(const Path& path, const Surface& surface) const {
+  const Vec3f radiance = scene_.material(surface).emission;
+  if (max_component(radiance) <= 0) return {};
+  float weight = 1;
+  if (path.pdf > 0 && settings_.next_event_estimation) {
+    const float distance = path.distance + surface.t;
+    const float cosine = -dot(path.direction, surface.normal);
+    const float pdf_light = lights_.pdf_area(radiance) * distance * distance / cosine;
+    weight = power_heuristic(path.pdf, pdf_light);
+  }
+  return weight * hadamard(path.throughput, radiance);
+}
+
+// Direct light scattered back along the path; then the path goes on by a sample of the BSDF.
+Vec3f PathIntegrator::scatter(Path& path, const Surface& surface, Sampler& sampler) const {
+  const Scattering scattering{
+      Bsdf(scene_.model(surface), scene_.albedo(surface)),
+      Frame(surface.shading_normal),
+      -path.direction};
+  const Vec3f throughput = path.throughput;
+  path.throughput = {};
+  if (path.bounces++ >= settings_.max_bounces) return {};
+
+  const Vec2f light_u = sampler.next_2d(), bsdf_u = sampler.next_2d();
+  const Vec3f direct = hadamard(throughput, direct_light(surface, scattering, light_u));
+  const BsdfSample sample = scattering.bsdf.sample(scattering.wo(), bsdf_u);
+  const Vec3f wi = scattering.frame.to_world(sample.wi);
+  // A shading normal may send light through the surface: absorbed.
+  if (sample.pdf <= 0 || dot(wi, surface.normal) <= 0) return direct;
+  path.continue_from(surface, wi, hadamard(throughput, sample.weight), sample.pdf);
+  russian_roulette(path, sampler);
+  return direct;
+}
+
+Vec3f PathIntegrator::direct_light(const Surface& surface, const Scattering& scattering, Vec2f u)
+    const {
+  if (lights_.empty() || !settings_.next_event_estimation) return {};
+  const LightSample light = lights_.sample(u);
+  const Vec3f to_light = light.position - surface.position;
+  const float distance = length(to_light);
+  const Vec3f wi = (1 / distance) * to_light;
+  const float cosine = std::abs(dot(light.normal, wi));
+  if (!(distance > 0) || cosine <= 0 || dot(wi, surface.normal) <= 0) return {};
+  const BsdfValue value = scattering.bsdf.evaluate(scattering.wo(), scattering.frame.to_local(wi));
+  if (value.pdf <= 0) return {};
+  const Vec3f passed = scene_.transmittance(RayScene::leave(surface, wi), wi, distance);
+  const float pdf_light = light.pdf_area * distance * distance / cosine;
+  const float weight = power_heuristic(pdf_light, value.pdf) / pdf_light;
+  return weight * hadamard(hadamard(value.f_cos, passed), light.radiance);
+}
+
+// Survives with the probability of its throughput, which it is divided by.
+void PathIntegrator::russian_roulette(Path& path, Sampler& sampler) {
+  if (path.bounces < kRouletteStart) return;
+  const float survival = std::min(max_component(path.throughput), kMaxSurvival);
+  if (sampler.next_1d() < survival)
+    path.throughput = (1 / survival) * path.throughput;
+  else
+    path.throughput = {};
+}
+
+}  // namespace glint::path_tracing

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// A TraceScene made ready for rays: Embree's BVH over all triangles, and the surface at a hit. Thin
+// glass is a geometry of its own, so that rays can ignore it and shadow rays can pass through it.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "datasets/glassroom/bsdf.h"
+#include "datasets/glassroom/trace_scene.h"
+
+namespace glint::path_tracing {
+
+struct Triangle {
+  Vec3f p0, edge1, edge2;  // metres
+  Vec3f normal;            // unit, by the right-hand rule
+  float area = 0;          // square metres
+  int mesh = 0, material = 0;
+  int face = 0;  // of the mesh
+};
+
+enum class RayMask : unsigned { kOpaque = 1, kGlass = 2, kAll = 3 };
+
+// What a ray met. Both normals are on the side of the ray's origin.
+struct Surface {
+  Vec3f position;  // on the triangle's plane
+  Vec3f normal;    // geometric
+  Vec3f shading_normal;
+  Vec2f uv;
+  float t = 0;  // in units of |direction|
+  int triangle = 0, material = 0, mesh = 0;
+};
+
+class RayScene {
+ public:
+  // Keeps a reference to `scene`. Errors (kBadReference): indices out of range, arrays of different
+  // lengths, values not finite, textures without three channels. (kEnvironment): Embree fails.
+  explicit RayScene(const TraceScene& scene);
+  RayScene(const RayScene&) = delete;
+  RayScene& operator=(const RayScene&) = delete;
+  ~RayScene();
+
+  // Closest hit with t > 0.
+  std::optional<Surface> intersect(Vec3f origin, Vec3f direction, RayMask mask) const;
+
+  // Straight-line transmittance over (0, distance) along a unit direction: 0 behind anything
+  // opaque, otherwise the product over panes of (1 - R) tint.
+  Vec3f transmittance(Vec3f origin, Vec3f unit_direction, float distance) const;
+  bool occluded(Vec3f from, Vec3f to) const;  // by opaque surfaces; ends excluded
+
+  // `surface.position` moved off the plane, to the side that `direction` leaves by.
+  static Vec3f leave(const Surface& surface, Vec3f direction);
+
+  Vec3f albedo(const Surface& surface) const;  // linear, textured
+  const Material& material(const Surface& surface) const {
+    return scene_.materials[static_cast<std::size_t>(surface.material)];
+  }
+  bool is_glass(const Surface& surface) const {
+    return material(surface).kind == MaterialKind::kThinDielectric;
+  }
+  const MaterialModel& model(const Surface& surface) const {
+    return models_[static_cast<std::size_t>(surface.material)];
+  }
+  std::span<const Triangle> triangles() const { return triangles_; }
+  const TraceScene& scene() const { return scene_; }
+
+ private:
+  void add_triangles(bool glass);
+  void attach(std::size_t first, std::size_t count, RayMask mask);
+  void interpolate_vertices(const Triangle& triangle, float u, float v, Surface& surface) const;
+  static void pass_glass(const RTCFilterFunctionNArguments* arguments);
+
+  const TraceScene& scene_;
+  std::vector<MaterialModel> models_;
+  std::vector<Triangle> triangles_;  // opaque ones first
+  std::size_t num_opaque_ = 0;
+  RTCDevice device_ = nullptr;
+  RTCScene bvh_ = nullptr;
+};
+
+}  // namespace glint::path_tracing

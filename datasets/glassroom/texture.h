@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// Texture look-up: bilinear between texel centres, repeated in both directions. uv (0, 0) is the
+// outer corner of the first texel of the first row; v grows with the rows.
+#pragma once
+
+#include "glint/core/image.h"
+#include "glint/core/vec.h"
+
+namespace glint::path_tracing {
+
+Vec3f sample_texture(const Image& texture, Vec2f uv);
+
+}  // namespace glint::path_tracing
