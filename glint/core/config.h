@@ -29,8 +29,8 @@ Json config_to_json(const Config& config) {
   return json;
 }
 
-// Sets every field named in `json`. Errors (kUsage): unknown name (the known ones are listed), wrong
-// type. `where` opens the message.
+// Sets every field named in `json`. Errors (kUsage): unknown name (the known ones are listed),
+// wrong type. `where` opens the message.
 template <class Config>
 void config_from_json(Config& config, const Json& json, std::string_view where) {
   for (const auto& [key, value] : json.items()) {
@@ -43,9 +43,7 @@ void config_from_json(Config& config, const Json& json, std::string_view where) 
       try {
         value.get_to(field);
       } catch (const nlohmann::json::exception&) {
-        throw Error(
-            ExitCode::kUsage, fmt::format("{}: {} cannot be {}", where, key, value.dump())
-        );
+        throw Error(ExitCode::kUsage, fmt::format("{}: {} cannot be {}", where, key, value.dump()));
       }
     });
     GLINT_CHECK(found, kUsage, "{}: no field '{}'; known fields: {}", where, key, known);
@@ -57,7 +55,11 @@ template <class Config>
 void config_override(Config& config, std::string_view assignment, std::string_view where) {
   const std::size_t equals = assignment.find('=');
   GLINT_CHECK(
-      equals != std::string_view::npos, kUsage, "{}: expected name=value, found '{}'", where, assignment
+      equals != std::string_view::npos,
+      kUsage,
+      "{}: expected name=value, found '{}'",
+      where,
+      assignment
   );
   const std::string text(assignment.substr(equals + 1));
   Json value = Json::parse(text, nullptr, false);

@@ -45,8 +45,7 @@ auto with_exit_code(ExitCode code, F&& body) {
 
 // Throws Error(code, fmt::format(...)) when `condition` is false. The message names the file, the
 // field, what was found, what was expected and how to mend it.
-#define GLINT_CHECK(condition, code, ...)                                                      \
-  do {                                                                                         \
-    if (!(condition))                                                                          \
-      throw ::glint::Error(::glint::ExitCode::code, ::fmt::format(__VA_ARGS__));               \
+#define GLINT_CHECK(condition, code, ...)                                                        \
+  do {                                                                                           \
+    if (!(condition)) throw ::glint::Error(::glint::ExitCode::code, ::fmt::format(__VA_ARGS__)); \
   } while (false)

@@ -3,12 +3,12 @@
 
 #include <fnmatch.h>
 
+#include <unistd.h>
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <unistd.h>
 
 #include "glint/core/error.h"
 
@@ -18,7 +18,10 @@ std::string read_file(const fs::path& path) {
   std::error_code code;
   GLINT_CHECK(fs::exists(path, code), kBadReference, "{}: no such file", path.string());
   GLINT_CHECK(
-      !fs::is_directory(path, code), kBadReference, "{}: is a folder, expected a file", path.string()
+      !fs::is_directory(path, code),
+      kBadReference,
+      "{}: is a folder, expected a file",
+      path.string()
   );
   std::ifstream in(path, std::ios::binary);
   GLINT_CHECK(
@@ -110,9 +113,7 @@ std::vector<fs::path> list_files(
     const fs::path& folder, const std::vector<std::string>& extensions
 ) {
   std::error_code code;
-  GLINT_CHECK(
-      fs::is_directory(folder, code), kBadReference, "{}: not a folder", folder.string()
-  );
+  GLINT_CHECK(fs::is_directory(folder, code), kBadReference, "{}: not a folder", folder.string());
   std::vector<fs::path> files;
   fs::directory_iterator it(folder, code);
   GLINT_CHECK(
@@ -123,8 +124,9 @@ std::vector<fs::path> list_files(
     std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
       return static_cast<char>(std::tolower(c));
     });
-    const bool wanted = extensions.empty() ||
-                        std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+    const bool wanted =
+        extensions.empty() ||
+        std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
     const bool hidden = entry.path().filename().string().starts_with('.');
     if (entry.is_regular_file(code) && wanted && !hidden) files.push_back(entry.path());
   }

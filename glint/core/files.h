@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 // The whole file. Errors (kBadReference): missing, unreadable, a folder.
 std::string read_file(const fs::path& path);
 
-// Calls `write(temporary)`, then renames to `path`; on any exception removes the temporary and throws
-// on. Creates the parent folder. Errors (kEnvironment): cannot create, write, or rename.
+// Calls `write(temporary)`, then renames to `path`; on any exception removes the temporary and
+// throws on. Creates the parent folder. Errors (kEnvironment): cannot create, write, or rename.
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write);
 void write_file(const fs::path& path, std::string_view content);
 

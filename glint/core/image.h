@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Images and maps: row-major [height][width][channels] arrays, owned (Image) or borrowed (ImageView).
-// Pixel (x, y) covers [x, x+1) x [y, y+1); its centre is (x + 0.5, y + 0.5).
+// Images and maps: row-major [height][width][channels] arrays, owned (Image) or borrowed
+// (ImageView). Pixel (x, y) covers [x, x+1) x [y, y+1); its centre is (x + 0.5, y + 0.5).
 #pragma once
 
 #include <cstddef>

@@ -8,7 +8,6 @@
 #include <vector>
 
 #if !defined(GLINT_STD_THREADS)
-#include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
@@ -18,7 +17,9 @@
 namespace glint {
 
 namespace {
-int hardware_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+int hardware_threads() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
 int requested_threads = 0;  // 0: all cores
 }  // namespace
 
@@ -39,12 +40,14 @@ namespace detail {
 void parallel_blocks(
     std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body
 ) {
-  if (n == 0) return;
-  if (n <= grain || num_threads() == 1) return body(0, n);
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, n, std::max<std::size_t>(1, grain)),
-      [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); }
-  );
+  grain = std::max<std::size_t>(1, grain);
+  const std::size_t num_blocks = (n + grain - 1) / grain;
+  const auto run_block = [&](std::size_t i) { body(i * grain, std::min(n, (i + 1) * grain)); };
+  if (num_blocks <= 1 || num_threads() == 1) {
+    for (std::size_t i = 0; i < num_blocks; ++i) run_block(i);
+  } else {
+    tbb::parallel_for(std::size_t{0}, num_blocks, run_block);
+  }
 }
 }  // namespace detail
 
@@ -56,9 +59,7 @@ namespace detail {
 void parallel_blocks(
     std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body
 ) {
-  if (n == 0) return;
   grain = std::max<std::size_t>(1, grain);
-  if (n <= grain || num_threads() == 1) return body(0, n);
   std::atomic<std::size_t> next{0};
   std::exception_ptr failure;
   std::atomic_flag failed = ATOMIC_FLAG_INIT;

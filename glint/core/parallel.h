@@ -19,7 +19,8 @@ void parallel_blocks(
 );
 }
 
-// body(begin, end) over disjoint blocks of at least `grain` indices covering [0, n).
+// body(begin, end) over the blocks [0, grain), [grain, 2 grain), ... of [0, n): the same blocks for
+// any number of threads.
 template <class F>
 void parallel_for_blocks(std::size_t n, std::size_t grain, F&& body) {
   detail::parallel_blocks(n, grain, body);

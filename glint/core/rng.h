@@ -35,7 +35,9 @@ class Rng {
   // Standard normal by Box-Muller (one of the pair is dropped: no hidden state).
   float normal() {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - static_cast<double>(uniform())));
-    return static_cast<float>(radius * std::cos(6.283185307179586 * static_cast<double>(uniform())));
+    return static_cast<float>(
+        radius * std::cos(6.283185307179586 * static_cast<double>(uniform()))
+    );
   }
 
  private:

@@ -7,7 +7,7 @@
 
 namespace glint {
 
-#define GLINT_SIMD_INLINE [[gnu::always_inline]] inline
+#define GLINT_SIMD_INLINE inline __attribute__((always_inline))
 
 struct Mask8 {
   using Lanes = std::int32_t __attribute__((vector_size(32)));
@@ -39,9 +39,13 @@ struct MaskOf<Float8> {
 
 // Lane indices 0..7, and a plain 0 for scalars.
 template <class T>
-GLINT_SIMD_INLINE T lane_indices() { return T(0); }
+GLINT_SIMD_INLINE T lane_indices() {
+  return T(0);
+}
 template <>
-GLINT_SIMD_INLINE Float8 lane_indices<Float8>() { return Float8::Lanes{0, 1, 2, 3, 4, 5, 6, 7}; }
+GLINT_SIMD_INLINE Float8 lane_indices<Float8>() {
+  return Float8::Lanes{0, 1, 2, 3, 4, 5, 6, 7};
+}
 
 GLINT_SIMD_INLINE Float8 operator+(Float8 a, Float8 b) { return a.lanes + b.lanes; }
 GLINT_SIMD_INLINE Float8 operator-(Float8 a, Float8 b) { return a.lanes - b.lanes; }
@@ -69,8 +73,12 @@ GLINT_SIMD_INLINE bool all(Mask8 mask) {
   return __builtin_ia32_movmskps256(reinterpret_cast<Float8::Lanes>(mask.lanes)) == 0xff;
 }
 
-GLINT_SIMD_INLINE Float8 min_of(Float8 a, Float8 b) { return __builtin_ia32_minps256(a.lanes, b.lanes); }
-GLINT_SIMD_INLINE Float8 max_of(Float8 a, Float8 b) { return __builtin_ia32_maxps256(a.lanes, b.lanes); }
+GLINT_SIMD_INLINE Float8 min_of(Float8 a, Float8 b) {
+  return __builtin_ia32_minps256(a.lanes, b.lanes);
+}
+GLINT_SIMD_INLINE Float8 max_of(Float8 a, Float8 b) {
+  return __builtin_ia32_maxps256(a.lanes, b.lanes);
+}
 GLINT_SIMD_INLINE Float8 abs_of(Float8 a) { return max_of(a, -a); }
 GLINT_SIMD_INLINE Float8 sqrt_of(Float8 a) { return __builtin_ia32_sqrtps256(a.lanes); }
 GLINT_SIMD_INLINE Float8 fma_of(Float8 a, Float8 b, Float8 c) {
@@ -82,8 +90,8 @@ GLINT_SIMD_INLINE Float8 exp2_integer(Float8 k) {
   return reinterpret_cast<Float8::Lanes>(bits);
 }
 
-// Lane sums of eight vectors as one vector: sums[i] = sum of v[i]'s lanes. Seven adds a halving step
-// instead of eight separate reductions.
+// Lane sums of eight vectors as one vector: sums[i] = sum of v[i]'s lanes. Seven adds a halving
+// step instead of eight separate reductions.
 GLINT_SIMD_INLINE Float8 lane_sums(const Float8 v[8]) {
   using L = Float8::Lanes;
   const L a = __builtin_ia32_haddps256(v[0].lanes, v[1].lanes);
@@ -107,9 +115,13 @@ inline constexpr int kLanesOf = 1;
 template <>
 inline constexpr int kLanesOf<Float8> = 8;
 template <class T>
-GLINT_SIMD_INLINE T load_lanes(const float* p) { return *p; }
+GLINT_SIMD_INLINE T load_lanes(const float* p) {
+  return *p;
+}
 template <>
-GLINT_SIMD_INLINE Float8 load_lanes<Float8>(const float* p) { return Float8::load(p); }
+GLINT_SIMD_INLINE Float8 load_lanes<Float8>(const float* p) {
+  return Float8::load(p);
+}
 GLINT_SIMD_INLINE void store_lanes(float* p, float v) { *p = v; }
 GLINT_SIMD_INLINE void store_lanes(float* p, Float8 v) { v.store(p); }
 // Lane i reads p[i * stride]: one field of kLanesOf<T> consecutive rows.
@@ -118,8 +130,15 @@ GLINT_SIMD_INLINE T load_strided(const float* p, std::ptrdiff_t stride) {
   if constexpr (kLanesOf<T> == 1) {
     return T(*p);
   } else {
-    return Float8::Lanes{p[0],          p[stride],     p[2 * stride], p[3 * stride],
-                         p[4 * stride], p[5 * stride], p[6 * stride], p[7 * stride]};
+    return Float8::Lanes{
+        p[0],
+        p[stride],
+        p[2 * stride],
+        p[3 * stride],
+        p[4 * stride],
+        p[5 * stride],
+        p[6 * stride],
+        p[7 * stride]};
   }
 }
 template <class T>

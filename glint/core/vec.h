@@ -25,24 +25,42 @@ struct Vec4 {
 };
 
 template <class T>
-GLINT_HD Vec2<T> operator+(Vec2<T> a, Vec2<T> b) { return {a.x + b.x, a.y + b.y}; }
+GLINT_HD Vec2<T> operator+(Vec2<T> a, Vec2<T> b) {
+  return {a.x + b.x, a.y + b.y};
+}
 template <class T>
-GLINT_HD Vec2<T> operator-(Vec2<T> a, Vec2<T> b) { return {a.x - b.x, a.y - b.y}; }
+GLINT_HD Vec2<T> operator-(Vec2<T> a, Vec2<T> b) {
+  return {a.x - b.x, a.y - b.y};
+}
 template <class T>
-GLINT_HD Vec2<T> operator*(T s, Vec2<T> a) { return {s * a.x, s * a.y}; }
+GLINT_HD Vec2<T> operator*(T s, Vec2<T> a) {
+  return {s * a.x, s * a.y};
+}
 
 template <class T>
-GLINT_HD Vec3<T> operator+(Vec3<T> a, Vec3<T> b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+GLINT_HD Vec3<T> operator+(Vec3<T> a, Vec3<T> b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
 template <class T>
-GLINT_HD Vec3<T> operator-(Vec3<T> a, Vec3<T> b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+GLINT_HD Vec3<T> operator-(Vec3<T> a, Vec3<T> b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 template <class T>
-GLINT_HD Vec3<T> operator-(Vec3<T> a) { return {-a.x, -a.y, -a.z}; }
+GLINT_HD Vec3<T> operator-(Vec3<T> a) {
+  return {-a.x, -a.y, -a.z};
+}
 template <class T>
-GLINT_HD Vec3<T> operator*(T s, Vec3<T> a) { return {s * a.x, s * a.y, s * a.z}; }
+GLINT_HD Vec3<T> operator*(T s, Vec3<T> a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
 template <class T>
-GLINT_HD Vec3<T>& operator+=(Vec3<T>& a, Vec3<T> b) { return a = a + b; }
+GLINT_HD Vec3<T>& operator+=(Vec3<T>& a, Vec3<T> b) {
+  return a = a + b;
+}
 template <class T>
-GLINT_HD Vec3<T> hadamard(Vec3<T> a, Vec3<T> b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+GLINT_HD Vec3<T> hadamard(Vec3<T> a, Vec3<T> b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
 
 template <class T>
 GLINT_HD T dot(Vec3<T> a, Vec3<T> b) {
@@ -50,16 +68,23 @@ GLINT_HD T dot(Vec3<T> a, Vec3<T> b) {
 }
 template <class T>
 GLINT_HD Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
-  return {fma_of(a.y, b.z, -(a.z * b.y)),
-          fma_of(a.z, b.x, -(a.x * b.z)),
-          fma_of(a.x, b.y, -(a.y * b.x))};
+  return {
+      fma_of(a.y, b.z, -(a.z * b.y)),
+      fma_of(a.z, b.x, -(a.x * b.z)),
+      fma_of(a.x, b.y, -(a.y * b.x))};
 }
 template <class T>
-GLINT_HD T length2(Vec3<T> a) { return dot(a, a); }
+GLINT_HD T length2(Vec3<T> a) {
+  return dot(a, a);
+}
 template <class T>
-GLINT_HD T length(Vec3<T> a) { return sqrt_of(dot(a, a)); }
+GLINT_HD T length(Vec3<T> a) {
+  return sqrt_of(dot(a, a));
+}
 template <class T>
-GLINT_HD Vec3<T> normalize(Vec3<T> a) { return (T(1) / length(a)) * a; }
+GLINT_HD Vec3<T> normalize(Vec3<T> a) {
+  return (T(1) / length(a)) * a;
+}
 
 template <class T>
 GLINT_HD Vec3<T> select(Mask<T> mask, Vec3<T> a, Vec3<T> b) {
@@ -112,7 +137,9 @@ using Vec3d = Vec3<double>;
 using Mat3d = Mat3<double>;
 
 template <class T, class S>
-GLINT_HD Vec3<T> cast(Vec3<S> v) { return {T(v.x), T(v.y), T(v.z)}; }
+GLINT_HD Vec3<T> cast(Vec3<S> v) {
+  return {T(v.x), T(v.y), T(v.z)};
+}
 template <class T, class S>
 GLINT_HD Mat3<T> cast(const Mat3<S>& m) {
   return {{cast<T>(m.rows[0]), cast<T>(m.rows[1]), cast<T>(m.rows[2])}};

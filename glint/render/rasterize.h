@@ -3,7 +3,8 @@
 // activation and SH evaluation; the contract is the same on every backend.
 //
 // A surfel contributes to a pixel iff (all per pixel, at the pixel centre)
-//   rho <= 9 (3 sigma), alpha = min(0.99, opacity exp(-rho/2)) >= 1/255, z > near and z > near_limit,
+//   rho <= 9 (3 sigma), alpha = min(0.99, opacity exp(-rho/2)) >= 1/255, z > near and z >
+//   near_limit,
 // where rho = min(rho3, rho2): rho3 = u^2 + v^2 at the ray's intersection, rho2 = 2 |p - c|^2 the
 // screen-space low-pass around the centre c of the surfel's exact 3-sigma box; and the pixel's
 // transmittance after it stays >= 1e-4. Order: depth of the surfel's centre, ties by index.
@@ -20,9 +21,9 @@
 namespace glint {
 
 struct RasterSettings {
-  float near_plane = 0.2f;          // metres, planar depth
-  bool with_distortion = false;     // also the distortion map [Huang24 Eq. 13]
-  float distortion_near = 0.2f;     // metres, of the NDC mapping of the distortion loss
+  float near_plane = 0.2f;       // metres, planar depth
+  bool with_distortion = false;  // also the distortion map [Huang24 Eq. 13]
+  float distortion_near = 0.2f;  // metres, of the NDC mapping of the distortion loss
   float distortion_far = 100.0f;
 };
 
@@ -39,13 +40,13 @@ struct RasterInput {
 };
 
 struct RasterOutput {
-  Image features;        // [H][W][C] sum w f; no background is added
-  Image alpha;           // [H][W][1] sum w = 1 - transmittance
-  Image depth_sum;       // [H][W][1] sum w z; expected depth = depth_sum / alpha
-  Image depth_median;    // [H][W][1] z of the last contributor met while transmittance > 0.5; 0: none
-  Image normal;          // [H][W][3] sum w n in camera space, each n facing the camera; not unit
-  Image distortion;      // [H][W][1] sum_ij w_i w_j (m_i - m_j)^2, j < i; empty unless asked for
-  std::vector<float> visibility;  // [N] sum over pixels of w
+  Image features;      // [H][W][C] sum w f; no background is added
+  Image alpha;         // [H][W][1] sum w = 1 - transmittance
+  Image depth_sum;     // [H][W][1] sum w z; expected depth = depth_sum / alpha
+  Image depth_median;  // [H][W][1] z of the last contributor met while transmittance > 0.5; 0: none
+  Image normal;        // [H][W][3] sum w n in camera space, each n facing the camera; not unit
+  Image distortion;    // [H][W][1] sum_ij w_i w_j (m_i - m_j)^2, j < i; empty unless asked for
+  std::vector<float> visibility;      // [N] sum over pixels of w
   std::vector<std::uint8_t> in_view;  // [N] 1: reached at least one tile
 };
 
@@ -72,13 +73,20 @@ class Rasterizer {
   // Both are deterministic: the same bytes for any number of threads. `scalar` runs the scalar
   // instantiation of the same text (for perf and tests).
   void forward(
-      const RasterInput& input, const Camera& camera, const RasterSettings& settings,
-      RasterOutput& output, bool scalar = false
+      const RasterInput& input,
+      const Camera& camera,
+      const RasterSettings& settings,
+      RasterOutput& output,
+      bool scalar = false
   );
   // Gradients of the last forward call; input, camera and settings must be the same.
   void backward(
-      const RasterInput& input, const Camera& camera, const RasterSettings& settings,
-      const RasterOutput& output, const RasterOutputGradient& dL_doutput, RasterGradient& gradient,
+      const RasterInput& input,
+      const Camera& camera,
+      const RasterSettings& settings,
+      const RasterOutput& output,
+      const RasterOutputGradient& dL_doutput,
+      RasterGradient& gradient,
       bool scalar = false
   );
   std::size_t num_pairs() const;  // (surfel, tile) pairs of the last forward call

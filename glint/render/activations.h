@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// From raw parameters to geometry: sigmoid, exp, unit quaternion to rotation, each with its vjp.
+#pragma once
+
+#include "glint/core/vec.h"
+
+namespace glint {
+
+template <class T>
+GLINT_HD T sigmoid(T logit) {
+  return T(1) / (T(1) + exp_fast(-logit));
+}
+template <class T>
+GLINT_HD T sigmoid_vjp(T value, T dL_dvalue) {
+  return dL_dvalue * value * (T(1) - value);
+}
+GLINT_HD float logit(float probability) { return logf(probability / (1.0f - probability)); }
+
+template <class T>
+GLINT_HD T exp_vjp(T value, T dL_dvalue) {
+  return dL_dvalue * value;
+}
+
+template <class T>
+GLINT_HD T quaternion_norm(Vec4<T> q) {
+  return sqrt_of(fma_of(q.w, q.w, fma_of(q.x, q.x, fma_of(q.y, q.y, q.z * q.z))));
+}
+
+// Rotation of q / |q|; columns are the surfel's tangents a, b and its normal.
+template <class T>
+GLINT_HD Mat3<T> rotation_matrix(Vec4<T> raw) {
+  const T inverse = T(1) / quaternion_norm(raw);
+  const T w = raw.w * inverse, x = raw.x * inverse, y = raw.y * inverse, z = raw.z * inverse;
+  const T two(2), one(1);
+  return {
+      {{one - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)},
+       {two * (x * y + w * z), one - two * (x * x + z * z), two * (y * z - w * x)},
+       {two * (x * z - w * y), two * (y * z + w * x), one - two * (x * x + y * y)}}};
+}
+// g: dL/d(rotation matrix). Through the normalisation: g_raw = (g_q - q (q.g_q)) / |raw|.
+template <class T>
+GLINT_HD void rotation_matrix_vjp(Vec4<T> raw, const Mat3<T>& g, Vec4<T>& dL_draw) {
+  const T inverse = T(1) / quaternion_norm(raw);
+  const T w = raw.w * inverse, x = raw.x * inverse, y = raw.y * inverse, z = raw.z * inverse;
+  const Vec3<T>* r = g.rows;
+  const T two(2);
+  const T gw = two * (z * (r[1].x - r[0].y) + y * (r[0].z - r[2].x) + x * (r[2].y - r[1].z));
+  const T gx = two * (y * (r[0].y + r[1].x) + z * (r[0].z + r[2].x) + w * (r[2].y - r[1].z) -
+                      two * x * (r[1].y + r[2].z));
+  const T gy = two * (x * (r[0].y + r[1].x) + z * (r[1].z + r[2].y) + w * (r[0].z - r[2].x) -
+                      two * y * (r[0].x + r[2].z));
+  const T gz = two * (x * (r[0].z + r[2].x) + y * (r[1].z + r[2].y) + w * (r[1].x - r[0].y) -
+                      two * z * (r[0].x + r[1].y));
+  const T radial = w * gw + x * gx + y * gy + z * gz;
+  dL_draw.w += (gw - w * radial) * inverse;
+  dL_draw.x += (gx - x * radial) * inverse;
+  dL_draw.y += (gy - y * radial) * inverse;
+  dL_draw.z += (gz - z * radial) * inverse;
+}
+
+}  // namespace glint

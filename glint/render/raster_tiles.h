@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// CPU rasterisation, first half: surfels projected to splats, sorted by depth and listed per tile.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "glint/render/project.h"
+#include "glint/render/radix_sort.h"
+#include "glint/render/rasterize.h"
+
+namespace glint {
+
+inline constexpr int kTileSize = 8;  // pixels; one Float8 is one row of a tile
+
+// One projected surfel as the tile loops read it.
+struct Splat {
+  PixelPlaneMap<float> map;
+  float x_ref, y_ref, center_x, center_y;
+  float opacity, z_center;
+  Vec3f normal;
+};
+
+// Pixels [x_min, x_max) x [y_min, y_max) a splat can reach; empty for surfels out of view.
+struct PixelBox {
+  std::int32_t x_min = 0, x_max = 0, y_min = 0, y_max = 0;
+  bool empty() const { return x_min >= x_max || y_min >= y_max; }
+  int tile_x_min() const { return x_min / kTileSize; }
+  int tile_y_min() const { return y_min / kTileSize; }
+  int tile_x_max() const { return (x_max + kTileSize - 1) / kTileSize; }
+  int tile_y_max() const { return (y_max + kTileSize - 1) / kTileSize; }
+  int tiles_across() const { return tile_x_max() - tile_x_min(); }
+  int num_tiles() const { return empty() ? 0 : tiles_across() * (tile_y_max() - tile_y_min()); }
+};
+
+struct TileLists {
+  int tiles_x = 0, tiles_y = 0;
+  std::vector<Splat> splats;              // [N]
+  std::vector<PixelBox> boxes;            // [N]
+  std::vector<std::uint32_t> pair_begin;  // [N + 1] first pair of each surfel
+  std::vector<std::uint32_t> tile_begin;  // [tiles + 1] into `surfel_ids`
+  std::vector<std::uint32_t> surfel_ids;  // surfels of each tile, front to back
+
+  std::size_t num_tiles() const { return static_cast<std::size_t>(tiles_x) * tiles_y; }
+  std::size_t num_pairs() const { return surfel_ids.size(); }
+  // Pairs are numbered surfel by surfel, so that a surfel's sums run over neighbours in memory.
+  std::size_t pair_of(std::uint32_t surfel, int tile_x, int tile_y) const {
+    const PixelBox& box = boxes[surfel];
+    return pair_begin[surfel] +
+           static_cast<std::size_t>(tile_y - box.tile_y_min()) * box.tiles_across() +
+           (tile_x - box.tile_x_min());
+  }
+
+  std::vector<KeyedIndex> order, scratch;  // reused between calls
+};
+
+CameraOf<float> camera_of(const Camera& camera, float near_plane);
+template <class T>
+CameraOf<T> broadcast_camera(const CameraOf<float>& c) {
+  const auto lift = [](Vec3f v) { return Vec3<T>{T(v.x), T(v.y), T(v.z)}; };
+  return {
+      {{lift(c.rotation.rows[0]), lift(c.rotation.rows[1]), lift(c.rotation.rows[2])}},
+      lift(c.translation),
+      T(c.fx),
+      T(c.fy),
+      T(c.cx),
+      T(c.cy),
+      T(c.width),
+      T(c.height),
+      T(c.near_plane)};
+}
+
+// Geometry of surfel i (and the next lanes) of the input.
+template <class T>
+SurfelGeometry<T> load_geometry(const RasterInput& input, std::size_t i);
+
+// Fills `lists`. scalar: without SIMD lanes (for perf).
+void build_tile_lists(
+    const RasterInput& input, const Camera& camera, float near_plane, bool scalar, TileLists& lists
+);
+
+}  // namespace glint

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Activation of a whole cloud for one camera: scales, opacities, SH colours and extra channels, as
+// rasterize() wants them, and the way back to the raw parameters.
+#pragma once
+
+#include <vector>
+
+#include "glint/render/rasterize.h"
+#include "glint/scene/surfels.h"
+
+namespace glint {
+
+struct ActivatedSurfels {
+  int channels = 3;              // 3 + number of extra channels
+  std::vector<float> scales;     // [N][2] metres
+  std::vector<float> opacities;  // [N]
+  std::vector<float> features;   // [N][channels]: colour, then extra channels
+};
+
+// eye: camera centre, metres. sh_degree: 0..3 (coefficients above are ignored).
+void activate(const SurfelCloud& cloud, Vec3f eye, int sh_degree, ActivatedSurfels& activated);
+
+// The activated cloud as rasterize() takes it.
+RasterInput raster_input(const SurfelCloud& cloud, const ActivatedSurfels& activated);
+
+// Adds dL/d(raw parameters) to `dL_dcloud` (same size as `cloud`); gradient: of rasterize().
+void activate_vjp(
+    const SurfelCloud& cloud,
+    Vec3f eye,
+    int sh_degree,
+    const ActivatedSurfels& activated,
+    const RasterGradient& gradient,
+    SurfelCloud& dL_dcloud
+);
+
+}  // namespace glint
