@@ -12,35 +12,47 @@
 namespace glint {
 
 struct LoadOptions {
-  ImageSize size;              // images resized to this (area average); {0, 0}: as stored
-  double max_pixels = 0;       // or: shrink so that width x height stays below; 0: as stored
-  int test_every = 8;          // view index % test_every == 0 is a test view (unless the data says)
-  bool with_truth = true;      // read gt/
-  bool with_priors = true;     // read diffrens/
+  ImageSize size;           // images resized to this (area average); {0, 0}: as stored
+  double max_pixels = 0;    // or: shrink so that width x height stays below; 0: as stored
+  int test_every = 8;       // view index % test_every == 0 is a test view (unless the data says)
+  bool with_truth = true;   // read gt/
+  bool with_priors = true;  // read diffrens/
 };
+
+struct SceneIndex;  // datasets/scene_index.h
 
 struct LoaderSpec {
   std::string name;
   std::function<bool(const fs::path&)> can_load;
   std::function<Scene(const fs::path&, const LoadOptions&)> load;
+  std::string looks_for = {};  // e.g. "transforms.json"; listed when no loader knows a folder
+  // What check_dataset() examines; empty: it only tries load().
+  std::function<SceneIndex(const fs::path&, const LoadOptions&)> index = {};
 };
 
 bool register_loader(LoaderSpec spec);
 const std::vector<LoaderSpec>& loader_registry();
-// Errors (kBadReference): no loader knows the folder (what each looks for is listed), bad data.
+// The loader that knows the folder. Errors (kBadReference): none does; what each looks for is
+// listed.
+const LoaderSpec& find_loader(const fs::path& folder);
+// Errors (kBadReference): find_loader()'s, bad data.
 Scene load_scene(const fs::path& folder, const LoadOptions& options);
 
-struct Finding {  // of `dataset check`
-  std::string check;     // "ray-length-depth", "normal-axes", "intrinsics-size", "missing-file", ...
-  std::string where;     // file or view, and field
-  std::string message;   // found, expected, how to mend
+// Views, image sizes, split, priors, ground truth, points and extent, one line each.
+std::string describe_scene(const Scene& scene);
+
+struct Finding {        // of `dataset check`
+  std::string check;    // "ray-length-depth", "normal-axes", "intrinsics-size", "missing-file", ...
+  std::string where;    // file or view, and field
+  std::string message;  // found, expected, how to mend
 };
 // Everything wrong with a dataset folder, not only the first thing. Empty: clean.
+// Errors (kBadReference): no loader knows the folder.
 std::vector<Finding> check_dataset(const fs::path& folder);
 
 }  // namespace glint
 
-#define GLINT_REGISTER_LOADER(...) \
-  namespace {                      \
+#define GLINT_REGISTER_LOADER(...)                                                       \
+  namespace {                                                                            \
   [[maybe_unused]] const bool loader_registered = ::glint::register_loader(__VA_ARGS__); \
   }

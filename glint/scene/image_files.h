@@ -2,7 +2,7 @@
 // Image files: PNG and JPEG through OpenCV, EXR through OpenEXR, NPY maps. Colours stay as stored
 // (sRGB-encoded values in [0, 1]); nothing here changes a transfer function. Writers are atomic.
 // Errors (kBadReference) name the file and say what was found and expected: truncated files, wrong
-// channel counts, sizes that do not match the header, tiled or deep EXR, missing EXR channels.
+// channel counts, sizes that do not match the header, cropped or deep EXR, missing EXR channels.
 #pragma once
 
 #include <string>
@@ -18,7 +18,11 @@ namespace glint {
 Image read_image(const fs::path& path);
 // The same, always `channels` channels (1 or 3; grey is repeated, colour to grey is an error).
 Image read_image(const fs::path& path, int channels);
-MaskImage read_mask(const fs::path& path);  // non-zero (>= half of the range) counts
+// The size in the header of a PNG or JPEG; nothing is decoded.
+ImageSize read_image_size(const fs::path& path);
+// Pixels of at least half of the range count. Errors besides: values, but none that large (a mask
+// of 0 and 1 in 8 bits).
+MaskImage read_mask(const fs::path& path);
 
 // [0, 1] clamped, times 255, rounded half to even. 1 or 3 channels.
 void write_png(const fs::path& path, ImageView image);

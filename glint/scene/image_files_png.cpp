@@ -152,6 +152,13 @@ Image detail::read_png_or_jpeg(const fs::path& path) {
   }
 }
 
+ImageSize read_image_size(const fs::path& path) {
+  const std::string file = read_file(path);
+  const ClaimedSize size = walk(path, file).size;
+  detail::check_claimed_size(path, size, file.size());
+  return {static_cast<int>(size.width), static_cast<int>(size.height)};
+}
+
 void write_png(const fs::path& path, ImageView image) {
   GLINT_CHECK(
       !image.empty() && (image.channels == 1 || image.channels == 3),

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// EasyVolcap's folder layout, as GLINT's official release and our GlassRoom generator write it:
+//   images/<view>/000000.{png,jpg}   intri.yml   extri.yml   sparse/0/points3D.ply
+//   diffrens/{normal,depth,diffuse_albedo,basecolor}/<view>/000000.png       priors
+// and, of GlassRoom only:
+//   gt/{depth,normal,albedo,behind_depth,behind_normal,transmitted,reflected}/<view>.exr
+//   gt/glass/<view>.png   scene.json
+#include <algorithm>
+
+#include "datasets/dataset.h"
+#include "datasets/opencv_yaml.h"
+#include "datasets/scene_index.h"
+#include "glint/core/config.h"
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+const std::vector<std::string> kPictures{".png", ".jpg", ".jpeg"};
+
+bool is_folder(const fs::path& path) {
+  std::error_code code;
+  return fs::is_directory(path, code);
+}
+
+bool can_load(const fs::path& folder) {
+  std::error_code code;
+  return fs::exists(folder / "intri.yml", code) && is_folder(folder / "images");
+}
+
+// The view's only frame; a name that does not exist when the folder has none.
+fs::path first_frame(const fs::path& view_folder) {
+  if (!is_folder(view_folder)) return view_folder / "000000.png";
+  const std::vector<fs::path> files = list_files(view_folder, kPictures);
+  return files.empty() ? view_folder / "000000.png" : files.front();
+}
+
+PriorFiles find_priors(const fs::path& folder, const std::string& view) {
+  const fs::path priors = folder / "diffrens";
+  const auto find = [&](const char* kind) {
+    return is_folder(priors / kind) ? first_frame(priors / kind / view) : fs::path();
+  };
+  return {find("normal"), find("depth"), find("diffuse_albedo"), find("basecolor")};
+}
+
+TruthFiles find_truth(const fs::path& folder, const std::string& view) {
+  const fs::path truth = folder / "gt";
+  const auto find = [&](const char* kind, const char* extension) {
+    return is_folder(truth / kind) ? truth / kind / (view + extension) : fs::path();
+  };
+  TruthFiles files;
+  files.depth = find("depth", ".exr");
+  files.normal = find("normal", ".exr");
+  files.albedo = find("albedo", ".exr");
+  files.glass = find("glass", ".png");
+  files.behind_depth = find("behind_depth", ".exr");
+  files.behind_normal = find("behind_normal", ".exr");
+  files.transmitted = find("transmitted", ".exr");
+  files.reflected = find("reflected", ".exr");
+  return files;
+}
+
+ViewSource make_view(const fs::path& folder, const OpencvCamera& camera) {
+  ViewSource view;
+  view.name = camera.name;
+  view.where = fmt::format("{}: camera {}", (folder / "extri.yml").string(), camera.name);
+  view.image = first_frame(folder / "images" / camera.name);
+  view.camera = camera.camera;
+  view.distortion = camera.distortion;
+  view.priors = find_priors(folder, camera.name);
+  view.truth = find_truth(folder, camera.name);
+  return view;
+}
+
+// Our generator's description; absent from official scenes.
+void read_scene_json(const fs::path& path, SceneIndex& index) {
+  std::error_code code;
+  if (!fs::exists(path, code)) return;
+  try {
+    const Json json = Json::parse(read_file(path));
+    index.name = json.value("name", index.name);
+    index.dataset = json.value("dataset", index.dataset);
+    index.spec_hash = json.value("hash", index.spec_hash);
+    index.simulated_priors = json.value("simulated_priors", false);
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(
+        ExitCode::kBadReference, fmt::format("{}: {}; write it again", path.string(), error.what())
+    );
+  }
+}
+
+SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
+  const fs::path intri = folder / "intri.yml", extri = folder / "extri.yml";
+  SceneIndex index;
+  index.name = folder_name(folder);
+  index.dataset = "easyvolcap";
+  std::vector<OpencvCamera> cameras = read_opencv_cameras(intri, extri);
+  std::sort(cameras.begin(), cameras.end(), [](const OpencvCamera& a, const OpencvCamera& b) {
+    return natural_less(a.name, b.name);
+  });
+  for (const OpencvCamera& camera : cameras) {
+    index.views.push_back(make_view(folder, camera));
+    for (const std::string& problem : camera.problems)
+      index.problems.push_back({"camera-field", "camera " + camera.name, problem});
+  }
+  split_every(index.views, options.test_every);
+  const fs::path points = folder / "sparse" / "0" / "points3D.ply";
+  std::error_code code;
+  if (fs::exists(points, code)) index.points = points;
+  index.spec_hash = hash_of_files(read_file(intri) + read_file(extri), index.views);
+  read_scene_json(folder / "scene.json", index);
+  return index;
+}
+
+Scene load(const fs::path& folder, const LoadOptions& options) {
+  return load_indexed(index_folder(folder, options), options);
+}
+
+}  // namespace
+
+GLINT_REGISTER_LOADER(
+    {"easyvolcap", can_load, load, "intri.yml, extri.yml and images/<view>/", index_folder}
+)
+
+}  // namespace glint

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <optional>
+
+#include "datasets/map_resize.h"
+#include "datasets/scene_index.h"
+#include "datasets/undistort.h"
+#include "glint/core/error.h"
+#include "glint/core/parallel.h"
+#include "glint/core/rng.h"
+#include "glint/scene/image_files.h"
+#include "glint/scene/ply.h"
+
+namespace glint {
+namespace {
+
+enum class MapKind { kColor, kDepth, kNormal };
+
+// Calls f(image, kind) for every map of a view that is there; the glass mask is not among them.
+template <class F>
+void for_each_map(View& view, F&& f) {
+  const auto visit = [&](Image& image, MapKind kind) {
+    if (!image.empty()) f(image, kind);
+  };
+  visit(view.rgb, MapKind::kColor);
+  visit(view.priors.normal, MapKind::kNormal);
+  visit(view.priors.depth, MapKind::kDepth);
+  visit(view.priors.albedo, MapKind::kColor);
+  visit(view.priors.basecolor, MapKind::kColor);
+  visit(view.truth.depth, MapKind::kDepth);
+  visit(view.truth.normal, MapKind::kNormal);
+  visit(view.truth.albedo, MapKind::kColor);
+  visit(view.truth.behind_depth, MapKind::kDepth);
+  visit(view.truth.behind_normal, MapKind::kNormal);
+  visit(view.truth.transmitted, MapKind::kColor);
+  visit(view.truth.reflected, MapKind::kColor);
+}
+
+void check_size(const fs::path& path, ImageSize found, ImageSize expected) {
+  GLINT_CHECK(
+      found == expected,
+      kBadReference,
+      "{}: {} x {} pixels, its view's image has {} x {}; store both at one size",
+      path.string(),
+      found.width,
+      found.height,
+      expected.width,
+      expected.height
+  );
+}
+
+template <class Reader>
+void read_into(Image& image, const fs::path& path, ImageSize expected, Reader&& read) {
+  if (path.empty()) return;
+  image = read(path);
+  check_size(path, image.size(), expected);
+}
+
+Image read_three(const fs::path& path) { return read_map(path, 3); }
+Image read_one(const fs::path& path) { return read_map(path, 1); }
+
+Priors read_priors(const PriorFiles& files, ImageSize size) {
+  Priors priors;
+  read_into(priors.normal, files.normal, size, read_normal_prior);
+  read_into(priors.depth, files.depth, size, read_depth_prior);
+  read_into(priors.albedo, files.albedo, size, read_three);
+  read_into(priors.basecolor, files.basecolor, size, read_three);
+  return priors;
+}
+
+GroundTruth read_truth(const TruthFiles& files, ImageSize size) {
+  GroundTruth truth;
+  read_into(truth.depth, files.depth, size, read_one);
+  read_into(truth.normal, files.normal, size, read_three);
+  read_into(truth.albedo, files.albedo, size, read_three);
+  read_into(truth.behind_depth, files.behind_depth, size, read_one);
+  read_into(truth.behind_normal, files.behind_normal, size, read_three);
+  read_into(truth.transmitted, files.transmitted, size, read_three);
+  read_into(truth.reflected, files.reflected, size, read_three);
+  if (files.glass.empty()) return truth;
+  truth.glass = read_mask(files.glass);
+  check_size(files.glass, truth.glass.size(), size);
+  return truth;
+}
+
+MaskImage undistort_mask(const MaskImage& mask, const Undistortion& undistortion) {
+  Image values(mask.width(), mask.height(), 1);
+  std::copy(mask.values().begin(), mask.values().end(), values.values().begin());
+  values = undistortion.apply(values, Undistortion::Lookup::kNearest);
+  MaskImage result(values.width(), values.height(), 1);
+  for (std::size_t i = 0; i < result.num_pixels(); ++i)
+    result.data()[i] = values.data()[i] > 0 ? 255 : 0;
+  return result;
+}
+
+void undistort_view(View& view, const std::vector<double>& distortion) {
+  const Undistortion undistortion(view.camera, distortion);
+  for_each_map(view, [&](Image& image, MapKind kind) {
+    const bool blend = kind == MapKind::kColor;
+    image = undistortion.apply(
+        image, blend ? Undistortion::Lookup::kBilinear : Undistortion::Lookup::kNearest
+    );
+  });
+  if (!view.truth.glass.empty()) view.truth.glass = undistort_mask(view.truth.glass, undistortion);
+  view.camera = undistortion.camera();
+}
+
+void resize_view(View& view, ImageSize size) {
+  if (size == view.camera.size()) return;
+  for_each_map(view, [&](Image& image, MapKind kind) {
+    switch (kind) {
+      case MapKind::kColor:
+        image = resize_image(image, size);
+        break;
+      case MapKind::kDepth:
+        image = resize_depth(image, size);
+        break;
+      case MapKind::kNormal:
+        image = resize_normal(image, size);
+        break;
+    }
+  });
+  if (!view.truth.glass.empty()) view.truth.glass = resize_mask(view.truth.glass, size);
+  view.camera = resized(view.camera, size);
+}
+
+ImageSize target_size(ImageSize stored, const LoadOptions& options) {
+  if (options.size.width > 0 && options.size.height > 0) return options.size;
+  const auto pixels = static_cast<double>(stored.num_pixels());
+  if (options.max_pixels <= 0 || pixels <= options.max_pixels) return stored;
+  const double scale = std::sqrt(options.max_pixels / pixels);
+  return {
+      std::max(1, static_cast<int>(scale * stored.width)),
+      std::max(1, static_cast<int>(scale * stored.height))};
+}
+
+View load_view(const ViewSource& source, const LoadOptions& options) {
+  View view = read_view(source, options);
+  try {
+    if (!source.distortion.empty()) undistort_view(view, source.distortion);
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("{}: {}", source.where, error.what()));
+  }
+  resize_view(view, target_size(view.camera.size(), options));
+  return view;
+}
+
+// All views in order. Of several failures the first view's is reported, whatever thread met it.
+std::vector<View> load_views(const std::vector<ViewSource>& sources, const LoadOptions& options) {
+  std::vector<View> views(sources.size());
+  std::vector<std::exception_ptr> failures(sources.size());
+  parallel_for(sources.size(), 1, [&](std::size_t i) {
+    try {
+      views[i] = load_view(sources[i], options);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+  return views;
+}
+
+void check_index(const SceneIndex& index) {
+  GLINT_CHECK(
+      index.problems.empty(),
+      kBadReference,
+      "{}: {}",
+      index.problems.front().where,
+      index.problems.front().message
+  );
+  const bool has_train = std::any_of(
+      index.views.begin(), index.views.end(), [](const ViewSource& view) { return view.is_train; }
+  );
+  GLINT_CHECK(has_train, kBadReference, "{}: no train views", index.name);
+}
+
+double rotation_error(const Mat3d& r) {
+  double error = std::abs(determinant(r) - 1);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      error = std::max(error, std::abs(dot(r.rows[i], r.rows[j]) - (i == j ? 1.0 : 0.0)));
+  return error;
+}
+
+}  // namespace
+
+std::string folder_name(const fs::path& folder) {
+  return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
+}
+
+Finding make_finding(const std::string& check, const std::string& where, std::string message) {
+  if (message.starts_with(where + ": ")) message.erase(0, where.size() + 2);
+  return {check, where, message};
+}
+
+std::string camera_problem(const Camera& camera) {
+  const double intrinsics[] = {camera.fx, camera.fy, camera.cx, camera.cy};
+  const bool finite_intrinsics = std::all_of(
+      std::begin(intrinsics), std::end(intrinsics), [](double v) { return std::isfinite(v); }
+  );
+  if (!finite_intrinsics) return "the intrinsics are not finite";
+  if (!(camera.fx > 0 && camera.fy > 0))
+    return fmt::format("focal lengths {} and {}; expected positive ones", camera.fx, camera.fy);
+  for (int i = 0; i < 3; ++i) {
+    const Vec3d& row = camera.rotation_cam_from_world.rows[i];
+    if (!std::isfinite(row.x + row.y + row.z)) return "the rotation is not finite";
+    if (!std::isfinite(camera.translation_cam_from_world[i]))
+      return "the translation is not finite";
+  }
+  const double error = rotation_error(camera.rotation_cam_from_world);
+  if (error > 1e-3)
+    return fmt::format(
+        "the pose holds no rotation: it is off by {:.2g}; remove scale, shear or mirroring", error
+    );
+  return {};
+}
+
+void split_every(std::vector<ViewSource>& views, int test_every) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    views[i].is_test = test_every > 0 && i % static_cast<std::size_t>(test_every) == 0;
+    views[i].is_train = !views[i].is_test;
+  }
+}
+
+std::string hash_of_files(const std::string& camera_text, const std::vector<ViewSource>& views) {
+  std::string text = camera_text;
+  for (const ViewSource& view : views) {
+    std::error_code code;
+    text += fmt::format(" {}:{}", view.name, fs::file_size(view.image, code));
+  }
+  return fmt::format("{:016x}", hash_name(text));
+}
+
+Camera camera_at(const ViewSource& source, ImageSize image) {
+  const std::string problem = camera_problem(source.camera);
+  GLINT_CHECK(problem.empty(), kBadReference, "{}: {}", source.where, problem);
+  Camera camera = source.camera;
+  const bool stated = camera.width > 0 && camera.height > 0;
+  if (stated && camera.size() != image) {
+    // One pixel of rounding in either side is what resizing tools leave.
+    const double slack = std::abs(
+        static_cast<double>(image.width) * camera.height -
+        static_cast<double>(image.height) * camera.width
+    );
+    GLINT_CHECK(
+        source.scales_with_image && slack <= std::max(camera.width, camera.height),
+        kBadReference,
+        "{}: intrinsics for {} x {} pixels, {} has {} x {}; scale the intrinsics or use images of "
+        "the "
+        "stated size",
+        source.where,
+        camera.width,
+        camera.height,
+        source.image.string(),
+        image.width,
+        image.height
+    );
+    return resized(camera, image);
+  }
+  camera.width = image.width;
+  camera.height = image.height;
+  return camera;
+}
+
+View read_view(const ViewSource& source, const LoadOptions& options) {
+  View view;
+  view.name = source.name;
+  view.rgb = read_image(source.image, 3);
+  view.camera = camera_at(source, view.rgb.size());
+  if (options.with_priors) view.priors = read_priors(source.priors, view.rgb.size());
+  if (options.with_truth) view.truth = read_truth(source.truth, view.rgb.size());
+  return view;
+}
+
+Scene load_indexed(const SceneIndex& index, const LoadOptions& options) {
+  check_index(index);
+  Scene scene;
+  scene.name = index.name;
+  scene.dataset = index.dataset;
+  scene.spec_hash = index.spec_hash;
+  scene.simulated_priors = index.simulated_priors;
+  std::vector<View> views = load_views(index.views, options);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (index.views[i].is_train)
+      scene.train.push_back(std::move(views[i]));
+    else if (index.views[i].is_test)
+      scene.test.push_back(std::move(views[i]));
+  }
+  if (!index.points.empty()) scene.points = read_point_ply(index.points);
+  set_extent(scene);
+  return scene;
+}
+
+Image read_map(const fs::path& path, int channels) {
+  Image map = read_image(path, channels);
+  for (std::size_t i = 0; i < map.values().size(); ++i) {
+    const std::size_t pixel = i / static_cast<std::size_t>(channels);
+    GLINT_CHECK(
+        std::isfinite(map.values()[i]),
+        kBadReference,
+        "{}: pixel ({}, {}) is {}; store 0 where nothing is known",
+        path.string(),
+        pixel % static_cast<std::size_t>(map.width()),
+        pixel / static_cast<std::size_t>(map.width()),
+        map.values()[i]
+    );
+  }
+  return map;
+}
+
+Image read_normal_prior(const fs::path& path) {
+  constexpr float kMissing = 0.5f;  // mid-grey decodes to about zero
+  Image normal = read_map(path, 3);
+  for (std::size_t i = 0; i < normal.num_pixels(); ++i) {
+    float* n = normal.data() + 3 * i;
+    for (int c = 0; c < 3; ++c) n[c] = 2 * n[c] - 1;
+    const float norm = length(Vec3f{n[0], n[1], n[2]});
+    for (int c = 0; c < 3; ++c) n[c] = norm < kMissing ? 0 : n[c] / norm;
+  }
+  return normal;
+}
+
+Image read_depth_prior(const fs::path& path) {
+  Image stored = read_image(path);
+  if (stored.channels() == 1) return read_map(path, 1);
+  Image depth(stored.width(), stored.height(), 1);
+  for (std::size_t i = 0; i < depth.num_pixels(); ++i) {
+    const float* rgb = stored.data() + 3 * i;
+    depth.data()[i] = rgb[0] + rgb[1] / 256 + rgb[2] / 65536;
+  }
+  return depth;
+}
+
+}  // namespace glint

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/opencv_yaml.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+constexpr double kMaxSide = 1 << 20;  // pixels; more is no image size
+
+class YamlFile {
+ public:
+  explicit YamlFile(const fs::path& path) : path_(path.string()) {
+    const std::string text = read_file(path);
+    GLINT_CHECK(!text.empty(), kBadReference, "{}: the file is empty", path_);
+    try {
+      constexpr int kMode =
+          cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML;
+      storage_.open(text, kMode);
+    } catch (const cv::Exception& error) {
+      throw Error(
+          ExitCode::kBadReference,
+          fmt::format(
+              "{}: not an OpenCV YAML file ({} {}); it is cut off or damaged, write it again",
+              path_,
+              error.func,
+              error.err
+          )
+      );
+    }
+  }
+
+  const std::string& path() const { return path_; }
+  cv::FileNode operator[](const std::string& key) const { return storage_[key]; }
+
+ private:
+  std::string path_;
+  cv::FileStorage storage_;
+};
+
+bool is_number(const cv::FileNode& node) { return node.isInt() || node.isReal(); }
+
+// The camera under construction and the place where its problems go.
+struct CameraReader {
+  const YamlFile& file;
+  OpencvCamera& camera;
+
+  void complain(const std::string& key, const std::string& message) const {
+    camera.problems.push_back(fmt::format("{}: {}: {}", file.path(), key, message));
+  }
+
+  // The values of matrix PREFIX_NAME, row by row; empty when absent or (with a problem noted) when
+  // malformed. cv::Mat's own reader would allocate what `rows` and `cols` claim.
+  std::vector<double> matrix(const std::string& prefix) const {
+    const std::string key = prefix + camera.name;
+    const cv::FileNode node = file[key];
+    if (node.empty()) return {};
+    const cv::FileNode data = node.isMap() ? node["data"] : node;
+    std::vector<double> values;
+    for (const auto& value : data) {
+      if (!is_number(value)) break;
+      values.push_back(static_cast<double>(value));
+    }
+    if (!data.isSeq() || values.size() != data.size()) {
+      complain(key, "not a matrix of numbers");
+      return {};
+    }
+    return values;
+  }
+
+  // As matrix(), with `count` values; notes a problem when absent.
+  std::vector<double> require(const std::string& prefix, std::size_t count) const {
+    std::vector<double> values = matrix(prefix);
+    if (values.size() == count) return values;
+    complain(prefix + camera.name, fmt::format("{} values, expected {}", values.size(), count));
+    return {};
+  }
+
+  int extent(const std::string& prefix) const {
+    const cv::FileNode node = file[prefix + camera.name];
+    if (node.empty()) return 0;
+    const double value = is_number(node) ? static_cast<double>(node) : 0;
+    if (value >= 1 && value <= kMaxSide) return static_cast<int>(value);
+    complain(prefix + camera.name, "not a number of pixels");
+    return 0;
+  }
+};
+
+Mat3d to_matrix(const std::vector<double>& m) {
+  return {{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}}};
+}
+
+// Rodrigues: axis times angle, to a rotation by way of the half-angle quaternion.
+Mat3d rotation_from_vector(Vec3d v) {
+  const double angle = length(v);
+  if (!(angle > 1e-12)) return rotation_from_quaternion({1, 0.5 * v.x, 0.5 * v.y, 0.5 * v.z});
+  const double s = std::sin(0.5 * angle) / angle;
+  return rotation_from_quaternion({std::cos(0.5 * angle), s * v.x, s * v.y, s * v.z});
+}
+
+void read_intrinsics(const CameraReader& reader) {
+  Camera& camera = reader.camera.camera;
+  const std::vector<double> k = reader.require("K_", 9);
+  if (!k.empty()) {
+    camera.fx = k[0], camera.cx = k[2];
+    camera.fy = k[4], camera.cy = k[5];
+    if (std::abs(k[1]) > 1e-6 * std::abs(k[0]))
+      reader.complain("K_" + reader.camera.name, "has skew; expected K_[0][1] = 0");
+  }
+  camera.width = reader.extent("W_");
+  camera.height = reader.extent("H_");
+  std::vector<double> distortion = reader.matrix("D_");
+  if (distortion.empty()) distortion = reader.matrix("dist_");
+  const bool none =
+      std::all_of(distortion.begin(), distortion.end(), [](double d) { return d == 0; });
+  if (none) return;
+  if (distortion.size() != 4 && distortion.size() != 5)
+    reader.complain(
+        "D_" + reader.camera.name, fmt::format("{} values, expected 4 or 5", distortion.size())
+    );
+  else
+    reader.camera.distortion = distortion;
+}
+
+void read_pose(const CameraReader& reader) {
+  Camera& camera = reader.camera.camera;
+  if (!reader.file["Rot_" + reader.camera.name].empty()) {
+    const std::vector<double> rotation = reader.require("Rot_", 9);
+    if (!rotation.empty()) camera.rotation_cam_from_world = to_matrix(rotation);
+  } else {
+    const std::vector<double> rotation = reader.require("R_", 3);
+    if (!rotation.empty())
+      camera.rotation_cam_from_world =
+          rotation_from_vector({rotation[0], rotation[1], rotation[2]});
+  }
+  const std::vector<double> t = reader.require("T_", 3);
+  if (!t.empty()) camera.translation_cam_from_world = {t[0], t[1], t[2]};
+}
+
+std::vector<std::string> read_names(const YamlFile& file) {
+  const cv::FileNode node = file["names"];
+  std::vector<std::string> names;
+  for (const auto& name : node) {
+    GLINT_CHECK(
+        name.isString(),
+        kBadReference,
+        "{}: names: entry {} is not a text; put quotes around every name",
+        file.path(),
+        names.size()
+    );
+    names.push_back(static_cast<std::string>(name));
+  }
+  GLINT_CHECK(
+      !names.empty(), kBadReference, "{}: names: expected a list of camera names", file.path()
+  );
+  return names;
+}
+
+}  // namespace
+
+std::vector<OpencvCamera> read_opencv_cameras(const fs::path& intri, const fs::path& extri) {
+  const YamlFile intrinsics(intri), extrinsics(extri);
+  std::vector<OpencvCamera> cameras;
+  for (const std::string& name : read_names(extrinsics)) {
+    OpencvCamera camera;
+    camera.name = name;
+    read_intrinsics({intrinsics, camera});
+    read_pose({extrinsics, camera});
+    cameras.push_back(std::move(camera));
+  }
+  return cameras;
+}
+
+}  // namespace glint

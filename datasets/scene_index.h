@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// What a folder says about a scene before any image is read: one ViewSource per view. Loaders make
+// it, load_indexed() reads what it lists, check_dataset() looks for everything wrong with it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/dataset.h"
+#include "glint/scene/camera.h"
+
+namespace glint {
+
+// Paths of a view's priors; empty where the dataset has none of the kind.
+struct PriorFiles {
+  fs::path normal, depth, albedo, basecolor;
+
+  template <class F>
+  void for_each(F&& f) const {
+    f("normal prior", normal);
+    f("depth prior", depth);
+    f("albedo prior", albedo);
+    f("basecolor prior", basecolor);
+  }
+};
+
+struct TruthFiles {
+  fs::path depth, normal, albedo, glass, behind_depth, behind_normal, transmitted, reflected;
+
+  template <class F>
+  void for_each(F&& f) const {
+    f("true depth", depth);
+    f("true normal", normal);
+    f("true albedo", albedo);
+    f("glass mask", glass);
+    f("true depth behind glass", behind_depth);
+    f("true normal behind glass", behind_normal);
+    f("transmitted radiance", transmitted);
+    f("reflected radiance", reflected);
+  }
+};
+
+struct ViewSource {
+  std::string name;
+  std::string where;  // the camera's place in its file, for messages
+  fs::path image;
+  Camera camera;  // as stated; width and height 0 where not stated
+  bool scales_with_image =
+      false;  // intrinsics follow the image when its size is not the stated one
+  std::vector<double> distortion;  // OpenCV's order k1 k2 p1 p2 k3; empty: none
+  bool is_train = false, is_test = false;
+  PriorFiles priors;
+  TruthFiles truth;
+};
+
+struct SceneIndex {
+  std::string name, dataset, spec_hash;
+  bool simulated_priors = false;
+  fs::path points;                // empty: none
+  std::vector<ViewSource> views;  // natural order of names
+  std::vector<Finding> problems;  // found while reading the camera files
+};
+
+// The folder's own name, also for "." and names that end in a slash.
+std::string folder_name(const fs::path& folder);
+
+// A problem whose message does not repeat `where`.
+Finding make_finding(const std::string& check, const std::string& where, std::string message);
+
+// What is wrong with a camera: not finite, no positive focal length, no rotation. Empty: nothing.
+std::string camera_problem(const Camera& camera);
+
+// View i of the natural order is a test view when i % test_every == 0; 0: all train.
+void split_every(std::vector<ViewSource>& views, int test_every);
+
+// Hexadecimal hash of the camera files' text and of the names and sizes of the images.
+std::string hash_of_files(const std::string& camera_text, const std::vector<ViewSource>& views);
+
+// The view's camera at the size of its stored image. Errors (kBadReference): camera_problem(),
+// stated size and image size do not go together.
+Camera camera_at(const ViewSource& source, ImageSize image);
+
+// One view as stored: neither undistorted nor resized. Errors (kBadReference): missing or
+// unreadable files, maps of another size than the image, values that are not finite.
+View read_view(const ViewSource& source, const LoadOptions& options);
+
+// The scene: reads, undistorts and resizes all views and the points. Errors (kBadReference): the
+// first of `problems`, no train views, and read_view()'s.
+Scene load_indexed(const SceneIndex& index, const LoadOptions& options);
+
+// Readers of single maps, values checked to be finite.
+Image read_map(const fs::path& path, int channels);
+Image read_normal_prior(const fs::path& path
+);                                             // (n + 1) / 2, OpenCV camera axes, to unit n or zero
+Image read_depth_prior(const fs::path& path);  // grey, or R + G/256 + B/65536
+
+}  // namespace glint
