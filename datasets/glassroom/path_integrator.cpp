@@ -43,18 +43,18 @@ struct PathIntegrator::Path {
   }
   void reflect(const Surface& surface) {
     direction = mirror(direction, surface.normal);
-    origin = RayScene::leave(surface, direction);
+    origin = RayScene::leave(surface.position, surface.normal, direction);
     pdf = 0;
     ++bounces;
   }
   void pass(const Surface& surface) {
-    origin = RayScene::leave(surface, direction);
+    origin = RayScene::leave(surface.position, surface.normal, direction);
     distance += surface.t;
     ++panes;
   }
   void continue_from(const Surface& surface, Vec3f wi, Vec3f carried, float density) {
     direction = wi;
-    origin = RayScene::leave(surface, wi);
+    origin = RayScene::leave(surface.position, surface.normal, wi);
     throughput = carried;
     pdf = density;
     distance = 0;
@@ -156,7 +156,10 @@ Vec3f PathIntegrator::direct_light(const Surface& surface, const Scattering& sca
   if (!(distance > 0) || cosine <= 0 || dot(wi, surface.normal) <= 0) return {};
   const BsdfValue value = scattering.bsdf.evaluate(scattering.wo(), scattering.frame.to_local(wi));
   if (value.pdf <= 0) return {};
-  const Vec3f passed = scene_.transmittance(RayScene::leave(surface, wi), wi, distance);
+  const Vec3f passed = scene_.transmittance(
+      RayScene::leave(surface.position, surface.normal, wi),
+      RayScene::leave(light.position, light.normal, -wi)
+  );
   const float pdf_light = light.pdf_area * distance * distance / cosine;
   const float weight = power_heuristic(pdf_light, value.pdf) / pdf_light;
   return weight * hadamard(hadamard(value.f_cos, passed), light.radiance);

@@ -42,6 +42,7 @@ struct PathTracerOutput {
 class PathTracer {
  public:
   explicit PathTracer(const TraceScene& scene);  // builds the BVH; keeps a reference to `scene`
+  explicit PathTracer(TraceScene&&) = delete;    // a temporary would dangle
   ~PathTracer();
   PathTracerOutput render(const Camera& camera, const PathTracerSettings& settings) const;
 

@@ -16,9 +16,9 @@ namespace {
 
 // Distance by which a ray's origin is moved off its surface, relative to the coordinates: some
 // ulps.
-constexpr float kRelativeOffset = 1e-5f;
-// Segments end this fraction before their end point.
-constexpr float kSegmentEnd = 1 - 1e-4f;
+constexpr float kRelativeOffset = 4e-6f;
+// Share of a segment left out at each end where its ends may lie on surfaces.
+constexpr float kSegmentMargin = 1e-4f;
 
 // Embree hands the context to the filter; the standard part comes first.
 struct ShadowContext {
@@ -180,10 +180,11 @@ void RayScene::pass_glass(const RTCFilterFunctionNArguments* arguments) {
   }
 }
 
-Vec3f RayScene::transmittance(Vec3f origin, Vec3f unit_direction, float distance) const {
-  ShadowContext context{{}, this, triangles_.data() + num_opaque_, unit_direction, {1, 1, 1}};
+Vec3f RayScene::transmittance(Vec3f from, Vec3f to) const {
+  const Vec3f segment = to - from;
+  ShadowContext context{{}, this, triangles_.data() + num_opaque_, normalize(segment), {1, 1, 1}};
   rtcInitIntersectContext(&context.base);
-  RTCRay ray = make_ray(origin, unit_direction, kSegmentEnd * distance, RayMask::kAll);
+  RTCRay ray = make_ray(from, segment, 1, RayMask::kAll);
   rtcOccluded1(bvh_, &context.base, &ray);
   return ray.tfar < 0 ? Vec3f{} : context.transmittance;
 }
@@ -191,17 +192,16 @@ Vec3f RayScene::transmittance(Vec3f origin, Vec3f unit_direction, float distance
 bool RayScene::occluded(Vec3f from, Vec3f to) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  RTCRay ray = make_ray(from, to - from, kSegmentEnd, RayMask::kOpaque);
-  ray.tnear = 1 - kSegmentEnd;
+  RTCRay ray = make_ray(from, to - from, 1 - kSegmentMargin, RayMask::kOpaque);
+  ray.tnear = kSegmentMargin;
   rtcOccluded1(bvh_, &context, &ray);
   return ray.tfar < 0;
 }
 
-Vec3f RayScene::leave(const Surface& surface, Vec3f direction) {
-  const Vec3f p = surface.position;
+Vec3f RayScene::leave(Vec3f position, Vec3f normal, Vec3f direction) {
+  const Vec3f p = position;
   const float scale = std::max({1.0f, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  const float offset = dot(direction, surface.normal) < 0 ? -kRelativeOffset : kRelativeOffset;
-  return p + offset * scale * surface.normal;
+  return p + std::copysign(kRelativeOffset * scale, dot(direction, normal)) * normal;
 }
 
 Vec3f RayScene::albedo(const Surface& surface) const {

@@ -47,13 +47,14 @@ class RayScene {
   // Closest hit with t > 0.
   std::optional<Surface> intersect(Vec3f origin, Vec3f direction, RayMask mask) const;
 
-  // Straight-line transmittance over (0, distance) along a unit direction: 0 behind anything
+  // Straight-line transmittance between two points off all surfaces (see leave): 0 behind anything
   // opaque, otherwise the product over panes of (1 - R) tint.
-  Vec3f transmittance(Vec3f origin, Vec3f unit_direction, float distance) const;
+  Vec3f transmittance(Vec3f from, Vec3f to) const;
   bool occluded(Vec3f from, Vec3f to) const;  // by opaque surfaces; ends excluded
 
-  // `surface.position` moved off the plane, to the side that `direction` leaves by.
-  static Vec3f leave(const Surface& surface, Vec3f direction);
+  // A point of a plane moved off it, to the side that `direction` leaves by: where rays start and
+  // end.
+  static Vec3f leave(Vec3f position, Vec3f normal, Vec3f direction);
 
   Vec3f albedo(const Surface& surface) const;  // linear, textured
   const Material& material(const Surface& surface) const {
