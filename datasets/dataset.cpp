@@ -114,20 +114,20 @@ Scene load_scene(const fs::path& folder, const LoadOptions& options) {
 
 std::string describe_scene(const Scene& scene) {
   const std::size_t views = scene.train.size() + scene.test.size();
-  std::string text = fmt::format("scene        {}\n", scene.name);
-  text += fmt::format("dataset      {}\n", scene.dataset);
-  text += fmt::format("hash         {}\n", scene.spec_hash);
+  std::string text = fmt::format("scene          {}\n", scene.name);
+  text += fmt::format("dataset        {}\n", scene.dataset);
+  text += fmt::format("hash           {}\n", scene.spec_hash);
   text += fmt::format(
-      "views        {} ({} train, {} test)\n", views, scene.train.size(), scene.test.size()
+      "views          {} ({} train, {} test)\n", views, scene.train.size(), scene.test.size()
   );
-  text += fmt::format("image size   {}\n", size_range(scene));
-  text += fmt::format("priors       {}\n", describe_priors(scene));
-  text += fmt::format("ground truth {}\n", describe_truth(scene));
-  text += fmt::format("points       {}\n", scene.points.positions.size());
+  text += fmt::format("image size     {}\n", size_range(scene));
+  text += fmt::format("priors         {}\n", describe_priors(scene));
+  text += fmt::format("ground truth   {}\n", describe_truth(scene));
+  text += fmt::format("points         {}\n", scene.points.positions.size());
   text += fmt::format(
-      "bounds       {} to {}\n", format_vector(scene.bounds_min), format_vector(scene.bounds_max)
+      "bounds         {} to {}\n", format_vector(scene.bounds_min), format_vector(scene.bounds_max)
   );
-  text += fmt::format("camera extent {:.4f}\n", scene.spatial_scale);
+  text += fmt::format("camera extent  {:.4f}\n", scene.spatial_scale);
   return text;
 }
 

@@ -196,26 +196,26 @@ Finding make_finding(const std::string& check, const std::string& where, std::st
   return {check, where, message};
 }
 
-std::string camera_problem(const Camera& camera) {
-  const double intrinsics[] = {camera.fx, camera.fy, camera.cx, camera.cy};
-  const bool finite_intrinsics = std::all_of(
-      std::begin(intrinsics), std::end(intrinsics), [](double v) { return std::isfinite(v); }
-  );
-  if (!finite_intrinsics) return "the intrinsics are not finite";
-  if (!(camera.fx > 0 && camera.fy > 0))
-    return fmt::format("focal lengths {} and {}; expected positive ones", camera.fx, camera.fy);
+std::optional<Finding> camera_problem(const Camera& camera, const std::string& where) {
+  if (!std::isfinite(camera.fx + camera.fy + camera.cx + camera.cy))
+    return Finding{"non-finite", where, "the intrinsics are not finite"};
   for (int i = 0; i < 3; ++i) {
     const Vec3d& row = camera.rotation_cam_from_world.rows[i];
-    if (!std::isfinite(row.x + row.y + row.z)) return "the rotation is not finite";
-    if (!std::isfinite(camera.translation_cam_from_world[i]))
-      return "the translation is not finite";
+    if (!std::isfinite(row.x + row.y + row.z + camera.translation_cam_from_world[i]))
+      return Finding{"non-finite", where, "the pose is not finite"};
+  }
+  if (!(camera.fx > 0 && camera.fy > 0)) {
+    return Finding{
+        "intrinsics",
+        where,
+        fmt::format("focal lengths {} and {}; expected positive ones", camera.fx, camera.fy)};
   }
   const double error = rotation_error(camera.rotation_cam_from_world);
-  if (error > 1e-3)
-    return fmt::format(
-        "the pose holds no rotation: it is off by {:.2g}; remove scale, shear or mirroring", error
-    );
-  return {};
+  if (error <= 1e-3) return std::nullopt;
+  return Finding{
+      "pose",
+      where,
+      fmt::format("it holds no rotation (off by {:.2g}); remove scale, shear or mirroring", error)};
 }
 
 void split_every(std::vector<ViewSource>& views, int test_every) {
@@ -235,8 +235,8 @@ std::string hash_of_files(const std::string& camera_text, const std::vector<View
 }
 
 Camera camera_at(const ViewSource& source, ImageSize image) {
-  const std::string problem = camera_problem(source.camera);
-  GLINT_CHECK(problem.empty(), kBadReference, "{}: {}", source.where, problem);
+  const std::optional<Finding> problem = camera_problem(source.camera, source.where);
+  GLINT_CHECK(!problem, kBadReference, "{}: {}", problem->where, problem->message);
   Camera camera = source.camera;
   const bool stated = camera.width > 0 && camera.height > 0;
   if (stated && camera.size() != image) {

@@ -3,6 +3,7 @@
 // it, load_indexed() reads what it lists, check_dataset() looks for everything wrong with it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,16 +12,17 @@
 
 namespace glint {
 
-// Paths of a view's priors; empty where the dataset has none of the kind.
+// Paths of a view's priors; empty where the dataset has none of the kind. for_each calls
+// f(name, path, channels); 0 channels: one or three.
 struct PriorFiles {
   fs::path normal, depth, albedo, basecolor;
 
   template <class F>
   void for_each(F&& f) const {
-    f("normal prior", normal);
-    f("depth prior", depth);
-    f("albedo prior", albedo);
-    f("basecolor prior", basecolor);
+    f("normal prior", normal, 3);
+    f("depth prior", depth, 0);
+    f("albedo prior", albedo, 3);
+    f("basecolor prior", basecolor, 3);
   }
 };
 
@@ -29,14 +31,14 @@ struct TruthFiles {
 
   template <class F>
   void for_each(F&& f) const {
-    f("true depth", depth);
-    f("true normal", normal);
-    f("true albedo", albedo);
-    f("glass mask", glass);
-    f("true depth behind glass", behind_depth);
-    f("true normal behind glass", behind_normal);
-    f("transmitted radiance", transmitted);
-    f("reflected radiance", reflected);
+    f("true depth", depth, 1);
+    f("true normal", normal, 3);
+    f("true albedo", albedo, 3);
+    f("glass mask", glass, 1);
+    f("true depth behind glass", behind_depth, 1);
+    f("true normal behind glass", behind_normal, 3);
+    f("transmitted radiance", transmitted, 3);
+    f("reflected radiance", reflected, 3);
   }
 };
 
@@ -67,8 +69,8 @@ std::string folder_name(const fs::path& folder);
 // A problem whose message does not repeat `where`.
 Finding make_finding(const std::string& check, const std::string& where, std::string message);
 
-// What is wrong with a camera: not finite, no positive focal length, no rotation. Empty: nothing.
-std::string camera_problem(const Camera& camera);
+// What is wrong with a camera, as a finding of the checks "non-finite", "intrinsics" or "pose".
+std::optional<Finding> camera_problem(const Camera& camera, const std::string& where);
 
 // View i of the natural order is a test view when i % test_every == 0; 0: all train.
 void split_every(std::vector<ViewSource>& views, int test_every);

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// check_dataset(): files and values view by view, then the split, the points, and what needs
+// several views (check_geometry.h).
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "datasets/check_views.h"
+#include "datasets/dataset.h"
+#include "datasets/scene_index.h"
+#include "glint/core/error.h"
+#include "glint/core/parallel.h"
+#include "glint/core/rng.h"
+#include "glint/scene/ply.h"
+
+namespace glint {
+namespace {
+
+void check_names(const SceneIndex& index, std::vector<Finding>& findings) {
+  std::set<std::string> names;
+  bool has_train = false;
+  for (const ViewSource& view : index.views) {
+    has_train = has_train || view.is_train;
+    if (!names.insert(view.name).second)
+      findings.push_back({"duplicate-view", view.where, "the name is used twice; rename one view"});
+    if (view.is_train && view.is_test)
+      findings.push_back(
+          {"test-in-train", view.where, "listed as train and as test view; remove it from one list"}
+      );
+  }
+  if (!has_train)
+    findings.push_back({"no-views", index.name, "no train views; expected at least one image"});
+}
+
+bool same_pose(const Camera& a, const Camera& b) {
+  constexpr double kSame = 1e-9;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3d rows = a.rotation_cam_from_world.rows[i] - b.rotation_cam_from_world.rows[i];
+    if (!(length(rows) < kSame)) return false;
+  }
+  return length(a.translation_cam_from_world - b.translation_cam_from_world) < kSame;
+}
+
+// Test views that are train views under another name: same bytes, or same pose.
+void check_leaks(const SceneIndex& index, std::vector<Finding>& findings) {
+  std::vector<std::string> contents(index.views.size());
+  parallel_for(index.views.size(), 1, [&](std::size_t i) {
+    std::error_code code;
+    if (!fs::is_regular_file(index.views[i].image, code)) return;
+    const std::string bytes = read_file(index.views[i].image);
+    contents[i] = fmt::format("{:x}:{}", hash_name(bytes), bytes.size());
+  });
+  for (std::size_t i = 0; i < index.views.size(); ++i)
+    for (std::size_t j = 0; j < index.views.size(); ++j) {
+      const ViewSource &test = index.views[i], &train = index.views[j];
+      if (i == j || !test.is_test || !train.is_train || train.is_test) continue;
+      if (!contents[i].empty() && contents[i] == contents[j])
+        findings.push_back(
+            {"test-in-train",
+             test.image.string(),
+             fmt::format("the same picture as train view {}; remove one", train.name)}
+        );
+      else if (same_pose(test.camera, train.camera))
+        findings.push_back(
+            {"test-in-train",
+             test.where,
+             fmt::format("the same pose as train view {}; remove one", train.name)}
+        );
+    }
+}
+
+bool is_seen(Vec3d point, const std::vector<ViewSource>& views) {
+  return std::any_of(views.begin(), views.end(), [&](const ViewSource& view) {
+    const Vec3d cam = view.camera.to_cam(point);
+    if (!(cam.z > 0)) return false;
+    // Some datasets state no size: the principal point is about half of it.
+    const Vec2d pixel = view.camera.project(cam);
+    const double width = view.camera.width > 0 ? view.camera.width : 2 * view.camera.cx;
+    const double height = view.camera.height > 0 ? view.camera.height : 2 * view.camera.cy;
+    return pixel.x >= 0 && pixel.y >= 0 && pixel.x < width && pixel.y < height;
+  });
+}
+
+void check_points(const SceneIndex& index, std::vector<Finding>& findings) {
+  if (index.points.empty()) return;
+  const std::string where = index.points.string();
+  PointCloud points;
+  try {
+    points = read_point_ply(index.points);
+  } catch (const Error& error) {
+    findings.push_back(make_finding("unreadable-file", where, error.what()));
+    return;
+  }
+  constexpr std::size_t kMostSamples = 2000;
+  const std::size_t step = points.positions.size() / kMostSamples + 1;
+  std::size_t seen = 0, all = 0;
+  for (std::size_t i = 0; i < points.positions.size(); i += step, ++all)
+    if (is_seen(cast<double>(points.positions[i]), index.views)) ++seen;
+  if (all == 0) findings.push_back({"points", where, "holds no points; expected at least 4"});
+  if (2 * seen < all)
+    findings.push_back(
+        {"points",
+         where,
+         fmt::format(
+             "only {} of {} sampled points lie in any image; points and poses differ in axes or "
+             "units",
+             seen,
+             all
+         )}
+    );
+}
+
+std::vector<Finding> check_index(const SceneIndex& index) {
+  std::vector<Finding> findings = index.problems;
+  check_names(index, findings);
+  std::vector<std::vector<Finding>> of_views(index.views.size());
+  parallel_for(index.views.size(), 1, [&](std::size_t i) {
+    of_views[i] = check_view_files(index.views[i]);
+  });
+  for (std::vector<Finding>& of_view : of_views)
+    std::move(of_view.begin(), of_view.end(), std::back_inserter(findings));
+  check_leaks(index, findings);
+  check_points(index, findings);
+  check_agreement(index, findings);
+  return findings;
+}
+
+}  // namespace
+
+std::vector<Finding> check_dataset(const fs::path& folder) {
+  const LoaderSpec& loader = find_loader(folder);
+  try {
+    if (loader.index) return check_index(loader.index(folder, {}));
+    loader.load(folder, {});
+    return {};
+  } catch (const Error& error) {
+    return {make_finding("unreadable-file", folder.string(), error.what())};
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Do depth maps, normal maps and cameras agree? Hypotheses about how they were stored are compared
+// by how well they fit, so that the wrong convention names itself.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "glint/core/image.h"
+#include "glint/scene/camera.h"
+
+namespace glint {
+
+// What a depth map holds: planar z, or the distance along the ray.
+enum class DepthKind { kPlanar, kRayLength };
+
+// Depth of view `from`, carried into view `to` and compared with what is stored there: relative
+// differences, for each reading of both maps. Depth [H][W][1], 0 where missing.
+class DepthAgreement {
+ public:
+  void add_pair(const Camera& from, ImageView from_depth, const Camera& to, ImageView to_depth);
+
+  std::size_t num_tested() const { return num_tested_; }
+  // Samples that agree to 5 % under at least one reading; the others are hidden from one view.
+  std::size_t num_agreeing() const { return errors_[0].size(); }
+  double median_error(DepthKind kind) const;  // over the agreeing samples
+  // The reading that fits. Ray length needs 200 agreeing samples and half the error of planar.
+  DepthKind best() const;
+
+ private:
+  std::array<std::vector<double>, 2> errors_;  // by DepthKind
+  std::size_t num_tested_ = 0;
+};
+
+// Stored normals against normals of the surface that the depth map describes: mean cosine for each
+// of the 8 sign patterns of (x, y, z), and for normals stored in world axes.
+class NormalAgreement {
+ public:
+  void add_view(const Camera& camera, ImageView depth, DepthKind kind, ImageView normal);
+
+  std::size_t num_samples() const { return num_samples_; }
+  double mean_cosine(int pattern) const;  // bit 0: x is flipped, bit 1: y, bit 2: z
+  double mean_cosine_world() const;
+  int best_pattern() const;  // 0 unless another one is better by 0.1
+
+ private:
+  std::array<double, 8> cosines_{};
+  double world_cosine_ = 0;
+  std::size_t num_samples_ = 0;
+};
+
+// "x and z" for a pattern; "none" for 0.
+std::string flipped_axes(int pattern);
+
+// Share of the non-zero normals that face the camera; 1 when there are none.
+double facing_share(const Camera& camera, ImageView normal);
+
+}  // namespace glint

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/check_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "datasets/check_geometry.h"
+#include "glint/core/error.h"
+#include "glint/scene/image_files.h"
+
+namespace glint {
+namespace {
+
+// ---------------------------------------------------------------- one view's files
+
+bool is_missing(const fs::path& path) {
+  std::error_code code;
+  return !fs::exists(path, code);
+}
+
+// The image, or an empty one with a finding.
+Image read_or_report(const fs::path& path, int channels, std::vector<Finding>& findings) {
+  const std::string where = path.string();
+  if (is_missing(path)) {
+    findings.push_back({"missing-file", where, "no such file; expected one per view"});
+    return {};
+  }
+  try {
+    return channels == 0 ? read_image(path) : read_image(path, channels);
+  } catch (const Error& error) {
+    findings.push_back(make_finding("unreadable-file", where, error.what()));
+    return {};
+  }
+}
+
+std::size_t count_not_finite(const Image& map) {
+  const auto values = map.values();
+  return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](float v) {
+    return !std::isfinite(v);
+  }));
+}
+
+// Pixels whose normal is there but not of unit length.
+std::size_t count_not_unit(const Image& normal) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < normal.num_pixels(); ++i) {
+    const float* n = normal.data() + 3 * i;
+    const float norm = length(Vec3f{n[0], n[1], n[2]});
+    if (norm > 0 && !(std::abs(norm - 1) < 0.05f)) ++count;
+  }
+  return count;
+}
+
+void check_values(
+    std::string_view name,
+    const std::string& where,
+    const Image& map,
+    std::vector<Finding>& findings
+) {
+  if (const std::size_t count = count_not_finite(map); count > 0) {
+    findings.push_back(
+        {"non-finite",
+         where,
+         fmt::format("{} values are not finite; store 0 where nothing is known", count)}
+    );
+    return;
+  }
+  const auto values = map.values();
+  if (name.starts_with("true depth") && *std::min_element(values.begin(), values.end()) < 0)
+    findings.push_back(
+        {"depth-values",
+         where,
+         "holds negative depth; expected metres in front of the camera, or 0"}
+    );
+  if (!name.starts_with("true normal")) return;
+  // Anti-aliased edges leave a few.
+  const std::size_t count = count_not_unit(map);
+  if (count > map.num_pixels() / 20)
+    findings.push_back(
+        {"normal-length",
+         where,
+         fmt::format("{} of {} pixels hold no unit vector", count, map.num_pixels())}
+    );
+}
+
+void check_map(
+    std::string_view name,
+    const fs::path& path,
+    int channels,
+    ImageSize expected,
+    std::vector<Finding>& findings
+) {
+  if (path.empty()) return;
+  const Image map = read_or_report(path, channels, findings);
+  if (map.empty()) return;
+  if (expected.width > 0 && map.size() != expected)
+    findings.push_back(
+        {"wrong-size",
+         path.string(),
+         fmt::format(
+             "the {} has {} x {} pixels, its view's image {} x {}",
+             name,
+             map.width(),
+             map.height(),
+             expected.width,
+             expected.height
+         )}
+    );
+  check_values(name, path.string(), map, findings);
+}
+
+// Intrinsics that belong to another size show in the principal point when no size is stated.
+void check_camera(const ViewSource& view, ImageSize image, std::vector<Finding>& findings) {
+  if (const auto problem = camera_problem(view.camera, view.where)) {
+    findings.push_back(*problem);
+    return;
+  }
+  if (image.width == 0) return;
+  Camera camera;
+  try {
+    camera = camera_at(view, image);
+  } catch (const Error& error) {
+    findings.push_back(make_finding("intrinsics-size", view.where, error.what()));
+    return;
+  }
+  constexpr double kOffCenter = 0.25;  // of the side
+  const double dx = std::abs(camera.cx / camera.width - 0.5);
+  const double dy = std::abs(camera.cy / camera.height - 0.5);
+  if (std::max(dx, dy) > kOffCenter)
+    findings.push_back(
+        {"intrinsics-size",
+         view.where,
+         fmt::format(
+             "principal point ({:.1f}, {:.1f}) in an image of {} x {} pixels; the intrinsics "
+             "belong to "
+             "another size",
+             camera.cx,
+             camera.cy,
+             camera.width,
+             camera.height
+         )}
+    );
+}
+
+// ---------------------------------------------------------------- maps against cameras
+
+constexpr std::size_t kMostViews = 8;        // looked at, evenly spaced
+constexpr std::size_t kEnoughSamples = 200;  // to say anything
+
+// A view's camera and a map at its stored size; `usable` is false when either cannot be read.
+struct PosedMap {
+  Camera camera;
+  Image map;
+  bool usable = false;
+};
+
+template <class Reader>
+PosedMap read_posed(const ViewSource& view, const fs::path& path, Reader&& read) {
+  PosedMap result;
+  if (path.empty()) return result;
+  try {
+    result.map = read(path);
+    result.camera = camera_at(view, result.map.size());
+    result.usable = count_not_finite(result.map) == 0;
+  } catch (const Error&) {
+    // Named by check_view_files().
+  }
+  return result;
+}
+
+PosedMap read_depth(const ViewSource& view, const fs::path& path) {
+  return read_posed(view, path, [](const fs::path& p) { return read_image(p, 1); });
+}
+
+// Indices of up to kMostViews views, evenly spaced.
+std::vector<std::size_t> sample_views(const SceneIndex& index) {
+  const std::size_t count = std::min(index.views.size(), kMostViews);
+  std::vector<std::size_t> ids;
+  for (std::size_t i = 0; i < count; ++i) ids.push_back(i * index.views.size() / count);
+  return ids;
+}
+
+// One kind of depth of the whole dataset: neighbouring views against each other.
+DepthKind check_depth(
+    const SceneIndex& index, fs::path TruthFiles::*file, std::vector<Finding>& findings
+) {
+  DepthAgreement agreement;
+  for (const std::size_t i : sample_views(index)) {
+    if (i + 1 >= index.views.size()) continue;
+    const ViewSource &a = index.views[i], &b = index.views[i + 1];
+    const PosedMap from = read_depth(a, a.truth.*file), to = read_depth(b, b.truth.*file);
+    if (!from.usable || !to.usable) continue;
+    agreement.add_pair(from.camera, from.map, to.camera, to.map);
+    agreement.add_pair(to.camera, to.map, from.camera, from.map);
+  }
+  if (agreement.num_tested() < kEnoughSamples) return DepthKind::kPlanar;
+  const std::string where = (index.views.front().truth.*file).parent_path().string();
+  if (10 * agreement.num_agreeing() < 3 * agreement.num_tested())
+    findings.push_back(
+        {"depth-poses",
+         where,
+         fmt::format(
+             "neighbouring views agree on {} of {} samples; depth and poses differ in axes, units "
+             "or "
+             "convention",
+             agreement.num_agreeing(),
+             agreement.num_tested()
+         )}
+    );
+  if (agreement.best() == DepthKind::kRayLength)
+    findings.push_back(
+        {"ray-length-depth",
+         where,
+         fmt::format(
+             "read as distance along the ray, neighbouring views differ by {:.2g}, read as planar "
+             "depth "
+             "by {:.2g} (relative); expected planar depth: multiply by the cosine to the optical "
+             "axis",
+             agreement.median_error(DepthKind::kRayLength),
+             agreement.median_error(DepthKind::kPlanar)
+         )}
+    );
+  return agreement.best();
+}
+
+void report_normals(
+    const NormalAgreement& agreement, const std::string& where, std::vector<Finding>& findings
+) {
+  constexpr double kFits = 0.5;  // mean cosine; noisy priors stay above 0.8
+  if (agreement.num_samples() < kEnoughSamples) return;
+  const int best = agreement.best_pattern();
+  const double cosine = agreement.mean_cosine(best);
+  const double world = agreement.mean_cosine_world();
+  std::string message;
+  if (world > cosine + 0.1 && world > kFits)
+    message =
+        fmt::format("stored in world axes (mean cosine {:.3f} to the depth's normals)", world);
+  else if (cosine < kFits)
+    message = fmt::format("fit the depth under no sign pattern (best mean cosine {:.3f})", cosine);
+  else if (best != 0)
+    message = fmt::format(
+        "axes {} are flipped (mean cosine to the depth's normals {:.3f} with the flip, {:.3f} as "
+        "stored)",
+        flipped_axes(best),
+        cosine,
+        agreement.mean_cosine(0)
+    );
+  if (message.empty()) return;
+  message += "; expected camera axes x right, y down, z forward";
+  findings.push_back({"normal-axes", where, message});
+}
+
+// Normals whose dataset has no true depth can still be asked whether they face the camera.
+void report_facing(double share, const std::string& where, std::vector<Finding>& findings) {
+  if (share >= 0.5) return;
+  findings.push_back(
+      {"normal-axes",
+       where,
+       fmt::format(
+           "only {:.0f} % of the normals face the camera; expected camera axes x right, y down, z "
+           "forward",
+           100 * share
+       )}
+  );
+}
+
+struct NormalKind {
+  fs::path (*normal)(const ViewSource&);
+  fs::path (*depth)(const ViewSource&);
+  Image (*read)(const fs::path&);
+};
+
+Image read_normal(const fs::path& path) { return read_image(path, 3); }
+
+const NormalKind kNormalKinds[] = {
+    {[](const ViewSource& v) { return v.truth.normal; },
+     [](const ViewSource& v) { return v.truth.depth; },
+     read_normal},
+    {[](const ViewSource& v) { return v.truth.behind_normal; },
+     [](const ViewSource& v) { return v.truth.behind_depth; },
+     read_normal},
+    {[](const ViewSource& v) { return v.priors.normal; },
+     [](const ViewSource& v) { return v.truth.depth; },
+     read_normal_prior},
+};
+
+void check_normals(
+    const SceneIndex& index,
+    const NormalKind& kind,
+    DepthKind depth_kind,
+    std::vector<Finding>& findings
+) {
+  NormalAgreement agreement;
+  double facing = 0;
+  int views = 0;
+  std::string where;
+  for (const std::size_t i : sample_views(index)) {
+    const ViewSource& view = index.views[i];
+    const PosedMap normal = read_posed(view, kind.normal(view), kind.read);
+    if (!normal.usable) continue;
+    where = kind.normal(view).parent_path().string();
+    facing += facing_share(normal.camera, normal.map);
+    ++views;
+    const PosedMap depth = read_depth(view, kind.depth(view));
+    if (depth.usable && depth.map.size() == normal.map.size())
+      agreement.add_view(normal.camera, depth.map, depth_kind, normal.map);
+  }
+  if (agreement.num_samples() >= kEnoughSamples)
+    report_normals(agreement, where, findings);
+  else if (views > 0)
+    report_facing(facing / views, where, findings);
+}
+
+}  // namespace
+
+std::vector<Finding> check_view_files(const ViewSource& view) {
+  std::vector<Finding> findings;
+  const Image image = read_or_report(view.image, 3, findings);
+  check_camera(view, image.size(), findings);
+  const auto check = [&](const char* name, const fs::path& path, int channels) {
+    check_map(name, path, channels, image.size(), findings);
+  };
+  view.priors.for_each(check);
+  view.truth.for_each(check);
+  return findings;
+}
+
+void check_agreement(const SceneIndex& index, std::vector<Finding>& findings) {
+  const DepthKind first = check_depth(index, &TruthFiles::depth, findings);
+  const DepthKind behind = check_depth(index, &TruthFiles::behind_depth, findings);
+  const DepthKind depth_of_kind[] = {first, behind, first};
+  for (std::size_t i = 0; i < std::size(kNormalKinds); ++i)
+    check_normals(index, kNormalKinds[i], depth_of_kind[i], findings);
+}
+
+}  // namespace glint
