@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// An empty-handed room: shell, windows, door, ceiling lights, furniture and pictures; no container
+// yet. The floor is the rectangle |x| <= size.x / 2, |y| <= size.y / 2 at z = 0.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "datasets/glassroom/furniture.h"
+#include "datasets/glassroom/room_programs.h"
+
+namespace glint {
+
+struct PlacedItem {
+  std::string kind;  // "sofa", "window", "picture", ...
+  int wall = -1;     // index of the wall it belongs to; -1: none
+  Bounds bounds;     // metres, world
+};
+
+struct RoomModel {
+  Vec3f size{};                   // width, depth, height in metres
+  TraceScene scene;
+  std::vector<PlacedItem> items;  // pairwise disjoint; the rug is not among them
+  Vec2f container_place{};        // where the container is dropped
+  float support_height = 0;       // top of the rug that it lands on
+  Bounds bounds() const {
+    return {.low = {-0.5f * size.x, -0.5f * size.y, 0}, .high = {0.5f * size.x, 0.5f * size.y, size.z}};
+  }
+};
+
+// Furniture that replaces the procedural pieces of a kind (glTF assets).
+struct FurnitureAsset {
+  FurnitureKind kind;
+  Furniture furniture;  // local frame of furniture.h, materials of the scene being built
+};
+// Adds textures and materials to the scene and returns the pieces made of them.
+using AssetSource = std::function<std::vector<FurnitureAsset>(TraceScene&)>;
+
+// Deterministic in (program, seed). `assets` may be empty.
+RoomModel build_room(const RoomProgram& program, std::uint64_t seed, const AssetSource& assets = {});
+
+}  // namespace glint

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// What each of the five rooms consists of: finishes and the furniture of its walls. Sizes, positions,
+// mirroring and details come from the seed.
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "datasets/glassroom/furniture.h"
+#include "datasets/glassroom/patterns.h"
+
+namespace glint {
+
+struct WallProgram {
+  PatternSpec finish;
+  std::vector<FurnitureKind> furniture;
+  int windows = 0, doors = 0, pictures = 0;
+};
+
+struct RoomProgram {
+  std::string_view name;  // "room_1" ...
+  PatternSpec floor, rug, wood, dark_wood, fabric, cushion, books;
+  Vec3f paint, ceramic, pot, curtain;  // linear colours
+  std::array<WallProgram, 4> walls;    // facing +y, -x, -y, +x; neighbours share a corner
+};
+
+// Errors (kUsage): no such room; the known ones are listed.
+const RoomProgram& room_program(std::string_view name);
+const std::vector<RoomProgram>& room_programs();
+
+}  // namespace glint

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/glassroom/settle.h"
+
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "glint/core/error.h"
+#include "glint/scene/camera.h"
+
+namespace glint {
+
+namespace {
+
+constexpr float kMargin = 0.001f;        // metres, of collision hulls
+constexpr float kWallThickness = 0.06f;  // panes collide as thick walls, grown outwards: no tunnelling
+constexpr float kContainerMass = 40;     // kg
+
+btVector3 to_bullet(Vec3f v) { return {v.x, v.y, v.z}; }
+Vec3f from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+
+btTransform to_bullet(const Pose& pose) {
+  const auto& r = pose.rotation.rows;
+  return btTransform(
+      btMatrix3x3(r[0].x, r[0].y, r[0].z, r[1].x, r[1].y, r[1].z, r[2].x, r[2].y, r[2].z),
+      to_bullet(pose.translation)
+  );
+}
+
+Pose from_bullet(const btTransform& transform) {
+  const btMatrix3x3& m = transform.getBasis();
+  return {
+      .rotation = {{from_bullet(m[0]), from_bullet(m[1]), from_bullet(m[2])}},
+      .translation = from_bullet(transform.getOrigin())
+  };
+}
+
+// A Bullet world with the bodies that live in it. Shapes are kept until the world is gone.
+class World {
+ public:
+  World() {
+    dynamics_.setGravity({0, 0, -9.81f});
+    // Islands in a fixed order and no warm start from addresses: runs repeat to the bit.
+    dynamics_.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+  }
+  ~World() {
+    for (const auto& body : bodies_) dynamics_.removeRigidBody(body.get());
+  }
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  template <class Shape, class... Args>
+  Shape* shape(Args&&... args) {
+    auto owned = std::make_unique<Shape>(std::forward<Args>(args)...);
+    Shape* result = owned.get();
+    result->setMargin(kMargin);
+    shapes_.push_back(std::move(owned));
+    return result;
+  }
+
+  btRigidBody* add(btCollisionShape* shape, float mass, const btTransform& pose, float friction) {
+    btVector3 inertia(0, 0, 0);
+    if (mass > 0) shape->calculateLocalInertia(mass, inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape, inertia);
+    info.m_startWorldTransform = pose;
+    info.m_friction = friction;
+    info.m_rollingFriction = 0.02f;
+    info.m_spinningFriction = 0.02f;
+    info.m_linearDamping = 0.05f;
+    info.m_angularDamping = 0.15f;
+    bodies_.push_back(std::make_unique<btRigidBody>(info));
+    dynamics_.addRigidBody(bodies_.back().get());
+    return bodies_.back().get();
+  }
+
+  void step(double seconds) {
+    dynamics_.stepSimulation(static_cast<btScalar>(seconds), 0);
+  }
+
+  bool asleep() const {
+    for (const auto& body : bodies_)
+      if (!body->isStaticObject() && body->isActive()) return false;
+    return true;
+  }
+
+ private:
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btSequentialImpulseConstraintSolver solver_;
+  btDiscreteDynamicsWorld dynamics_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;
+};
+
+btTransform at(Vec3f translation) { return to_bullet(translated(translation)); }
+
+// Bullet wants the origin at the centre of mass: the middle of the box.
+btCollisionShape* container_shape(World& world, const ContainerShape& shape) {
+  auto* compound = world.shape<btCompoundShape>();
+  const Vec3f middle{0, 0, 0.5f * shape.size.z};
+  for (const Bounds& beam : container_beams(shape))
+    compound->addChildShape(
+        at(beam.center() - middle), world.shape<btBoxShape>(to_bullet(0.5f * beam.size()))
+    );
+  for (const Pane& pane : container_panes(shape)) {
+    Vec3f center = pane.center - middle, half = pane.half_size;
+    if (pane.axis == 2 && center.z < 0) {
+      // The underside cannot grow: it stands on the floor.
+      const float top = center.z + half.z, bottom = -middle.z;
+      half.z = 0.5f * (top - bottom);
+      center.z = 0.5f * (top + bottom);
+    } else {
+      center[pane.axis] += std::copysign(kWallThickness - half[pane.axis], center[pane.axis]);
+      half[pane.axis] = kWallThickness;
+    }
+    compound->addChildShape(at(center), world.shape<btBoxShape>(to_bullet(half)));
+  }
+  return compound;
+}
+
+btCollisionShape* object_shape(World& world, const ContainerObject& object) {
+  auto* compound = world.shape<btCompoundShape>();
+  for (const std::vector<Vec3f>& hull : object.hulls) {
+    auto* convex = world.shape<btConvexHullShape>();
+    for (const Vec3f point : hull) convex->addPoint(to_bullet(point), false);
+    convex->recalcLocalAabb();
+    compound->addChildShape(btTransform::getIdentity(), convex);
+  }
+  return compound;
+}
+
+float bounding_radius(const ContainerObject& object) {
+  float radius2 = 0;
+  for (const Vec3f vertex : object.mesh.vertices) radius2 = std::max(radius2, length2(vertex));
+  return std::sqrt(radius2);
+}
+
+Mat3f random_upright(Rng& rng) {
+  const float tilt = 0.12f;
+  const Vec4<double> q{
+      1, static_cast<double>(rng.uniform(-tilt, tilt)), static_cast<double>(rng.uniform(-tilt, tilt)),
+      static_cast<double>(rng.uniform(-2, 2))
+  };
+  const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  return cast<float>(rotation_from_quaternion({q.w / norm, q.x / norm, q.y / norm, q.z / norm}));
+}
+
+// The lowest of many random places where the object's bounding sphere touches neither the container
+// nor the spheres placed before.
+bool find_start(
+    const ContainerShape& shape, const std::vector<Vec4f>& placed, float radius, Rng& rng, Vec3f& place
+) {
+  constexpr int kTries = 4000;
+  const float rim = shape.beam + radius + 0.005f;
+  const Vec3f reach{0.5f * shape.size.x - rim, 0.5f * shape.size.y - rim, shape.size.z - rim};
+  bool found = false;
+  if (reach.x < 0 || reach.y < 0 || reach.z < rim) return false;
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    const float x = rng.uniform(-reach.x, reach.x), y = rng.uniform(-reach.y, reach.y);
+    const Vec3f trial{x, y, rng.uniform(rim, reach.z)};
+    if (found && trial.z >= place.z) continue;
+    const bool free = std::all_of(placed.begin(), placed.end(), [&](Vec4f other) {
+      return length(trial - Vec3f{other.x, other.y, other.z}) > radius + other.w;
+    });
+    if (free) place = trial;
+    found = found || free;
+  }
+  return found;
+}
+
+std::vector<Pose> start_poses(
+    const ContainerShape& shape, const std::vector<ContainerObject>& objects, Rng& rng
+) {
+  std::vector<Pose> poses;
+  std::vector<Vec4f> placed;  // centre and radius (w)
+  for (const ContainerObject& object : objects) {
+    const float radius = bounding_radius(object);
+    Vec3f place{};
+    GLINT_CHECK(
+        find_start(shape, placed, radius, rng, place),
+        kEnvironment,
+        "settle: no space in the container for the {} after {} objects",
+        object.name,
+        placed.size()
+    );
+    placed.push_back({radius, place.x, place.y, place.z});
+    poses.push_back({.rotation = random_upright(rng), .translation = place});
+  }
+  return poses;
+}
+
+// Object origins within the container's inside, container upright.
+void check_result(const ContainerShape& shape, const SettleResult& result) {
+  GLINT_CHECK(
+      result.container.rotation.rows[2].z > 0.999f, kEnvironment, "settle: the container fell over"
+  );
+  const Vec3f half = 0.5f * shape.size;
+  for (const Pose& pose : result.objects) {
+    const Vec3f local = transpose_times(
+        result.container.rotation, pose.translation - result.container.translation
+    );
+    const Bounds inside{.low = {-half.x, -half.y, 0}, .high = {half.x, half.y, shape.size.z}};
+    GLINT_CHECK(inside.contains(local), kEnvironment, "settle: an object left the container");
+  }
+}
+
+}  // namespace
+
+SettleResult settle(
+    const ContainerShape& shape,
+    const std::vector<ContainerObject>& objects,
+    const SettleOptions& options,
+    Rng& rng
+) {
+  World world;
+  constexpr float kFloor = 5;
+  world.add(
+      world.shape<btBoxShape>(btVector3(kFloor, kFloor, 0.5f)), 0,
+      at({0, 0, options.support_height - 0.5f}), options.floor_friction
+  );
+  const Pose start = yawed(
+      options.yaw, {options.place.x, options.place.y, options.support_height + options.drop_height}
+  );
+  const Vec3f middle{0, 0, 0.5f * shape.size.z};
+  btRigidBody* box = world.add(
+      container_shape(world, shape), kContainerMass, to_bullet(compose(start, translated(middle))),
+      options.body_friction
+  );
+  std::vector<btRigidBody*> bodies;
+  const std::vector<Pose> places = start_poses(shape, objects, rng);
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    bodies.push_back(world.add(
+        object_shape(world, objects[i]), objects[i].mass, to_bullet(compose(start, places[i])),
+        options.body_friction
+    ));
+  SettleResult result;
+  const int max_steps = static_cast<int>(options.max_seconds * options.step_hz);
+  while (result.num_steps < max_steps && !(result.at_rest = world.asleep())) {
+    world.step(1 / options.step_hz);
+    ++result.num_steps;
+  }
+  result.container = compose(from_bullet(box->getWorldTransform()), translated(-middle));
+  for (const btRigidBody* body : bodies) result.objects.push_back(from_bullet(body->getWorldTransform()));
+  check_result(shape, result);
+  return result;
+}
+
+}  // namespace glint
