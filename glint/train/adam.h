@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Adam [Kingma15] over the arrays of a surfel cloud, one rate per array, and the position schedule.
+#pragma once
+
+#include "glint/scene/surfels.h"
+
+namespace glint {
+
+// Learning rates of the parameter arrays [Huang24, Kerbl23]. Positions: log-linear from `means` to
+// `means_final` over `means_steps` steps, both times the scene's extent.
+struct SurfelRates {
+  float means = 1.6e-4f, means_final = 1.6e-6f;
+  int means_steps = 30000;
+  float sh_dc = 2.5e-3f;
+  float sh_rest = 2.5e-3f / 20;
+  float opacity = 0.05f;
+  float scale = 0.005f;
+  float rotation = 0.001f;
+  float extra = 0.01f;
+};
+
+// Rate of the positions at a step, before the factor of the scene's extent.
+float position_rate(const SurfelRates& rates, int step);
+
+class SurfelAdam {
+ public:
+  static constexpr float kBeta1 = 0.9f, kBeta2 = 0.999f, kEpsilon = 1e-15f;
+
+  // One step; sets `gradient` back to zero. All clouds have the same size.
+  void step(SurfelCloud& cloud, SurfelCloud& gradient, const SurfelRates& rates, float extent);
+
+  // Rows follow those of the cloud: moments of kept rows stay, new rows start at zero.
+  SurfelCloud& first() { return first_; }
+  SurfelCloud& second() { return second_; }
+  int steps() const { return steps_; }
+
+ private:
+  SurfelCloud first_, second_;
+  int steps_ = 0;
+};
+
+}  // namespace glint

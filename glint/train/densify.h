@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Adaptive density control [Kerbl23 Sec. 5.2] for surfels [Huang24]: clone, split, prune, opacity
+// reset, driven by the mean screen-space gradient.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "glint/core/rng.h"
+#include "glint/render/rasterize.h"
+#include "glint/scene/surfels.h"
+#include "glint/train/adam.h"
+
+namespace glint {
+
+struct DensifyConfig {
+  int from = 500, until = 15000, interval = 100;  // steps; `until` is exclusive
+  int reset_interval = 3000;                      // steps
+  float gradient_threshold = 2e-4f;               // mean norm of the NDC gradient
+  float clone_scale = 0.01f;                      // x extent: larger surfels are split, not cloned
+  float min_opacity = 0.05f;
+  float max_scale = 0.1f;  // x extent: larger surfels go, after the first reset
+  float reset_opacity = 0.01f;
+  int max_surfels = 1000000;
+
+  template <class V>
+  void visit(V&& v) {
+    v("densify_from", from, "first step of densification");
+    v("densify_until", until, "last step, exclusive");
+    v("densify_interval", interval, "steps between densifications");
+    v("opacity_reset_interval", reset_interval, "steps between opacity resets");
+    v("densify_gradient", gradient_threshold, "mean NDC gradient that asks for more surfels");
+    v("clone_scale", clone_scale, "of the extent: larger surfels are split, smaller ones cloned");
+    v("min_opacity", min_opacity, "surfels below are pruned");
+    v("max_scale", max_scale, "of the extent: larger surfels are pruned");
+    v("max_surfels", max_surfels, "no growth beyond");
+  }
+};
+
+struct DensifyCounts {
+  std::size_t cloned = 0, split = 0, pruned = 0;
+};
+
+class Densifier {
+ public:
+  Densifier(DensifyConfig config, float extent, std::uint64_t seed);
+
+  // Adds one view's statistics; call after every backward pass.
+  void observe(const RasterOutput& output, const RasterGradient& gradient);
+  // Densifies and resets when this step is due. `step` counts from 1, after the optimiser's step.
+  DensifyCounts update(int step, SurfelCloud& cloud, SurfelAdam& adam);
+
+ private:
+  DensifyCounts densify(SurfelCloud& cloud, SurfelAdam& adam, bool prune_large);
+  void append_splits(SurfelCloud& cloud, const std::vector<std::uint32_t>& parents);
+
+  DensifyConfig config_;
+  float extent_;
+  Rng rng_;
+  std::vector<float> gradient_sum_;
+  std::vector<std::uint32_t> views_;
+};
+
+// Rows of every array: appended copies, and only the rows with keep[i] != 0 in their order.
+void append_rows(SurfelCloud& cloud, const std::vector<std::uint32_t>& rows);
+void keep_rows(SurfelCloud& cloud, const std::vector<std::uint8_t>& keep);
+
+}  // namespace glint

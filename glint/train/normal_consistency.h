@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Normal consistency [Huang24 Eq. 14]: mean over pixels of 1 - N . (A N_d), with N the composited
+// normal (not normalised), N_d the normal of the surface depth, A the alpha map held constant.
+#pragma once
+
+#include <vector>
+
+#include "glint/core/image.h"
+#include "glint/scene/camera.h"
+
+namespace glint {
+
+class NormalConsistencyLoss {
+ public:
+  // normal: [H][W][3] camera space; depth: [H][W][1] planar z, metres; alpha: [H][W][1]. Adds
+  // weight * gradient to dL_dnormal and dL_ddepth. Returns the unweighted loss. Pixels at the
+  // border, or with a neighbour without depth, count as 1 and have no gradient.
+  double evaluate(
+      const Camera& camera,
+      const Image& normal,
+      const Image& depth,
+      const Image& alpha,
+      float weight,
+      Image& dL_dnormal,
+      Image& dL_ddepth
+  );
+  // Normals of a depth map, [H][W][3]; zero at the border and where a neighbour has no depth.
+  static Image depth_normals(const Camera& camera, const Image& depth);
+
+ private:
+  std::vector<Vec3f> dL_dx_, dL_dy_;  // [H][W] gradients of the differences
+  std::vector<double> row_loss_;
+};
+
+}  // namespace glint

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Photometric loss of one view: (1 - w) L1 + w (1 - SSIM), value and gradient in one pass.
+#pragma once
+
+#include <vector>
+
+#include "glint/core/image.h"
+#include "glint/core/simd.h"
+
+namespace glint {
+
+struct PhotometricWeights {
+  float l1 = 0.8f;
+  float ssim = 0.2f;
+};
+
+struct PhotometricTerms {
+  double l1 = 0;         // mean absolute error over pixels and channels
+  double ssim_loss = 0;  // 1 - mean SSIM (11x11 Gaussian, zero padding)
+  double mse = 0;        // of the render clamped to [0, 1]
+  double weighted(PhotometricWeights w) const {
+    return static_cast<double>(w.l1) * l1 + static_cast<double>(w.ssim) * ssim_loss;
+  }
+};
+
+// Keeps its buffers between calls: no allocation in steady state.
+class PhotometricLoss {
+ public:
+  // rendered, target: [H][W][3]. Adds weight * dL/d(rendered) to `gradient` (same shape).
+  PhotometricTerms evaluate(
+      const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
+  );
+
+ private:
+  void blur_rows(const Image& rendered, const Image& target, int channel);
+  void ssim_rows();
+  void gradient_rows(
+      const Image& rendered,
+      const Image& target,
+      int channel,
+      PhotometricWeights weights,
+      Image& gradient
+  );
+  Float8 blur_columns(std::vector<float>& planes, int plane, int y, std::size_t x);
+  float* plane_row(std::vector<float>& planes, int plane, int y);
+
+  int width_ = 0, height_ = 0;
+  std::size_t stride_ = 0;               // floats a row of a plane, a multiple of 8
+  std::vector<float> moments_;           // [5][H][stride] horizontally blurred x, y, xx, yy, xy
+  std::vector<float> moment_gradients_;  // [3][H][stride] of x, xx, xy
+  std::vector<double> row_ssim_, row_l1_, row_mse_;  // [H] sums, added in order
+};
+
+}  // namespace glint

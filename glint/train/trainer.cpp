@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/trainer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "glint/core/progress.h"
+#include "glint/core/rng.h"
+
+namespace glint {
+
+namespace {
+
+constexpr int kPublishedIterations = 30000;
+
+Json log_line(const StepStats& stats, double seconds) {
+  Json line = {
+      {"iteration", stats.iteration},
+      {"loss", stats.loss},
+      {"psnr", stats.psnr},
+      {"num_surfels", stats.num_surfels},
+      {"seconds", seconds}};
+  for (const auto& [name, value] : stats.terms) line["terms"][name] = value;
+  return line;
+}
+
+void check_step(const Method& method, const StepStats& stats, const fs::path& checkpoint) {
+  if (std::isfinite(stats.loss)) return;
+  const std::string where = fmt::format(
+      "training stopped at iteration {}; the last good state is in {}",
+      stats.iteration,
+      checkpoint.string()
+  );
+  try {
+    method.check_finite();
+  } catch (const Error& culprit) {
+    throw Error(ExitCode::kBadPrediction, fmt::format("{}: {}", where, culprit.what()));
+  }
+  for (const auto& [name, value] : stats.terms)
+    GLINT_CHECK(std::isfinite(value), kBadPrediction, "{}: loss term {} is {}", where, name, value);
+  throw Error(ExitCode::kBadPrediction, fmt::format("{}: the loss is {}", where, stats.loss));
+}
+
+}  // namespace
+
+int scaled_step(int published, int iterations, int at_least) {
+  const double scaled = static_cast<double>(published) * iterations / kPublishedIterations;
+  return std::max(at_least, static_cast<int>(std::lround(scaled)));
+}
+
+ViewSampler::ViewSampler(std::size_t num_views, std::uint64_t seed)
+    : num_views_(num_views), seed_(seed) {}
+
+std::size_t ViewSampler::next() {
+  if (remaining_.empty()) {
+    remaining_.resize(num_views_);
+    std::iota(remaining_.begin(), remaining_.end(), std::size_t{0});
+    Rng rng(seed_, hash_name("views") + epoch_++);
+    for (std::size_t i = num_views_; i > 1; --i)
+      std::swap(remaining_[i - 1], remaining_[rng.below(static_cast<std::uint32_t>(i))]);
+  }
+  const std::size_t view = remaining_.back();
+  remaining_.pop_back();
+  return view;
+}
+
+TrainReport train(Method& method, const Scene& scene, const TrainOptions& options) {
+  GLINT_CHECK(!scene.train.empty(), kBadReference, "{}: no training views", scene.name);
+  const fs::path checkpoint = options.folder / "checkpoint";
+  const bool on_disk = !options.folder.empty();
+  method.initialize(scene, options.run);
+  for (const std::string& warning : method.warnings()) log::warn(warning);
+  Progress progress(options.title, static_cast<std::size_t>(options.run.iterations));
+  TrainReport report;
+  for (int i = 0; i < options.run.iterations; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    const StepStats stats = method.step(i);
+    report.seconds +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    check_step(method, stats, checkpoint);
+    report.last = stats;
+    report.iterations = i + 1;
+    progress.advance(
+        1,
+        fmt::format(
+            "loss {:.4f}  psnr {:.2f}  {} surfels", stats.loss, stats.psnr, stats.num_surfels
+        )
+    );
+    const bool due = (i + 1) % options.log_interval == 0 || i + 1 == options.run.iterations;
+    if (on_disk && due)
+      append_line(options.folder / "log.jsonl", log_line(stats, report.seconds).dump());
+    if (on_disk && (i + 1) % options.save_interval == 0) {
+      method.check_finite();
+      method.save(checkpoint.string());
+    }
+  }
+  method.check_finite();
+  report.num_surfels = method.num_surfels();
+  return report;
+}
+
+}  // namespace glint

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// The training loop: order of the views is the method's business; progress, log, checkpoints and
+// the stop on non-finite values are here. It knows no method by name.
+#pragma once
+
+#include <functional>
+
+#include "glint/core/files.h"
+#include "glint/method.h"
+
+namespace glint {
+
+struct TrainOptions {
+  RunOptions run;
+  fs::path folder;              // log.jsonl and checkpoint/ go here; empty: neither
+  int log_interval = 100;       // iterations between lines of log.jsonl
+  int save_interval = 1000;     // iterations between checkpoints of the last good state
+  std::string title = "train";  // of the progress line
+};
+
+struct TrainReport {
+  int iterations = 0;
+  double seconds = 0;  // of steps only: no loading, logging or saving
+  std::size_t num_surfels = 0;
+  StepStats last;
+};
+
+// Initialises and trains. Errors: what the method throws; kBadPrediction when the loss or a
+// parameter stops being finite (names the term or parameter and the iteration; the last good state
+// is in folder/checkpoint).
+TrainReport train(Method& method, const Scene& scene, const TrainOptions& options);
+
+// Random order of the training views without replacement, reshuffled when all were seen.
+class ViewSampler {
+ public:
+  ViewSampler() = default;
+  ViewSampler(std::size_t num_views, std::uint64_t seed);
+  std::size_t next();
+
+ private:
+  std::size_t num_views_ = 0;
+  std::uint64_t seed_ = 0, epoch_ = 0;
+  std::vector<std::size_t> remaining_;
+};
+
+// A published schedule for 30,000 iterations, scaled to this run: round(n * iterations / 30000), at
+// least `at_least`.
+int scaled_step(int published, int iterations, int at_least = 1);
+
+}  // namespace glint
