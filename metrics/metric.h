@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What all metrics share: a result per image with its protocol, and the regions it is given for.
+// Metrics of one rendered view, their registry, and the image regions each is given for. A metric
+// is a pure function in a file of its own (psnr.h, ssim.h, depth.h, ...); a family in view/ gives
+// it ids, units and a protocol. CMake lists the families by folder: adding a metric is adding a
+// file there.
 #pragma once
 
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,12 +18,70 @@
 namespace glint {
 
 // Pixels that count. An empty mask means all.
-bool counts(MaskView mask, int x, int y);
+inline bool counts(MaskView mask, int x, int y) { return mask.empty() || mask.at(x, y) != 0; }
 
-// Region masks from the ground-truth glass mask: "glass", "glass-border" (3 px to either side of the
-// outline), "opaque" (not glass). Each has the size of `glass`.
+// Region masks from the ground-truth glass mask: "glass", "glass-border" (`radius_px` to either
+// side of the outline, Chebyshev distance; the image's edge is no outline), "opaque" (not glass).
+// Each has the size of `glass`.
 MaskImage glass_region(MaskView glass);
 MaskImage glass_border_region(MaskView glass, int radius_px = 3);
 MaskImage opaque_region(MaskView glass);
+
+struct Region {
+  std::string name;  // empty: the whole image
+  MaskImage mask;    // empty: the whole image
+};
+// The whole image, then the three above that have a pixel; without a glass mask the whole image
+// alone.
+std::vector<Region> evaluation_regions(MaskView glass);
+
+// What a method rendered and what is true, all of one size. Empty views: not available.
+struct ViewPair {
+  ImageView rgb;     // [H][W][3] as displayed, not clamped
+  ImageView depth;   // [H][W][1] planar z in metres; 0 or not finite: nothing rendered
+  ImageView normal;  // [H][W][3] camera space, OpenCV axes; zero or not finite: nothing rendered
+  ImageView transparency;  // [H][W][1] in [0, 1]
+  ImageView behind_depth;  // [H][W][1] planar z in metres of the first surface behind glass
+
+  ImageView true_rgb, true_depth, true_normal, true_behind_depth;
+  MaskView glass;  // non-zero: the first surface is glass
+};
+
+enum class Direction { kHigherIsBetter, kLowerIsBetter };
+NLOHMANN_JSON_SERIALIZE_ENUM(
+    Direction, {{Direction::kHigherIsBetter, "higher"}, {Direction::kLowerIsBetter, "lower"}}
+)
+
+struct Metric {
+  std::string id;    // docs: PROTOCOL; "psnr", "normal-11.25", ...
+  std::string unit;  // "dB", "deg", "%", "m", "" for plain numbers
+  Direction direction = Direction::kHigherIsBetter;
+  int decimals = 3;  // as printed in tables; JSON is never rounded
+  Json protocol;     // every constant that the value depends on
+};
+
+// One value per metric of a family, empty where a view has nothing to score.
+using MetricValues = std::vector<std::optional<double>>;
+
+// Metrics that come out of one pass over the maps.
+struct MetricFamily {
+  std::vector<Metric> metrics;
+  // One entry per region, in their order. Errors: see the metric's header.
+  std::function<std::vector<MetricValues>(const ViewPair&, std::span<const Region>)> evaluate;
+};
+
+// All families, in the order of their file names.
+const std::vector<MetricFamily>& metric_families();
+
+// nullptr: unknown. `id` may carry a region ("psnr@glass").
+const Metric* find_metric(const std::string& id);
+
+// Every registered metric of a view, by id ("psnr") and, for regions, "psnr@glass". What cannot be
+// scored (map not rendered, no truth, no such pixels) is absent. Errors: kBadPrediction and
+// kBadReference for maps of another size and colours that are not finite.
+std::map<std::string, double> evaluate_view(const ViewPair& pair);
+
+// {"psnr": {...}, ...}: the protocol behind each id.
+Json metric_protocols();
 
 }  // namespace glint

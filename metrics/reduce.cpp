@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/reduce.h"
+
+namespace glint {
+
+void check_same_shape(ImageView prediction, ImageView reference, MaskView mask) {
+  GLINT_CHECK(
+      prediction.num_pixels() > 0 && reference.num_pixels() > 0,
+      kBadPrediction,
+      "image without pixels"
+  );
+  GLINT_CHECK(
+      prediction.size() == reference.size(),
+      kBadPrediction,
+      "prediction has {} x {} pixels, reference {} x {}; render at the reference's size",
+      prediction.width,
+      prediction.height,
+      reference.width,
+      reference.height
+  );
+  GLINT_CHECK(
+      prediction.channels == reference.channels,
+      kBadPrediction,
+      "prediction has {} channels, reference {}",
+      prediction.channels,
+      reference.channels
+  );
+  GLINT_CHECK(
+      mask.empty() || mask.size() == reference.size(),
+      kBadReference,
+      "mask has {} x {} pixels, reference {} x {}",
+      mask.width,
+      mask.height,
+      reference.width,
+      reference.height
+  );
+}
+
+void check_maps(ImageView prediction, ImageView reference, MaskView mask, int channels) {
+  check_same_shape(prediction, reference, mask);
+  GLINT_CHECK(
+      reference.channels == channels,
+      kBadReference,
+      "reference has {} channels, expected {}",
+      reference.channels,
+      channels
+  );
+}
+
+void check_finite(ImageView image, ExitCode code, std::string_view what) {
+  const std::size_t count = image.num_pixels() * static_cast<std::size_t>(image.channels);
+  const float* end = image.data + count;
+  const float* bad = std::find_if_not(image.data, end, [](float v) { return std::isfinite(v); });
+  if (bad == end) return;
+  const std::size_t pixel = static_cast<std::size_t>(bad - image.data) / image.channels;
+  throw Error(
+      code,
+      fmt::format(
+          "{}: value {} at pixel ({}, {})", what, *bad, pixel % image.width, pixel / image.width
+      )
+  );
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+}  // namespace glint

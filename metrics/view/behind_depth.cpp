@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Depth of the first opaque surface behind glass, scored on glass pixels only.
+#include "metrics/depth.h"
+#include "metrics/metric.h"
+
+namespace glint::view_metrics {
+namespace {
+
+std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
+  std::vector<MetricValues> values;
+  if (pair.behind_depth.empty() || pair.true_behind_depth.empty() || pair.glass.empty())
+    return values;
+  for (const Region& region : regions) {
+    MetricValues row(1);
+    if (region.name.empty())
+      if (const auto e = depth_errors(pair.behind_depth, pair.true_behind_depth, pair.glass))
+        row[0] = e->absrel;
+    values.push_back(row);
+  }
+  return values;
+}
+
+}  // namespace
+
+MetricFamily behind_depth() {
+  Json protocol = config_to_json(DepthProtocol{});
+  protocol["pixels"] = "glass";
+  return {{{"behind-absrel", "", Direction::kLowerIsBetter, 3, protocol}}, evaluate};
+}
+
+}  // namespace glint::view_metrics
