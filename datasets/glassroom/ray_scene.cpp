@@ -68,7 +68,8 @@ RayScene::RayScene(const TraceScene& scene) : scene_(scene) {
   num_opaque_ = triangles_.size();
   add_triangles(true);
 
-  device_ = rtcNewDevice(nullptr);
+  // One instruction set everywhere: its kernels decide the last bits of hits, so of the pictures.
+  device_ = rtcNewDevice("isa=avx2");
   GLINT_CHECK(
       device_, kEnvironment, "Embree: no device (error {})", int(rtcGetDeviceError(nullptr))
   );

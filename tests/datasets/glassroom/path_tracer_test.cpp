@@ -84,6 +84,30 @@ TEST_CASE("A white convex object vanishes in a white environment, whatever its m
   }
 }
 
+TEST_CASE(
+    "No ray meets the surface that it leaves, on large and slanted triangles far from the origin"
+) {
+  TraceScene scene;
+  scene.environment = {1, 1, 1};
+  add_quad(
+      scene,
+      add_material(scene, diffuse(0.5f)),
+      {{{-9, -11, 3}, {12, -8, 5.5f}, {13, 10, 13.5f}, {-8, 7, 11}}}
+  );
+  const Camera camera = look_at({1, -20, 14}, {2, 0, 8.5}, {0, 0, 1}, {64, 36}, 50);
+  const PathTracerOutput out = PathTracer(scene).render(camera, settings(16));
+  // One bounce into the environment: 0.5 where all samples hit, towards 1 at the edges; another
+  // bounce on the surface itself would give less.
+  int num_hits = 0;
+  for (int i = 0; i < 64 * 36; ++i) {
+    const int x = i % 64, y = i / 64;
+    if (out.depth.at(x, y) == 0.0f) continue;
+    ++num_hits;
+    CHECK(out.radiance.at(x, y) >= 0.5f - 1e-6f);
+  }
+  CHECK(num_hits > 500);
+}
+
 TEST_CASE("Glass without tint vanishes in a white environment") {
   TraceScene scene;
   scene.environment = {1, 1, 1};
