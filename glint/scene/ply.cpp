@@ -225,7 +225,8 @@ std::vector<Vec3f> read_colors(const PlyFile& file, const PlyElement& element) {
   const float full_range = red->type == PlyType::kUint8    ? 255.0f
                            : red->type == PlyType::kUint16 ? 65535.0f
                                                            : 1.0f;
-  for (Vec3f& color : colors) color = (1 / full_range) * color;
+  for (Vec3f& color : colors)
+    for (int axis = 0; axis < 3; ++axis) color[axis] /= full_range;
   return colors;
 }
 

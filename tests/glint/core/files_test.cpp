@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "glint/core/files.h"
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+// While alive, no file of this process can grow beyond `bytes`: what a full disk does to a writer.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit limit{bytes, old_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit old_{};
+};
+
+std::size_t count_entries(const fs::path& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder), fs::directory_iterator())
+  );
+}
+
+std::vector<std::string> names_in(
+    const fs::path& folder, const std::vector<std::string>& extensions
+) {
+  std::vector<std::string> names;
+  for (const fs::path& path : list_files(folder, extensions)) names.push_back(path.filename());
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("digit runs compare by value") {
+  CHECK(natural_less("img2", "img10"));
+  CHECK_FALSE(natural_less("img10", "img2"));
+  CHECK(natural_less("img", "img0"));
+  CHECK(natural_less("a9b", "a10a"));
+  CHECK(natural_less("99999999999999999999998", "99999999999999999999999"));
+  CHECK_FALSE(natural_less("x", "x"));
+  // Equal values still have one order, so sorting is deterministic.
+  CHECK(natural_less("007", "7") != natural_less("7", "007"));
+}
+
+TEST_CASE("patterns of --only match runs, single characters and sets") {
+  CHECK(glob_match("room_*", "room_1"));
+  CHECK(glob_match("room_?", "room_1"));
+  CHECK_FALSE(glob_match("room_?", "room_10"));
+  CHECK(glob_match("room_[12]", "room_2"));
+  CHECK_FALSE(glob_match("room_[12]", "room_3"));
+}
+
+TEST_CASE("a folder is listed in natural order, by extension, without hidden files and folders") {
+  const TempFolder folder;
+  for (const char* name : {"10.png", "9.PNG", "1.jpg", ".2.png", "notes.txt"})
+    write_file(folder / name, "x");
+  fs::create_directory(folder / "3.png");
+  CHECK(names_in(folder.path(), {".png"}) == std::vector<std::string>{"9.PNG", "10.png"});
+  CHECK(names_in(folder.path(), {}).size() == 4);
+}
+
+TEST_CASE("a file where a folder is expected is an error that names it") {
+  const TempFolder folder;
+  write_file(folder / "file", "x");
+  const std::string message = bad_reference([&] { list_files(folder / "file"); });
+  CHECK(message.find("file: not a folder") != std::string::npos);
+  bad_reference([&] { list_files(folder / "missing"); });
+}
+
+TEST_CASE("an unreadable folder and an unreadable file are errors that name them") {
+  if (::geteuid() == 0) {
+    WARN("skipped: the superuser may read everything");
+    return;
+  }
+  const TempFolder folder;
+  fs::create_directory(folder / "closed");
+  write_file(folder / "closed.txt", "x");
+  ::chmod((folder / "closed").c_str(), 0);
+  ::chmod((folder / "closed.txt").c_str(), 0);
+  CHECK(bad_reference([&] { list_files(folder / "closed"); }).find("closed") != std::string::npos);
+  CHECK(bad_reference([&] {
+          read_file(folder / "closed.txt");
+        }).find("closed.txt") != std::string::npos);
+  ::chmod((folder / "closed").c_str(), 0700);
+}
+
+TEST_CASE("reading a missing file or a folder is an error that names it") {
+  const TempFolder folder;
+  CHECK(bad_reference([&] { read_file(folder / "no"); }).find("no such file") != std::string::npos);
+  CHECK(bad_reference([&] { read_file(folder.path()); }).find("is a folder") != std::string::npos);
+}
+
+TEST_CASE("what is written is read back, through folders made on the way") {
+  const TempFolder folder;
+  const std::string content("a\0b\nc", 5);
+  write_file(folder / "x/y/z.bin", content);
+  CHECK(read_file(folder / "x/y/z.bin") == content);
+  CHECK(count_entries(folder / "x/y") == 1);
+}
+
+TEST_CASE("a writer that fails leaves neither a new file nor a temporary one") {
+  const TempFolder folder;
+  CHECK_THROWS_AS(
+      write_atomically(
+          folder / "x.txt",
+          [](const fs::path& temporary) {
+            write_file(temporary, "half");
+            throw std::runtime_error("broken");
+          }
+      ),
+      std::runtime_error
+  );
+  CHECK(count_entries(folder.path()) == 0);
+}
+
+TEST_CASE("a full disk is an environment error and leaves the old file as it was") {
+  const TempFolder folder;
+  write_file(folder / "x.txt", "old");
+  {
+    const FileSizeLimit limit(4096);
+    const std::string message = error_of(ExitCode::kEnvironment, [&] {
+      write_file(folder / "x.txt", std::string(1 << 20, 'a'));
+    });
+    CHECK(message.find("x.txt") != std::string::npos);
+  }
+  CHECK(read_file(folder / "x.txt") == "old");
+  CHECK(count_entries(folder.path()) == 1);
+}
+
+TEST_CASE("writing below a file is an environment error") {
+  const TempFolder folder;
+  write_file(folder / "file", "x");
+  error_of(ExitCode::kEnvironment, [&] { write_file(folder / "file/below.txt", "y"); });
+}
+
+TEST_CASE("appending closes a line that a crash tore") {
+  const TempFolder folder;
+  append_line(folder / "log/x.jsonl", "one");
+  append_line(folder / "log/x.jsonl", "two");
+  CHECK(read_file(folder / "log/x.jsonl") == "one\ntwo\n");
+  write_file(folder / "log/x.jsonl", "one\ntor");
+  append_line(folder / "log/x.jsonl", "three");
+  CHECK(read_file(folder / "log/x.jsonl") == "one\ntor\nthree\n");
+}

@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: MIT
+#include "glint/scene/image_files.h"
+
+#include <ImfArray.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfTiledOutputFile.h>
+#include <half.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "glint/core/rng.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+using namespace glint::test;
+using Catch::Contains;
+
+namespace {
+
+Image random_image(int width, int height, int channels, float low = 0, float high = 1) {
+  Rng rng(7);
+  Image image(width, height, channels);
+  for (float& value : image.values()) value = rng.uniform(low, high);
+  return image;
+}
+
+bool same(const Image& a, const Image& b) {
+  return a.size() == b.size() && a.channels() == b.channels() &&
+         std::equal(a.values().begin(), a.values().end(), b.values().begin());
+}
+
+float largest_difference(const Image& a, const Image& b) {
+  REQUIRE(a.size() == b.size());
+  REQUIRE(a.channels() == b.channels());
+  float largest = 0;
+  for (std::size_t i = 0; i < a.values().size(); ++i)
+    largest = std::max(largest, std::abs(a.values()[i] - b.values()[i]));
+  return largest;
+}
+
+void write_any(const fs::path& path, const Image& image) {
+  if (path.extension() == ".png") write_png(path, image);
+  if (path.extension() == ".exr") write_exr(path, image);
+  if (path.extension() == ".npy") write_npy(path, image);
+}
+
+// An NPY file with the given dictionary.
+std::string npy_file(const std::string& dictionary, const std::string& values) {
+  std::string file("\x93NUMPY\x01\x00", 8);
+  file += static_cast<char>(dictionary.size());
+  file += '\0';
+  return file + dictionary + values;
+}
+
+std::string npy_dictionary(const std::string& type, const std::string& shape) {
+  return "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }\n";
+}
+
+}  // namespace
+
+TEST_CASE("PNG rounds to the nearest of 255 steps, halves to even, and clamps") {
+  const TempFolder folder;
+  Image image(6, 1, 1);
+  // 255 v is 127.5, 25.5 and 76.5 in float: halves, to even.
+  const float values[] = {0.5f, 0.1f, 0.3f, -1.0f, 2.0f, std::numeric_limits<float>::quiet_NaN()};
+  const float expected[] = {128, 26, 76, 0, 255, 0};
+  std::copy(std::begin(values), std::end(values), image.data());
+  write_png(folder / "x.png", image);
+  const Image read = read_image(folder / "x.png");
+  for (int i = 0; i < 6; ++i) CHECK(read.at(i, 0) == expected[i] / 255.0f);
+}
+
+TEST_CASE("PNG keeps channel order and is off by at most half a step") {
+  const TempFolder folder;
+  const Image image = random_image(13, 7, 3);
+  write_png(folder / "x.png", image);
+  CHECK(largest_difference(read_image(folder / "x.png"), image) <= 0.5f / 255 + 1e-6f);
+}
+
+TEST_CASE("the same picture gives the same bytes") {
+  const TempFolder folder;
+  const Image image = random_image(13, 7, 3);
+  for (const char* name : {"a.png", "a.exr", "a.npy"}) {
+    write_any(folder / name, image);
+    const std::string first = read_file(folder / name);
+    write_any(folder / name, image);
+    CHECK(read_file(folder / name) == first);
+  }
+}
+
+TEST_CASE("16-bit PNG is divided by 65535") {
+  const TempFolder folder;
+  cv::Mat pixels(1, 3, CV_16UC1);
+  pixels.at<unsigned short>(0, 0) = 0;
+  pixels.at<unsigned short>(0, 1) = 12345;
+  pixels.at<unsigned short>(0, 2) = 65535;
+  cv::imwrite((folder / "x.png").string(), pixels);
+  const Image image = read_image(folder / "x.png");
+  REQUIRE(image.channels() == 1);
+  CHECK(image.at(1, 0) == 12345.0f / 65535.0f);
+  CHECK(image.at(2, 0) == 1.0f);
+}
+
+TEST_CASE("an alpha channel is dropped and colours come out as R G B") {
+  const TempFolder folder;
+  cv::imwrite((folder / "x.png").string(), cv::Mat(2, 2, CV_8UC4, cv::Scalar(51, 102, 204, 0)));
+  const Image image = read_image(folder / "x.png");
+  REQUIRE(image.channels() == 3);
+  CHECK(image.at(1, 1, 0) == 204 / 255.0f);
+  CHECK(image.at(1, 1, 1) == 102 / 255.0f);
+  CHECK(image.at(1, 1, 2) == 51 / 255.0f);
+}
+
+TEST_CASE("grey pictures have one channel, which a caller may ask to repeat") {
+  const TempFolder folder;
+  write_png(folder / "grey.png", Image(3, 2, 1, 0.2f));
+  CHECK(read_image(folder / "grey.png").channels() == 1);
+  const Image repeated = read_image(folder / "grey.png", 3);
+  CHECK(repeated.at(2, 1, 2) == 51 / 255.0f);
+  write_png(folder / "colour.png", Image(3, 2, 3, 0.2f));
+  CHECK_THAT(
+      bad_reference([&] { read_image(folder / "colour.png", 1); }),
+      Contains("3 channels, expected 1")
+  );
+}
+
+TEST_CASE("JPEG is read, and a cut-off one is an error") {
+  const TempFolder folder;
+  cv::imwrite((folder / "x.jpg").string(), cv::Mat(16, 24, CV_8UC3, cv::Scalar(51, 102, 204)));
+  const Image image = read_image(folder / "x.jpg");
+  REQUIRE(image.size() == ImageSize{24, 16});
+  CHECK(image.at(5, 5, 0) == Approx(0.8f).margin(0.02));
+  CHECK(read_image_size(folder / "x.jpg") == ImageSize{24, 16});
+  const std::string file = read_file(folder / "x.jpg");
+  for (std::size_t length = 0; length < file.size(); length += 7) {
+    write_file(folder / "cut.jpg", file.substr(0, length));
+    CHECK_THAT(bad_reference([&] { read_image(folder / "cut.jpg"); }), Contains("cut.jpg"));
+  }
+}
+
+TEST_CASE("EXR and NPY keep every float") {
+  const TempFolder folder;
+  for (const int channels : {1, 3}) {
+    const Image image = random_image(17, 9, channels, -1000, 1000);
+    write_exr(folder / "x.exr", image);
+    CHECK(same(read_image(folder / "x.exr"), image));
+    write_npy(folder / "x.npy", image);
+    CHECK(same(read_image(folder / "x.npy"), image));
+  }
+  const Image normal = random_image(17, 9, 3, -1, 1);
+  write_exr(folder / "n.exr", normal, true);
+  CHECK(same(read_image(folder / "n.exr"), normal));
+}
+
+TEST_CASE("EXR half channels, tiles and shifted windows are read; crops are an error") {
+  const TempFolder folder;
+  const std::string path = (folder / "x.exr").string();
+  Imf::Array2D<half> pixels(4, 6);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 6; ++x) pixels[y][x] = half(static_cast<float>(10 * y + x));
+  Imf::FrameBuffer buffer;
+  // The window starts at (2, 1): the slice's base lies before the array.
+  char* base = reinterpret_cast<char*>(&pixels[0][0]) - 2 * sizeof(half) - 6 * sizeof(half);
+  buffer.insert("Y", Imf::Slice(Imf::HALF, base, sizeof(half), 6 * sizeof(half)));
+  const Imath::Box2i window({2, 1}, {7, 4});
+  {
+    Imf::Header header(window, window);
+    header.channels().insert("Y", Imf::Channel(Imf::HALF));
+    header.setTileDescription(Imf::TileDescription(4, 4));
+    Imf::TiledOutputFile file(path.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+  }
+  const Image image = read_image(path);
+  REQUIRE(image.size() == ImageSize{6, 4});
+  REQUIRE(image.channels() == 1);
+  CHECK(image.at(0, 0) == 0);
+  CHECK(image.at(5, 3) == 35);
+  {
+    Imf::Header header(Imath::Box2i({0, 0}, {9, 9}), window);
+    header.channels().insert("Y", Imf::Channel(Imf::HALF));
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(4);
+  }
+  CHECK_THAT(bad_reference([&] { read_image(path); }), Contains("uncropped"));
+}
+
+TEST_CASE("EXR without usable channels is an error that lists them") {
+  const TempFolder folder;
+  const std::string path = (folder / "x.exr").string();
+  {
+    Imf::Header header(2, 2);
+    for (const char* name : {"U", "V"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    Imf::OutputFile file(path.c_str(), header);
+    float zeros[4] = {};
+    Imf::FrameBuffer buffer;
+    for (const char* name : {"U", "V"})
+      buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(zeros), 4, 8));
+    file.setFrameBuffer(buffer);
+    file.writePixels(2);
+  }
+  CHECK_THAT(bad_reference([&] { read_image(path); }), Contains("channels U V"));
+}
+
+TEST_CASE("NPY of other types and a batch of bad headers") {
+  const TempFolder folder;
+  const auto read = [&](const std::string& file) {
+    write_file(folder / "x.npy", file);
+    return read_image(folder / "x.npy");
+  };
+  CHECK(read(npy_file(npy_dictionary("|u1", "(1, 2)"), "\x33\xff")).at(0, 0) == 51 / 255.0f);
+  CHECK(read(npy_file(npy_dictionary("|b1", "(2, 1)"), std::string("\x01\x00", 2))).at(0, 0) == 1);
+  CHECK(read(npy_file(npy_dictionary("<f2", "(1, 1)"), std::string("\x00\x3c", 2))).at(0, 0) == 1);
+  const double value = 0.25;
+  const std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+  CHECK(read(npy_file(npy_dictionary("<f8", "(1, 1, 1)"), bytes)).at(0, 0) == 0.25f);
+
+  const auto message = [&](const std::string& file) { return bad_reference([&] { read(file); }); };
+  CHECK_THAT(message(npy_file(npy_dictionary("<i8", "(1, 1)"), bytes)), Contains("'<i8'"));
+  CHECK_THAT(message(npy_file(npy_dictionary("<f8", "(1,)"), bytes)), Contains("shape (1)"));
+  CHECK_THAT(message(npy_file(npy_dictionary("<f8", "(1, 2)"), bytes)), Contains("expected 16"));
+  CHECK_THAT(message(npy_file("{'descr': '<f8'}", bytes)), Contains("lacks 'shape'"));
+  const std::string huge = npy_dictionary("<f4", "(65000, 65000, 3)");
+  CHECK_THAT(message(npy_file(huge, bytes)), Contains("too many for a file of"));
+  const std::string overflow = npy_dictionary("<f4", "(99999999999999999999, 2)");
+  message(npy_file(overflow, bytes));
+  std::string fortran = npy_dictionary("<f8", "(1, 1)");
+  fortran.replace(fortran.find("False"), 5, "True ");
+  CHECK_THAT(message(npy_file(fortran, bytes)), Contains("Fortran order"));
+}
+
+TEST_CASE("every cut-off PNG, EXR and NPY is an error that names the file") {
+  const TempFolder folder;
+  const Image image = random_image(9, 6, 3);
+  for (const std::string extension : {".png", ".exr", ".npy"}) {
+    write_any(folder / ("x" + extension), image);
+    const std::string file = read_file(folder / ("x" + extension));
+    for (std::size_t length = 0; length < file.size(); ++length) {
+      INFO(extension << " of " << length << " bytes");
+      write_file(folder / ("cut" + extension), std::string_view(file).substr(0, length));
+      CHECK_THAT(
+          bad_reference([&] { read_image(folder / ("cut" + extension)); }),
+          Contains("cut" + extension)
+      );
+    }
+  }
+}
+
+TEST_CASE("damaged files are read or are errors, and nothing else") {
+  const TempFolder folder;
+  Rng rng(11);
+  for (const std::string extension : {".png", ".exr", ".npy"}) {
+    const fs::path path = folder / ("x" + extension);
+    write_any(path, random_image(8, 5, 3));
+    const std::string good = read_file(path);
+    for (int round = 0; round < 300; ++round) {
+      std::string file = good;
+      for (int i = 0; i < 3; ++i)
+        file[rng.below(static_cast<std::uint32_t>(file.size()))] =
+            static_cast<char>(rng.below(256));
+      write_file(path, file);
+      try {
+        const Image image = read_image(path);
+        CHECK(
+            image.values().size() == image.num_pixels() * static_cast<std::size_t>(image.channels())
+        );
+      } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::kBadReference);
+      }
+    }
+  }
+}
+
+TEST_CASE("a picture under a wrong name, an unknown format and a missing file are errors") {
+  const TempFolder folder;
+  write_file(folder / "x.png", "not a picture");
+  CHECK_THAT(
+      bad_reference([&] { read_image(folder / "x.png"); }), Contains("neither a PNG nor a JPEG")
+  );
+  CHECK_THAT(
+      bad_reference([&] { read_image(folder / "x.tif"); }), Contains("unknown image format")
+  );
+  CHECK_THAT(bad_reference([&] { read_image(folder / "y.exr"); }), Contains("no such file"));
+}
+
+TEST_CASE("a PNG header that claims too many pixels allocates nothing") {
+  const TempFolder folder;
+  write_png(folder / "x.png", Image(2, 2, 1));
+  std::string file = read_file(folder / "x.png");
+  file.replace(16, 8, std::string("\x00\x00\xff\x00\x00\x00\xff\x00", 8));
+  write_file(folder / "x.png", file);
+  CHECK_THAT(bad_reference([&] { read_image(folder / "x.png"); }), Contains("65280 x 65280"));
+}
+
+TEST_CASE("masks count from half of the range, and one that never gets there is an error") {
+  const TempFolder folder;
+  Image image(3, 1, 1);
+  image.at(1, 0) = 127 / 255.0f;
+  image.at(2, 0) = 128 / 255.0f;
+  write_png(folder / "x.png", image);
+  const MaskImage mask = read_mask(folder / "x.png");
+  CHECK(mask.at(0, 0) == 0);
+  CHECK(mask.at(1, 0) == 0);
+  CHECK(mask.at(2, 0) == 255);
+  write_png(folder / "ones.png", Image(3, 1, 1, 1 / 255.0f));
+  CHECK_THAT(
+      bad_reference([&] { read_mask(folder / "ones.png"); }), Contains("no pixel would count")
+  );
+  write_png(folder / "empty.png", Image(3, 1, 1));
+  CHECK(read_mask(folder / "empty.png").at(1, 0) == 0);
+}
+
+TEST_CASE("shrinking averages areas, growing keeps constants") {
+  Image image(4, 2, 1);
+  for (int i = 0; i < 8; ++i) image.data()[i] = static_cast<float>(i);
+  const Image half = resize_image(image, {2, 1});
+  CHECK(half.at(0, 0) == Approx((0 + 1 + 4 + 5) / 4.0));
+  CHECK(half.at(1, 0) == Approx((2 + 3 + 6 + 7) / 4.0));
+  const Image grown = resize_image(Image(2, 2, 3, 0.25f), {5, 7});
+  for (const float value : grown.values()) CHECK(value == Approx(0.25f));
+}
+
+TEST_CASE("sRGB encoding follows IEC 61966-2-1 and decodes back") {
+  CHECK(srgb_encode(0.0f) == 0.0f);
+  CHECK(srgb_encode(1.0f) == Approx(1.0f));
+  CHECK(srgb_encode(0.18f) == Approx(0.46135612).epsilon(1e-5));
+  CHECK(srgb_encode(0.002f) == Approx(0.02584f));
+  CHECK(srgb_encode(-1.0f) == 0.0f);
+  for (int i = 0; i <= 100; ++i) {
+    const float v = static_cast<float>(i) / 50.0f;
+    CHECK(srgb_encode(srgb_decode(v)) == Approx(v).margin(2e-4));
+  }
+}
+
+TEST_CASE("colour maps leave missing pixels black and turn normals towards the viewer") {
+  Image depth(3, 1, 1);
+  depth.at(0, 0) = 1;
+  depth.at(1, 0) = 5;
+  const Image colors = colorize_depth(depth, 1, 5);
+  CHECK(colors.at(0, 0, 0) > 0.9f);  // near: yellow
+  CHECK(colors.at(1, 0, 1) < 0.1f);  // far: violet
+  CHECK(colors.at(2, 0, 0) + colors.at(2, 0, 1) + colors.at(2, 0, 2) == 0);
+  Image normal(2, 1, 3);
+  normal.at(0, 0, 2) = -1;  // facing the camera
+  const Image shown = colorize_normal(normal);
+  CHECK(shown.at(0, 0, 2) == 1);
+  CHECK(shown.at(0, 0, 0) == 0.5f);
+  CHECK(shown.at(1, 0, 0) == 0);
+}
