@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "glint/core/config.h"
+
+#include <catch2/catch.hpp>
+
+using namespace glint;
+
+namespace {
+
+struct ExampleConfig {
+  float rate = 0.05f;
+  int steps = 100;
+  bool verbose = false;
+  std::string name = "plain";
+  template <class V>
+  void visit(V&& v) {
+    v("rate", rate, "learning rate");
+    v("steps", steps, "iterations");
+    v("verbose", verbose, "more output");
+    v("name", name, "title");
+  }
+};
+
+// The message of the Error that f throws; its code must be kUsage.
+template <class F>
+std::string usage_error(F&& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::kUsage);
+    return error.what();
+  }
+  FAIL("no error");
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("A configuration survives the way to JSON and back") {
+  ExampleConfig config;
+  config.rate = 0.25f;
+  config.name = "changed";
+  ExampleConfig copy;
+  config_from_json(copy, config_to_json(config), "test");
+  CHECK(config_to_json(copy) == config_to_json(config));
+  CHECK(copy.rate == 0.25f);
+  CHECK(config_to_json(config).begin().key() == "rate");  // the order of visit()
+}
+
+TEST_CASE("Fields that JSON does not name keep their values") {
+  ExampleConfig config;
+  config_from_json(config, Json{{"steps", 7}}, "test");
+  CHECK(config.steps == 7);
+  CHECK(config.rate == 0.05f);
+}
+
+TEST_CASE("Overrides set numbers, flags and text") {
+  ExampleConfig config;
+  config_override(config, "rate=1e-3", "test");
+  config_override(config, "verbose=true", "test");
+  config_override(config, "name=a=b c", "test");
+  CHECK(config.rate == 1e-3f);
+  CHECK(config.verbose);
+  CHECK(config.name == "a=b c");
+}
+
+TEST_CASE("An unknown field is an error that lists the known ones") {
+  ExampleConfig config;
+  const std::string message =
+      usage_error([&] { config_override(config, "ratio=1", "profile ci.toml"); });
+  for (const char* part : {"profile ci.toml", "'ratio'", "rate, steps, verbose, name"})
+    CHECK_THAT(message, Catch::Contains(part));
+}
+
+TEST_CASE("A value of the wrong type or an assignment without a value is an error") {
+  ExampleConfig config;
+  CHECK_THAT(
+      usage_error([&] { config_override(config, "rate=fast", "options"); }),
+      Catch::Contains("rate") && Catch::Contains("fast")
+  );
+  CHECK_THAT(
+      usage_error([&] { config_override(config, "rate", "options"); }),
+      Catch::Contains("name=value") && Catch::Contains("'rate'")
+  );
+  CHECK(config.rate == 0.05f);
+}
+
+TEST_CASE("A number that does not fit an integer field is an error") {
+  ExampleConfig config;
+  usage_error([&] { config_override(config, "steps=0.5", "options"); });
+  usage_error([&] { config_override(config, "steps=9999999999", "options"); });
+  CHECK(config.steps == 100);
+}

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+// The float backward pass: against central differences of the double reference renderer for every
+// parameter and every output map, and against closed forms.
+//
+// Tolerance 1e-3 of the gradient's norm. A pixel's rho carries a relative rounding error near 1e-5
+// (image coordinates over splat widths, see compare_render.h); derivatives divide by another splat
+// width and add terms of both signs, which costs one to two digits.
+#include <catch2/catch.hpp>
+
+#include "glint/render/rasterize.h"
+#include "tests/support/golden_surfel.h"
+#include "tests/support/gradcheck.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+constexpr double kTolerance = 1e-3;
+// Pixels this near (relative) to a cut-off get no weight: no step of the differences may cross it.
+constexpr double kStepGuard = 1e-2;
+
+enum class Map { kFeatures, kAlpha, kDepthSum, kDepthMedian, kNormal, kDistortion, kAll };
+
+struct Case {
+  SurfelArrays surfels;
+  Camera camera;
+  RasterSettings settings;
+  RasterOutputGradient dL_doutput;
+  Image near_limit;  // empty: none
+
+  RasterInput input() const {
+    RasterInput result = surfels.view();
+    if (!near_limit.empty()) result.near_limit = near_limit;
+    return result;
+  }
+  ReferenceInput reference() const { return reference_input(input()); }
+};
+
+// Random weights for one map; zero where `clean` is.
+Image random_weights(Rng& rng, const std::vector<bool>& clean, ImageSize size, int channels) {
+  Image weights(size.width, size.height, channels);
+  for (std::size_t i = 0; i < weights.values().size(); ++i) {
+    const float weight = rng.uniform(-1, 1);
+    weights.values()[i] = clean[i / static_cast<std::size_t>(channels)] ? weight : 0.0f;
+  }
+  return weights;
+}
+
+std::vector<bool> pixels_away_from_cutoffs(const Case& c) {
+  const ReferenceOutput output = reference_render(c.reference(), c.camera, c.settings);
+  std::vector<bool> clean;
+  for (const ReferencePixel& pixel : output.pixels)
+    clean.push_back(pixel.cutoffs.nearest_of_all() > kStepGuard);
+  return clean;
+}
+
+void weigh_outputs(Case& c, Map map, Rng& rng) {
+  const std::vector<bool> clean = pixels_away_from_cutoffs(c);
+  const auto share = static_cast<double>(std::count(clean.begin(), clean.end(), true)) /
+                     static_cast<double>(clean.size());
+  REQUIRE(share > 0.3);  // else the comparison says little
+  const auto weights = [&](Map which, int channels) {
+    const bool wanted = map == which || map == Map::kAll;
+    return wanted ? random_weights(rng, clean, c.camera.size(), channels) : Image{};
+  };
+  c.dL_doutput.features = weights(Map::kFeatures, c.surfels.channels);
+  c.dL_doutput.alpha = weights(Map::kAlpha, 1);
+  c.dL_doutput.depth_sum = weights(Map::kDepthSum, 1);
+  c.dL_doutput.depth_median = weights(Map::kDepthMedian, 1);
+  c.dL_doutput.normal = weights(Map::kNormal, 3);
+  c.dL_doutput.distortion = weights(Map::kDistortion, 1);
+}
+
+Case random_case(const RandomSurfels& options, Map map, std::uint64_t seed) {
+  Rng rng(seed);
+  Case c;
+  c.camera = random_camera(rng, {24, 18});
+  c.settings.with_distortion = map == Map::kDistortion || map == Map::kAll;
+  c.surfels = random_surfels(options, c.camera, rng);
+  weigh_outputs(c, map, rng);
+  return c;
+}
+
+RandomSurfels smooth_surfels() {
+  RandomSurfels options;
+  options.count = 6;
+  options.channels = 4;
+  options.min_sigma_px = 2;
+  options.max_sigma_px = 8;
+  options.min_depth = 1;
+  options.max_depth = 4;
+  options.min_opacity = 0.2;
+  options.max_opacity = 0.7;
+  return options;
+}
+
+RasterGradient backward(const Case& c) {
+  Rasterizer rasterizer;
+  RasterOutput output;
+  RasterGradient gradient;
+  rasterizer.forward(c.input(), c.camera, c.settings, output);
+  rasterizer.backward(c.input(), c.camera, c.settings, output, c.dL_doutput, gradient);
+  return gradient;
+}
+
+// An input array, its float gradient, and the step for its differences.
+struct Parameter {
+  const char* name;
+  std::vector<double> ReferenceInput::*values;
+  std::vector<float> RasterGradient::*gradient;
+  DifferenceStep step;
+};
+constexpr DifferenceStep kAbsolute{2e-5, 1}, kRelative{1e-4, 0};
+constexpr Parameter kParameters[] = {
+    {"means", &ReferenceInput::means, &RasterGradient::means, kAbsolute},
+    {"scales", &ReferenceInput::scales, &RasterGradient::scales, kRelative},
+    {"rotations", &ReferenceInput::rotations, &RasterGradient::rotations, kAbsolute},
+    {"opacities", &ReferenceInput::opacities, &RasterGradient::opacities, kAbsolute},
+    {"features", &ReferenceInput::features, &RasterGradient::features, kAbsolute}};
+
+std::vector<double> numeric_gradient(const Case& c, const Parameter& parameter) {
+  ReferenceInput input = c.reference();
+  const auto loss = [&](const std::vector<double>& values) {
+    input.*parameter.values = values;
+    return reference_loss(reference_render(input, c.camera, c.settings), c.dL_doutput);
+  };
+  return central_differences(loss, input.*parameter.values, parameter.step);
+}
+
+double norm(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum);
+}
+
+// The error of each array relative to its gradient's norm; where that (nearly) vanishes, as the
+// depth's with respect to scales, to a hundredth of the largest norm: terms of that size cancel.
+void check_gradients(const Case& c) {
+  const RasterGradient actual = backward(c);
+  std::vector<std::vector<double>> expected;
+  double largest = 0;
+  for (const Parameter& parameter : kParameters) {
+    expected.push_back(numeric_gradient(c, parameter));
+    largest = std::max(largest, norm(expected.back()));
+  }
+  REQUIRE(largest > 1e-4);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const std::vector<float>& gradient = actual.*kParameters[i].gradient;
+    REQUIRE(gradient.size() == expected[i].size());
+    const GradientError error = gradient_error<float>(gradient, expected[i]);
+    INFO(kParameters[i].name << ": norm " << error.norm << ", worst at " << error.worst_index);
+    CHECK(error.distance / std::max(error.norm, 0.01 * largest) < kTolerance);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Each output map's gradient matches central differences") {
+  const auto [map, name] = GENERATE(table<Map, const char*>(
+      {{Map::kFeatures, "features"},
+       {Map::kAlpha, "alpha"},
+       {Map::kDepthSum, "depth_sum"},
+       {Map::kDepthMedian, "depth_median"},
+       {Map::kNormal, "normal"},
+       {Map::kDistortion, "distortion"}}
+  ));
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  INFO(name << ", seed " << seed);
+  check_gradients(random_case(smooth_surfels(), map, seed));
+}
+
+TEST_CASE("The gradients of all maps together match central differences") {
+  const std::uint64_t seed = GENERATE(range(10, 20));
+  INFO("seed " << seed);
+  check_gradients(random_case(smooth_surfels(), Map::kAll, seed));
+}
+
+TEST_CASE("Gradients match where the low-pass alone decides") {
+  const std::uint64_t seed = GENERATE(range(30, 35));
+  INFO("seed " << seed);
+  RandomSurfels options = smooth_surfels();
+  options.tiny = 1;
+  options.count = 12;
+  check_gradients(random_case(options, Map::kAll, seed));
+}
+
+TEST_CASE("Gradients match for edge-on surfels") {
+  const std::uint64_t seed = GENERATE(range(40, 45));
+  INFO("seed " << seed);
+  RandomSurfels options = smooth_surfels();
+  options.edge_on = 1;
+  options.count = 8;
+  check_gradients(random_case(options, Map::kAll, seed));
+}
+
+TEST_CASE("Gradients match for surfels that cross the camera plane") {
+  const std::uint64_t seed = GENERATE(range(50, 55));
+  INFO("seed " << seed);
+  RandomSurfels options = smooth_surfels();
+  options.at_camera = 1;
+  check_gradients(random_case(options, Map::kAll, seed));
+}
+
+TEST_CASE("Gradients match behind a near limit that differs from pixel to pixel") {
+  Rng rng(60);
+  Case c;
+  c.camera = random_camera(rng, {24, 18});
+  c.settings.with_distortion = true;
+  c.surfels = random_surfels(smooth_surfels(), c.camera, rng);
+  c.near_limit = Image(24, 18, 1);
+  for (float& limit : c.near_limit.values()) limit = rng.uniform(0, 3);
+  weigh_outputs(c, Map::kAll, rng);
+  check_gradients(c);
+}
+
+TEST_CASE("The backward pass reproduces the golden derivatives of rho and depth") {
+  Case c{golden_surfel(), golden_camera(), {}, {}, {}};
+  const double alpha = 0.7626927772;
+  const auto at_pixel = [](double value) {
+    Image weights(640, 480, 1);
+    weights.at(352, 230) = static_cast<float>(value);
+    return weights;
+  };
+  GoldenGradient golden = kGoldenRho3;
+  SECTION("rho3, since d alpha = -alpha / 2 d rho") { c.dL_doutput.alpha = at_pixel(-2 / alpha); }
+  SECTION("depth by the median") {
+    golden = kGoldenDepth;
+    c.dL_doutput.depth_median = at_pixel(1);
+  }
+  SECTION("depth by the sum, less the part of alpha") {
+    golden = kGoldenDepth;
+    c.dL_doutput.depth_sum = at_pixel(1 / alpha);
+    c.dL_doutput.alpha = at_pixel(-4.0581995682 / alpha);
+  }
+  const RasterGradient gradient = backward(c);
+  const auto check = [](const std::vector<float>& actual, const auto& expected) {
+    // Float rounding of terms that cancel: a few 1e-6 of the largest derivative, which is 2.4.
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      CHECK(static_cast<double>(actual[i]) == Approx(expected[i]).epsilon(1e-5).margin(1e-5));
+  };
+  check(gradient.means, golden.mean);
+  check(gradient.rotations, golden.rotation);
+  check(gradient.scales, golden.scale);
+}
+
+TEST_CASE("A clamped alpha passes no gradient to opacity and shape, but to features and depth") {
+  Case c;
+  c.camera = random_case(smooth_surfels(), Map::kAlpha, 1).camera;
+  const Vec3d mean = 2.0 * c.camera.ray_in_cam(12.5, 9.5);
+  c.surfels.add(c.camera.to_world(mean), {0.5, 0.5}, {1, 0.1, 0.2, 0}, 1, {1, 1, 1});
+  Image weights(24, 18, 1);
+  weights.at(12, 9) = 1;
+  const auto total = [](const std::vector<float>& values) {
+    float sum = 0;
+    for (const float value : values) sum += std::abs(value);
+    return sum;
+  };
+  c.dL_doutput.alpha = weights;
+  const RasterGradient of_alpha = backward(c);
+  CHECK(total(of_alpha.opacities) == 0);
+  CHECK(total(of_alpha.means) == 0);
+  CHECK(total(of_alpha.scales) == 0);
+  CHECK(total(of_alpha.rotations) == 0);
+
+  c.dL_doutput = {};
+  c.dL_doutput.depth_sum = weights;
+  const RasterGradient of_depth = backward(c);
+  CHECK(total(of_depth.opacities) == 0);
+  CHECK(total(of_depth.means) > 0.9f);
+
+  c.dL_doutput = {};
+  c.dL_doutput.features = Image(24, 18, 3, 1.0f);
+  CHECK(total(backward(c).features) > 0.99f);
+}
+
+TEST_CASE("The screen gradient is that of a shift of the projected centre, in NDC") {
+  const std::uint64_t seed = GENERATE(range(70, 73));
+  const double tiny = GENERATE(0.0, 1.0);
+  RandomSurfels options = smooth_surfels();
+  options.tiny = tiny;
+  const Case c = random_case(options, Map::kAll, seed);
+  const RasterGradient gradient = backward(c);
+  REQUIRE(gradient.screen.size() == 2 * c.surfels.count());
+  for (std::size_t i = 0; i < c.surfels.count(); ++i) {
+    const auto vector = [i](const std::vector<float>& values) {
+      return cast<double>(Vec3f{values[3 * i], values[3 * i + 1], values[3 * i + 2]});
+    };
+    // A pixel's shift at fixed depth z moves the centre by z / f metres in the camera plane.
+    const double z = c.camera.to_cam(vector(c.surfels.means)).z;
+    const Vec3d in_cam = c.camera.rotation_cam_from_world * vector(gradient.means);
+    const double x = in_cam.x * z / c.camera.fx * 0.5 * c.camera.width;
+    const double y = in_cam.y * z / c.camera.fy * 0.5 * c.camera.height;
+    const double margin = kTolerance * std::hypot(x, y);
+    CHECK(static_cast<double>(gradient.screen[2 * i]) == Approx(x).margin(margin));
+    CHECK(static_cast<double>(gradient.screen[2 * i + 1]) == Approx(y).margin(margin));
+  }
+}
+
+TEST_CASE("Without output gradients every gradient is zero and has its input's shape") {
+  Case c = random_case(smooth_surfels(), Map::kAll, 1);
+  c.dL_doutput = {};
+  const RasterGradient gradient = backward(c);
+  CHECK(gradient.means == std::vector<float>(c.surfels.means.size(), 0.0f));
+  CHECK(gradient.scales == std::vector<float>(c.surfels.scales.size(), 0.0f));
+  CHECK(gradient.rotations == std::vector<float>(c.surfels.rotations.size(), 0.0f));
+  CHECK(gradient.opacities == std::vector<float>(c.surfels.opacities.size(), 0.0f));
+  CHECK(gradient.features == std::vector<float>(c.surfels.features.size(), 0.0f));
+  CHECK(gradient.screen == std::vector<float>(2 * c.surfels.count(), 0.0f));
+}
