@@ -61,19 +61,19 @@ inline RenderErrors pixel_errors(
   return errors;
 }
 
-inline void add_pixel(RenderErrors& total, const RenderErrors& pixel, bool clean) {
-  ++(clean ? total.clean : total.near_cutoff);
-  if (!clean) {
-    total.flipped += pixel.largest() > kCutoffGuard ? 1 : 0;
-    return;
-  }
-  const auto keep_max = [](double& a, double b) { a = std::max(a, b); };
-  keep_max(total.features, pixel.features);
-  keep_max(total.alpha, pixel.alpha);
-  keep_max(total.depth_sum, pixel.depth_sum);
-  keep_max(total.depth_median, pixel.depth_median);
-  keep_max(total.normal, pixel.normal);
-  keep_max(total.distortion, pixel.distortion);
+// Adds counts and keeps the larger differences.
+inline void add_errors(RenderErrors& total, const RenderErrors& other) {
+  for (const auto member :
+       {&RenderErrors::features,
+        &RenderErrors::alpha,
+        &RenderErrors::depth_sum,
+        &RenderErrors::depth_median,
+        &RenderErrors::normal,
+        &RenderErrors::distortion})
+    total.*member = std::max(total.*member, other.*member);
+  total.clean += other.clean;
+  total.near_cutoff += other.near_cutoff;
+  total.flipped += other.flipped;
 }
 
 // Every `stride`-th pixel in reading order.
@@ -84,7 +84,14 @@ inline RenderErrors compare_render(
   for (int i = 0; i < size.width * size.height; i += stride) {
     const int x = i % size.width, y = i / size.width;
     const ReferencePixel expected = reference.pixel(x, y);
-    add_pixel(total, pixel_errors(output, expected, x, y), is_clean(expected.cutoffs));
+    const RenderErrors errors = pixel_errors(output, expected, x, y);
+    if (is_clean(expected.cutoffs)) {
+      add_errors(total, errors);
+      ++total.clean;
+    } else {
+      ++total.near_cutoff;
+      total.flipped += errors.largest() > kCutoffGuard ? 1 : 0;
+    }
   }
   return total;
 }
