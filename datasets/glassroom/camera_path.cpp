@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kLaps = 2;
-constexpr int kAngles = 360;       // samples of the clearance profile
-constexpr int kSmoothing = 22;     // samples to each side
-constexpr int kPosesPerView = 6;   // candidates of which the views are chosen
+constexpr int kAngles = 360;      // samples of the clearance profile
+constexpr int kSmoothing = 22;    // samples to each side
+constexpr int kPosesPerView = 6;  // candidates of which the views are chosen
 
 // Free distance from the container's axis for each angle, at the heights that cameras take.
 std::vector<double> free_radius(
@@ -26,10 +26,15 @@ std::vector<double> free_radius(
   for (int a = 0; a < kAngles; ++a) {
     const double angle = 2 * kPi * a / kAngles;
     const Vec3f direction = cast<float>(Vec3d{std::cos(angle), std::sin(angle), 0});
-    for (const double height : {0.9, options.low_height, 0.5 * (options.low_height + options.high_height), options.high_height}) {
+    for (const double height :
+         {0.9,
+          options.low_height,
+          0.5 * (options.low_height + options.high_height),
+          options.high_height}) {
       // From the smallest radius outwards: what stands nearer is the container itself.
       const Vec3f start = cast<float>(
-          center + Vec3d{options.min_radius * std::cos(angle), options.min_radius * std::sin(angle), height}
+          center +
+          Vec3d{options.min_radius * std::cos(angle), options.min_radius * std::sin(angle), height}
       );
       const auto hit = tracer.first_hit(start, direction, true);
       if (hit.hit) {
@@ -48,16 +53,21 @@ std::vector<double> smooth_below(const std::vector<double>& values) {
     std::vector<double> out(in.size());
     for (int i = 0; i < n; ++i) {
       double folded = start;
-      for (int k = -half; k <= half; ++k) folded = fold(folded, in[static_cast<std::size_t>((i + k + n) % n)]);
+      for (int k = -half; k <= half; ++k)
+        folded = fold(folded, in[static_cast<std::size_t>((i + k + n) % n)]);
       out[static_cast<std::size_t>(i)] = folded;
     }
     return out;
   };
   const auto low = window(
-      values, kSmoothing, [](double a, double b) { return std::min(a, b); },
+      values,
+      kSmoothing,
+      [](double a, double b) { return std::min(a, b); },
       std::numeric_limits<double>::infinity()
   );
-  std::vector<double> mean = window(low, kSmoothing, [](double a, double b) { return a + b; }, 0.0);
+  std::vector<double> mean = window(
+      low, kSmoothing, [](double a, double b) { return a + b; }, 0.0
+  );
   for (double& value : mean) value /= 2 * kSmoothing + 1;
   return mean;
 }
@@ -72,7 +82,9 @@ double interpolated(const std::vector<double>& periodic, double turns) {
 // The curve over s in [0, 1): both laps.
 class Path {
  public:
-  Path(const PathTracer& tracer, const Bounds& container, const CameraPathOptions& options, Rng& rng)
+  Path(
+      const PathTracer& tracer, const Bounds& container, const CameraPathOptions& options, Rng& rng
+  )
       : options_(options),
         center_(cast<double>(container.center())),
         start_(static_cast<double>(rng.uniform())),
@@ -88,9 +100,9 @@ class Path {
     const double r = std::max(options_.min_radius, breath * interpolated(radius_, turns));
     const Vec3d eye{center_.x + r * std::cos(angle), center_.y + r * std::sin(angle), z};
     const Vec3d target = center_ + Vec3d{
-        0.12 * std::cos(2 * angle + sway_), 0.12 * std::sin(3 * angle + sway_),
-        0.16 + 0.06 * std::sin(2 * kPi * 2 * s + sway_)
-    };
+                                       0.12 * std::cos(2 * angle + sway_),
+                                       0.12 * std::sin(3 * angle + sway_),
+                                       0.16 + 0.06 * std::sin(2 * kPi * 2 * s + sway_)};
     return look_at(eye, target, {0, 0, 1}, options_.size, options_.fov_x_deg);
   }
 
@@ -102,7 +114,10 @@ class Path {
 };
 
 bool usable(
-    const PathTracer& tracer, const Bounds& room, const Bounds& container, const CameraPathOptions& options,
+    const PathTracer& tracer,
+    const Bounds& room,
+    const Bounds& container,
+    const CameraPathOptions& options,
     const Camera& camera
 ) {
   const Vec3d eye = camera.center();
@@ -127,15 +142,19 @@ double nearest_surface(const PathTracer& tracer, Vec3d point) {
   return nearest;
 }
 
-double container_visibility(const PathTracer& tracer, const Bounds& container, const Camera& camera) {
+double container_visibility(
+    const PathTracer& tracer, const Bounds& container, const Camera& camera
+) {
   constexpr int kGrid = 4;
   const Vec3f eye = cast<float>(camera.center());
   int seen = 0;
   for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
     const auto along = [&](int k) { return (static_cast<float>(k) + 0.5f) / kGrid; };
     const Vec3f size = container.size();
-    const Vec3f point = container.low + Vec3f{size.x * along(i % kGrid), size.y * along(i / kGrid % kGrid),
-                                              size.z * along(i / kGrid / kGrid)};
+    const Vec3f point = container.low + Vec3f{
+                                            size.x * along(i % kGrid),
+                                            size.y * along(i / kGrid % kGrid),
+                                            size.z * along(i / kGrid / kGrid)};
     const Vec3d in_cam = camera.to_cam(cast<double>(point));
     if (in_cam.z <= 0) continue;
     const Vec2d pixel = camera.project(in_cam);
@@ -162,7 +181,8 @@ std::vector<Camera> camera_path(
     if (usable(tracer, room, container, options, camera)) good.push_back(camera);
   }
   GLINT_CHECK(
-      4 * static_cast<int>(good.size()) >= candidates && static_cast<int>(good.size()) >= options.views,
+      4 * static_cast<int>(good.size()) >= candidates &&
+          static_cast<int>(good.size()) >= options.views,
       kEnvironment,
       "camera path: only {} of {} poses see the container; try another seed",
       good.size(),
@@ -170,7 +190,9 @@ std::vector<Camera> camera_path(
   );
   std::vector<Camera> cameras;
   for (int i = 0; i < options.views; ++i)
-    cameras.push_back(good[static_cast<std::size_t>(i) * good.size() / static_cast<std::size_t>(options.views)]);
+    cameras.push_back(
+        good[static_cast<std::size_t>(i) * good.size() / static_cast<std::size_t>(options.views)]
+    );
   return cameras;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The camera path: a continuous closed curve of two laps round the container, one lower, one higher,
-// that always looks at it. Its radius keeps clear of walls and furniture; poses too close to something
-// or whose view of the container is blocked are dropped, and the views are spread evenly over the rest.
+// The camera path: a continuous closed curve of two laps round the container, one lower, one
+// higher, that always looks at it. Its radius keeps clear of walls and furniture; poses too close
+// to something or whose view of the container is blocked are dropped, and the views are spread
+// evenly over the rest.
 #pragma once
 
 #include <vector>
@@ -34,7 +35,9 @@ std::vector<Camera> camera_path(
 
 // Share of a grid of points in the container that the camera sees: inside the image and not hidden
 // by anything opaque outside the container.
-double container_visibility(const PathTracer& tracer, const Bounds& container, const Camera& camera);
+double container_visibility(
+    const PathTracer& tracer, const Bounds& container, const Camera& camera
+);
 // Distance from a point to the nearest surface over 26 directions.
 double nearest_surface(const PathTracer& tracer, Vec3d point);
 

@@ -82,7 +82,9 @@ ContainerObject ring(float size) {
 
 ContainerObject drum(float size) {
   ContainerObject object{.name = "drum"};
-  add_convex(object, cylinder_mesh(0.34f * size, 0.7f * size, 40), translated({0, 0, -0.35f * size}));
+  add_convex(
+      object, cylinder_mesh(0.34f * size, 0.7f * size, 40), translated({0, 0, -0.35f * size})
+  );
   return object;
 }
 
@@ -107,11 +109,15 @@ ContainerObject teapot(float size) {
     const float s = static_cast<float>(i) / 10;
     profile.push_back({r * (0.55f + 0.45f * std::sin(kPi * (0.12f + 0.72f * s))), s * h});
   }
-  profile.insert(profile.end(), {{0.5f * r, 1.08f * h}, {0.12f * r, 1.14f * h}, {0.16f * r, 1.28f * h}, {0, 1.3f * h}});
+  profile.insert(
+      profile.end(),
+      {{0.5f * r, 1.08f * h}, {0.12f * r, 1.14f * h}, {0.16f * r, 1.28f * h}, {0, 1.3f * h}}
+  );
   add_lathe(object, profile, shift);
   const std::array<Vec3f, 3> spout{
-      Vec3f{0.75f * r, 0, 0.35f * h + shift}, {1.25f * r, 0, 0.6f * h + shift}, {1.5f * r, 0, 0.95f * h + shift}
-  };
+      Vec3f{0.75f * r, 0, 0.35f * h + shift},
+      {1.25f * r, 0, 0.6f * h + shift},
+      {1.5f * r, 0, 0.95f * h + shift}};
   add_convex(object, tube_mesh(spout, std::array<float, 3>{0.2f * r, 0.14f * r, 0.09f * r}, 16));
   add_ring(object, 0.34f * r, 0.08f * r, rotated_x90({-1.1f * r, 0, 0.55f * h + shift}));
   return object;
@@ -121,7 +127,9 @@ ContainerObject dumbbell(float size) {
   ContainerObject object{.name = "dumbbell"};
   add_convex(object, sphere_mesh(0.25f * size, 28), translated({0, 0, -0.3f * size}));
   add_convex(object, sphere_mesh(0.2f * size, 28), translated({0, 0, 0.3f * size}));
-  add_convex(object, cylinder_mesh(0.08f * size, 0.6f * size, 20), translated({0, 0, -0.3f * size}));
+  add_convex(
+      object, cylinder_mesh(0.08f * size, 0.6f * size, 20), translated({0, 0, -0.3f * size})
+  );
   return object;
 }
 
@@ -130,13 +138,17 @@ constexpr std::array<Maker, 8> kMakers{teapot, ball, cone, ring, vase, block, dr
 
 Material object_material(TraceScene& scene, const std::string& name, std::size_t index, Rng& rng) {
   constexpr std::array<std::uint32_t, 8> kColors{
-      0xD6452F, 0x2F6FB5, 0xE3B02F, 0x3C9A5F, 0x8E4FA8, 0xE07FA0, 0x2FA8A0, 0xE8E0D0
-  };
+      0xD6452F, 0x2F6FB5, 0xE3B02F, 0x3C9A5F, 0x8E4FA8, 0xE07FA0, 0x2FA8A0, 0xE8E0D0};
   constexpr std::array kKinds{
-      PatternKind::kBlocks, PatternKind::kPlain, PatternKind::kMarble, PatternKind::kTiles, PatternKind::kWaves
-  };
+      PatternKind::kBlocks,
+      PatternKind::kPlain,
+      PatternKind::kMarble,
+      PatternKind::kTiles,
+      PatternKind::kWaves};
   const std::size_t first = rng.below(kColors.size());
-  const auto color = [&](std::size_t k) { return srgb_hex(kColors[(first + k + index) % kColors.size()]); };
+  const auto color = [&](std::size_t k) {
+    return srgb_hex(kColors[(first + k + index) % kColors.size()]);
+  };
   Material material{.name = name, .roughness = rng.uniform(0.25f, 0.5f)};
   if (index == 3) {  // one thing of metal
     material.kind = MaterialKind::kRoughConductor;
@@ -149,8 +161,7 @@ Material object_material(TraceScene& scene, const std::string& name, std::size_t
   const PatternSpec spec{
       .kind = kKinds[(index + rng.below(2)) % kKinds.size()],
       .colors = {color(0), color(3), color(5)},
-      .seed = rng.next_u32()
-  };
+      .seed = rng.next_u32()};
   material.texture = add_texture(scene, make_pattern(spec, 256));
   return material;
 }
@@ -160,8 +171,9 @@ Material object_material(TraceScene& scene, const std::string& name, std::size_t
 ContainerShape random_container(Rng& rng) {
   ContainerShape shape;
   shape.size = {
-      0.6f * rng.uniform(1.9f, 2.3f), 0.4f * rng.uniform(1.9f, 2.4f), 0.6f * rng.uniform(1.7f, 2.1f)
-  };
+      0.6f * rng.uniform(1.9f, 2.3f),
+      0.4f * rng.uniform(1.9f, 2.4f),
+      0.6f * rng.uniform(1.7f, 2.1f)};
   return shape;
 }
 
@@ -170,7 +182,10 @@ std::array<Pane, 6> container_panes(const ContainerShape& shape) {
   std::array<Pane, 6> panes{};
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
-      Pane pane{.center = {0, 0, half.z}, .half_size = half - Vec3f{shape.beam, shape.beam, shape.beam}, .axis = axis};
+      Pane pane{
+          .center = {0, 0, half.z},
+          .half_size = half - Vec3f{shape.beam, shape.beam, shape.beam},
+          .axis = axis};
       const float offset = half[axis] - 0.5f * shape.beam;
       pane.center[axis] += side == 0 ? -offset : offset;
       pane.half_size[axis] = 0.5f * shape.pane_thickness;
@@ -234,10 +249,14 @@ void add_container(TraceScene& scene, const ContainerShape& shape, const Pose& p
   );
   const int black = add_material(
       scene,
-      {.name = "frame", .kind = MaterialKind::kRoughPlastic, .albedo = {0.008f, 0.008f, 0.008f}, .roughness = kFrameRoughness}
+      {.name = "frame",
+       .kind = MaterialKind::kRoughPlastic,
+       .albedo = {0.008f, 0.008f, 0.008f},
+       .roughness = kFrameRoughness}
   );
   TraceMesh frame;
-  for (const Bounds& beam : container_beams(shape)) append(frame, box_mesh(beam.low, beam.high), pose);
+  for (const Bounds& beam : container_beams(shape))
+    append(frame, box_mesh(beam.low, beam.high), pose);
   add_mesh(scene, std::move(frame), "frame", black);
   for (const Pane& pane : container_panes(shape)) {
     Vec3f u{}, v{};
@@ -250,7 +269,10 @@ void add_container(TraceScene& scene, const ContainerShape& shape, const Pose& p
 }
 
 void add_objects(
-    TraceScene& scene, std::vector<ContainerObject> objects, const std::vector<Pose>& poses, Rng& rng
+    TraceScene& scene,
+    std::vector<ContainerObject> objects,
+    const std::vector<Pose>& poses,
+    Rng& rng
 ) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     ContainerObject& object = objects[i];

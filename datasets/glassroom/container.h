@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The glass container: six thin panes in a black frame of twelve beams, and the opaque things in it.
-// Local frame: origin at the centre of the box's underside, z up.
+// The glass container: six thin panes in a black frame of twelve beams, and the opaque things in
+// it. Local frame: origin at the centre of the box's underside, z up.
 #pragma once
 
 #include <array>
@@ -44,7 +44,10 @@ std::vector<ContainerObject> random_objects(const ContainerShape& shape, int cou
 void add_container(TraceScene& scene, const ContainerShape& shape, const Pose& pose);
 // Adds the objects, each with a finish of its own.
 void add_objects(
-    TraceScene& scene, std::vector<ContainerObject> objects, const std::vector<Pose>& poses, Rng& rng
+    TraceScene& scene,
+    std::vector<ContainerObject> objects,
+    const std::vector<Pose>& poses,
+    Rng& rng
 );
 
 }  // namespace glint

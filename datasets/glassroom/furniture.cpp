@@ -39,12 +39,14 @@ Furniture make_seat(const Palette& p, Rng& rng, float width, int cushions) {
   const float seat = (width - 2 * arm) / static_cast<float>(cushions);
   for (int i = 0; i < cushions; ++i) {
     const float left = -x + arm + static_cast<float>(i) * seat;
-    put(f, cushion_mesh({left + 0.01f, 0.24f, 0.28f}, {left + seat - 0.01f, depth - 0.02f, 0.45f}, 0.04f),
+    put(f,
+        cushion_mesh(
+            {left + 0.01f, 0.24f, 0.28f}, {left + seat - 0.01f, depth - 0.02f, 0.45f}, 0.04f
+        ),
         p.fabric);
     const Pose lean{
         .rotation = {{{1, 0, 0}, {0, 0.966f, 0.259f}, {0, -0.259f, 0.966f}}},
-        .translation = {left + 0.5f * seat, 0.28f, 0.47f}
-    };
+        .translation = {left + 0.5f * seat, 0.28f, 0.47f}};
     put(f, cushion_mesh({-0.22f, 0, 0}, {0.22f, 0.13f, 0.38f}, 0.05f), p.cushion, lean);
   }
   return f;
@@ -120,11 +122,21 @@ Furniture make_sideboard(const Palette& p, Rng& rng) {
   const float door = width / kDoors;
   for (int i = 0; i < kDoors; ++i) {
     const float left = -x + door * static_cast<float>(i);
-    put_box(f, {left + 0.015f, depth - 0.02f, leg + 0.02f}, {left + door - 0.015f, depth, height - 0.05f}, body);
-    put(f, sphere_mesh(0.016f, 12), p.brass,
+    put_box(
+        f,
+        {left + 0.015f, depth - 0.02f, leg + 0.02f},
+        {left + door - 0.015f, depth, height - 0.05f},
+        body
+    );
+    put(f,
+        sphere_mesh(0.016f, 12),
+        p.brass,
         translated({left + door - 0.07f, depth + 0.012f, 0.5f * (leg + height)}));
   }
-  put(f, vase_mesh(rng.uniform(0.25f, 0.38f), rng), p.ceramic, translated({-0.3f * width, 0.2f, height}));
+  put(f,
+      vase_mesh(rng.uniform(0.25f, 0.38f), rng),
+      p.ceramic,
+      translated({-0.3f * width, 0.2f, height}));
   put_books(f, 0.05f, 0.35f * width, 0.1f, height, p, rng);
   return f;
 }
@@ -141,7 +153,10 @@ Furniture make_wardrobe(const Palette& p, Rng& rng) {
     put_box(f, {a, depth - 0.02f, 0.1f}, {b, depth, height - 0.08f}, p.wood);
     for (const float z : {0.2f, 1.1f})
       put_box(f, {a + 0.07f, depth, z}, {b - 0.07f, depth + 0.012f, z + 0.75f}, p.paint);
-    put(f, cylinder_mesh(0.01f, 0.16f, 12), p.brass, translated({0.05f * side, depth + 0.03f, 0.95f}));
+    put(f,
+        cylinder_mesh(0.01f, 0.16f, 12),
+        p.brass,
+        translated({0.05f * side, depth + 0.03f, 0.95f}));
   }
   return f;
 }
@@ -158,7 +173,9 @@ Furniture make_desk(const Palette& p, Rng& rng) {
   put_legs(f, {cx - 0.21f, near}, {cx + 0.21f, far}, seat, 0.035f, p.dark_wood);
   put(f, cushion_mesh({cx - 0.22f, near, seat}, {cx + 0.22f, far, seat + 0.06f}, 0.02f), p.cushion);
   for (const float side : {-0.21f, 0.175f})
-    put_box(f, {cx + side, far - 0.035f, seat + 0.06f}, {cx + side + 0.035f, far, 0.92f}, p.dark_wood);
+    put_box(
+        f, {cx + side, far - 0.035f, seat + 0.06f}, {cx + side + 0.035f, far, 0.92f}, p.dark_wood
+    );
   for (const float z : {0.62f, 0.72f, 0.82f})
     put_box(f, {cx - 0.175f, far - 0.03f, z}, {cx + 0.175f, far - 0.01f, z + 0.06f}, p.dark_wood);
   // Desk lamp and a stack of books.
@@ -180,7 +197,9 @@ Furniture make_media_unit(const Palette& p, Rng& rng) {
   put_books(f, -x + 0.06f, -0.4f * x, 0.1f, 0.1f, p, rng);
   put_box(f, {0.4f * x, 0.02f, 0.1f}, {0.9f * x, depth - 0.03f, 0.32f}, p.paint);
   const float screen = 0.38f * width;
-  put_box(f, {-screen, 0.16f, height + 0.06f}, {screen, 0.2f, height + 0.06f + 1.1f * screen}, p.black);
+  put_box(
+      f, {-screen, 0.16f, height + 0.06f}, {screen, 0.2f, height + 0.06f + 1.1f * screen}, p.black
+  );
   put_box(f, {-0.2f, 0.1f, height}, {0.2f, 0.28f, height + 0.015f}, p.metal);
   put_box(f, {-0.04f, 0.15f, height + 0.015f}, {0.04f, 0.19f, height + 0.1f}, p.metal);
   return f;
@@ -201,10 +220,13 @@ TraceMesh leaf_mesh(float length, float width, float rise) {
     };
     const Vec3f along = spine[i + 1] - spine[i];
     for (const float side : {-1.0f, 1.0f}) {
-      const Vec3f rim0{0, side * half(i), 0.3f * half(i)}, rim1{0, side * half(i + 1), 0.3f * half(i + 1)};
+      const Vec3f rim0{0, side * half(i), 0.3f * half(i)},
+          rim1{0, side * half(i + 1), 0.3f * half(i + 1)};
       const Vec3f across = 0.5f * (rim0 + rim1);
-      if (side > 0) append(leaf, quad_mesh(spine[i], along, across));
-      else append(leaf, quad_mesh(spine[i], across, along));
+      if (side > 0)
+        append(leaf, quad_mesh(spine[i], along, across));
+      else
+        append(leaf, quad_mesh(spine[i], across, along));
     }
   }
   return leaf;
@@ -215,20 +237,29 @@ Furniture make_plant(const Palette& p, Rng& rng) {
   const Vec3f center{0, 0.32f, 0};
   const float pot = rng.uniform(0.3f, 0.4f);
   put(f,
-      lathe_mesh(std::array<Vec2f, 5>{Vec2f{0, 0}, {0.13f, 0}, {0.18f, pot}, {0.16f, pot}, {0, pot - 0.03f}}, 28),
-      p.pot, translated(center));
+      lathe_mesh(
+          std::array<Vec2f, 5>{
+              Vec2f{0, 0}, {0.13f, 0}, {0.18f, pot}, {0.16f, pot}, {0, pot - 0.03f}},
+          28
+      ),
+      p.pot,
+      translated(center));
   TraceMesh leaves, stems;
   const int count = 15 + static_cast<int>(rng.below(8));
   for (int i = 0; i < count; ++i) {
     const float yaw = 2.4f * static_cast<float>(i), height = rng.uniform(0.1f, 0.85f);
     const float length = rng.uniform(0.2f, 0.28f), reach = 0.02f + 0.02f * height;
     const Pose pose = yawed(yaw, center + Vec3f{0, 0, pot + height});
-    append(leaves, leaf_mesh(length, rng.uniform(0.08f, 0.13f), rng.uniform(0.4f, 1.0f)),
-           compose(pose, translated({reach, 0, 0})));
+    append(
+        leaves,
+        leaf_mesh(length, rng.uniform(0.08f, 0.13f), rng.uniform(0.4f, 1.0f)),
+        compose(pose, translated({reach, 0, 0}))
+    );
     const std::array<Vec3f, 3> path{
-        Vec3f{0, 0, pot - 0.05f}, {0.3f * reach, 0, pot + 0.5f * height}, {reach, 0, pot + height}
-    };
-    append(stems, tube_mesh(path, std::array<float, 3>{0.009f, 0.007f, 0.005f}, 6), yawed(yaw, center));
+        Vec3f{0, 0, pot - 0.05f}, {0.3f * reach, 0, pot + 0.5f * height}, {reach, 0, pot + height}};
+    append(
+        stems, tube_mesh(path, std::array<float, 3>{0.009f, 0.007f, 0.005f}, 6), yawed(yaw, center)
+    );
   }
   put(f, std::move(leaves), p.leaf);
   put(f, std::move(stems), p.wood);
@@ -241,7 +272,9 @@ Furniture make_floor_lamp(const Palette& p, Rng& rng) {
   const float height = rng.uniform(1.25f, 1.45f);
   put(f, cylinder_mesh(0.14f, 0.025f, 28), p.metal, translated(center));
   put(f, cylinder_mesh(0.014f, height, 12), p.metal, translated(center + Vec3f{0, 0, 0.025f}));
-  put(f, lathe_mesh(std::array<Vec2f, 2>{Vec2f{0.19f, 0}, {0.13f, 0.26f}}, 28), p.shade,
+  put(f,
+      lathe_mesh(std::array<Vec2f, 2>{Vec2f{0.19f, 0}, {0.13f, 0.26f}}, 28),
+      p.shade,
       translated(center + Vec3f{0, 0, height - 0.1f}));
   return f;
 }
@@ -250,7 +283,10 @@ Furniture make_stool(const Palette& p, Rng& rng) {
   Furniture f;
   const float half = rng.uniform(0.18f, 0.22f), height = rng.uniform(0.42f, 0.5f);
   put_legs(f, {-half, 0.03f}, {half, 0.03f + 2 * half}, height, 0.04f, p.dark_wood);
-  put(f, cushion_mesh({-half - 0.02f, 0.01f, height}, {half + 0.02f, 0.05f + 2 * half, height + 0.06f}, 0.02f),
+  put(f,
+      cushion_mesh(
+          {-half - 0.02f, 0.01f, height}, {half + 0.02f, 0.05f + 2 * half, height + 0.06f}, 0.02f
+      ),
       p.cushion);
   return f;
 }
@@ -259,24 +295,41 @@ Furniture make_stool(const Palette& p, Rng& rng) {
 
 std::string_view furniture_name(FurnitureKind kind) {
   constexpr std::array<std::string_view, 10> kNames{
-      "sofa", "armchair", "bookshelf", "sideboard", "wardrobe",
-      "desk", "media_unit", "plant", "floor_lamp", "stool"
-  };
+      "sofa",
+      "armchair",
+      "bookshelf",
+      "sideboard",
+      "wardrobe",
+      "desk",
+      "media_unit",
+      "plant",
+      "floor_lamp",
+      "stool"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
 Furniture make_furniture(FurnitureKind kind, const Palette& palette, Rng& rng) {
   switch (kind) {
-    case FurnitureKind::kSofa: return make_seat(palette, rng, rng.uniform(1.75f, 2.05f), 3);
-    case FurnitureKind::kArmchair: return make_seat(palette, rng, rng.uniform(0.88f, 0.96f), 1);
-    case FurnitureKind::kBookshelf: return make_bookshelf(palette, rng);
-    case FurnitureKind::kSideboard: return make_sideboard(palette, rng);
-    case FurnitureKind::kWardrobe: return make_wardrobe(palette, rng);
-    case FurnitureKind::kDesk: return make_desk(palette, rng);
-    case FurnitureKind::kMediaUnit: return make_media_unit(palette, rng);
-    case FurnitureKind::kPlant: return make_plant(palette, rng);
-    case FurnitureKind::kFloorLamp: return make_floor_lamp(palette, rng);
-    case FurnitureKind::kStool: break;
+    case FurnitureKind::kSofa:
+      return make_seat(palette, rng, rng.uniform(1.75f, 2.05f), 3);
+    case FurnitureKind::kArmchair:
+      return make_seat(palette, rng, rng.uniform(0.88f, 0.96f), 1);
+    case FurnitureKind::kBookshelf:
+      return make_bookshelf(palette, rng);
+    case FurnitureKind::kSideboard:
+      return make_sideboard(palette, rng);
+    case FurnitureKind::kWardrobe:
+      return make_wardrobe(palette, rng);
+    case FurnitureKind::kDesk:
+      return make_desk(palette, rng);
+    case FurnitureKind::kMediaUnit:
+      return make_media_unit(palette, rng);
+    case FurnitureKind::kPlant:
+      return make_plant(palette, rng);
+    case FurnitureKind::kFloorLamp:
+      return make_floor_lamp(palette, rng);
+    case FurnitureKind::kStool:
+      break;
   }
   return make_stool(palette, rng);
 }

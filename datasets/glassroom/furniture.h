@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Procedural furniture. Local frame: the back stands in the plane y = 0 (the wall), x runs along the
-// wall and is centred, y points into the room, the floor is z = 0. Sizes vary with the random numbers.
+// Procedural furniture. Local frame: the back stands in the plane y = 0 (the wall), x runs along
+// the wall and is centred, y points into the room, the floor is z = 0. Sizes vary with the random
+// numbers.
 #pragma once
 
 #include <string_view>
@@ -18,7 +19,8 @@ struct Finish {
 };
 
 struct Palette {
-  Finish wood, dark_wood, paint, fabric, cushion, metal, brass, black, ceramic, leaf, pot, books, shade;
+  Finish wood, dark_wood, paint, fabric, cushion, metal, brass, black, ceramic, leaf, pot, books,
+      shade;
 };
 
 struct FurniturePart {

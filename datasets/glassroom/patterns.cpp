@@ -50,7 +50,8 @@ Vec3f planks(const PatternSpec& s, float u, float v) {
   const float tone = cell_value(row, 1 + half, s.seed);
   const float grain = wood_grain(shifted, fract(v + tone), s.seed);
   const float board = inside_cell(v * kRows, 0.035f) * inside_cell(2 * shifted, 0.006f);
-  const Vec3f wood = mix(s.colors[0], s.colors[1], std::clamp(0.65f * tone + 0.5f * grain, 0.0f, 1.0f));
+  const Vec3f wood =
+      mix(s.colors[0], s.colors[1], std::clamp(0.65f * tone + 0.5f * grain, 0.0f, 1.0f));
   return mix(s.colors[2], wood, board);
 }
 
@@ -61,10 +62,12 @@ Vec3f parquet(const PatternSpec& s, float u, float v) {
   const float across = fract((along_u ? v : u) * kBlocks) * kStrips;
   const int strip = static_cast<int>(across);
   const float tone = cell_value(bx * kStrips + strip, by, s.seed);
-  const float grain = wood_grain(fract((along_u ? u : v) + tone), fract((along_u ? v : u) + tone), s.seed);
+  const float grain =
+      wood_grain(fract((along_u ? u : v) + tone), fract((along_u ? v : u) + tone), s.seed);
   const float joint = inside_cell(across, 0.07f) * inside_cell(u * kBlocks, 0.015f) *
                       inside_cell(v * kBlocks, 0.015f);
-  const Vec3f wood = mix(s.colors[0], s.colors[1], std::clamp(0.7f * tone + 0.4f * grain, 0.0f, 1.0f));
+  const Vec3f wood =
+      mix(s.colors[0], s.colors[1], std::clamp(0.7f * tone + 0.4f * grain, 0.0f, 1.0f));
   return mix(s.colors[2], wood, joint);
 }
 
@@ -128,7 +131,8 @@ Vec3f wood(const PatternSpec& s, float u, float v) {
 
 Vec3f fabric(const PatternSpec& s, float u, float v) {
   constexpr int kThreads = 96;
-  const float weave = 0.5f + 0.25f * (std::sin(2 * kPi * kThreads * u) + std::sin(2 * kPi * kThreads * v));
+  const float weave =
+      0.5f + 0.25f * (std::sin(2 * kPi * kThreads * u) + std::sin(2 * kPi * kThreads * v));
   const float check = (fract(4 * u) < 0.2f ? 0.5f : 0.0f) + (fract(4 * v) < 0.2f ? 0.5f : 0.0f);
   const float worn = fractal_noise(u, v, 4, 4, s.seed);
   return (0.75f + 0.2f * weave + 0.25f * worn) * mix(s.colors[0], s.colors[1], check);
@@ -154,10 +158,12 @@ Vec3f rug(const PatternSpec& s, float u, float v) {
 Vec3f book_spines(const PatternSpec& s, float u, float v) {
   const int book = static_cast<int>(u * 16);
   const auto tone = [&](int k) { return cell_value(book, k, s.seed); };
-  const Vec3f base = mix(s.colors[static_cast<std::size_t>(3 * tone(0))], Vec3f{1, 1, 1}, 0.25f * tone(1));
+  const Vec3f base =
+      mix(s.colors[static_cast<std::size_t>(3 * tone(0))], Vec3f{1, 1, 1}, 0.25f * tone(1));
   const Vec3f binding = (0.35f + 0.75f * tone(2)) * base;
   const bool band = std::abs(v - 0.12f) < 0.02f || std::abs(v - 0.88f) < 0.02f;
-  const bool label = v > 0.55f && v < 0.55f + 0.2f * tone(3) && std::abs(fract(16 * u) - 0.5f) < 0.32f;
+  const bool label =
+      v > 0.55f && v < 0.55f + 0.2f * tone(3) && std::abs(fract(16 * u) - 0.5f) < 0.32f;
   return band || label ? mix(binding, Vec3f{0.75f, 0.62f, 0.35f}, 0.8f) : binding;
 }
 
@@ -169,7 +175,8 @@ Vec3f landscape(const PatternSpec& s, float u, float v) {
   if (v < near_hills) return (brush * (0.5f + v)) * s.colors[1];
   if (v < far_hills) return brush * mix(s.colors[1], s.colors[0], 0.6f);
   if (sun < 0.07f) return {0.95f, 0.85f, 0.55f};
-  return brush * mix(mix(s.colors[2], Vec3f{1, 1, 1}, 0.4f), s.colors[0], step_between(0.5f, 1.0f, v));
+  return brush *
+         mix(mix(s.colors[2], Vec3f{1, 1, 1}, 0.4f), s.colors[0], step_between(0.5f, 1.0f, v));
 }
 
 // Rectangles with black bars, split at seeded lines.
@@ -185,8 +192,7 @@ Vec3f circles(const PatternSpec& s, float u, float v) {
   Vec3f color = mix(s.colors[0], Vec3f{0.85f, 0.82f, 0.75f}, 0.6f);
   for (int i = 0; i < 7; ++i) {
     const float radius = 0.08f + 0.2f * cell_value(i, 0, s.seed);
-    const float distance =
-        std::hypot(u - cell_value(i, 1, s.seed), v - cell_value(i, 2, s.seed));
+    const float distance = std::hypot(u - cell_value(i, 1, s.seed), v - cell_value(i, 2, s.seed));
     const bool hollow = cell_value(i, 3, s.seed) < 0.4f && distance < 0.7f * radius;
     if (distance < radius && !hollow) color = s.colors[static_cast<std::size_t>(i % 3)];
   }
@@ -203,22 +209,38 @@ using Painter = Vec3f (*)(const PatternSpec&, float, float);
 
 Painter painter_of(PatternKind kind) {
   switch (kind) {
-    case PatternKind::kPlanks: return planks;
-    case PatternKind::kParquet: return parquet;
-    case PatternKind::kTiles: return tiles;
-    case PatternKind::kBricks: return bricks;
-    case PatternKind::kWallpaper: return wallpaper;
-    case PatternKind::kCarpet: return carpet;
-    case PatternKind::kMarble: return marble;
-    case PatternKind::kWood: return wood;
-    case PatternKind::kFabric: return fabric;
-    case PatternKind::kRug: return rug;
-    case PatternKind::kBookSpines: return book_spines;
-    case PatternKind::kLandscape: return landscape;
-    case PatternKind::kBlocks: return blocks;
-    case PatternKind::kCircles: return circles;
-    case PatternKind::kWaves: return waves;
-    case PatternKind::kPlain: break;
+    case PatternKind::kPlanks:
+      return planks;
+    case PatternKind::kParquet:
+      return parquet;
+    case PatternKind::kTiles:
+      return tiles;
+    case PatternKind::kBricks:
+      return bricks;
+    case PatternKind::kWallpaper:
+      return wallpaper;
+    case PatternKind::kCarpet:
+      return carpet;
+    case PatternKind::kMarble:
+      return marble;
+    case PatternKind::kWood:
+      return wood;
+    case PatternKind::kFabric:
+      return fabric;
+    case PatternKind::kRug:
+      return rug;
+    case PatternKind::kBookSpines:
+      return book_spines;
+    case PatternKind::kLandscape:
+      return landscape;
+    case PatternKind::kBlocks:
+      return blocks;
+    case PatternKind::kCircles:
+      return circles;
+    case PatternKind::kWaves:
+      return waves;
+    case PatternKind::kPlain:
+      break;
   }
   return plain;
 }
@@ -263,7 +285,8 @@ Image make_pattern(const PatternSpec& spec, int size) {
   const float step = 1 / static_cast<float>(size);
   parallel_for(static_cast<std::size_t>(size), 16, [&](std::size_t row) {
     for (int x = 0; x < size; ++x) {
-      const float u = (static_cast<float>(x) + 0.5f) * step, v = (static_cast<float>(row) + 0.5f) * step;
+      const float u = (static_cast<float>(x) + 0.5f) * step,
+                  v = (static_cast<float>(row) + 0.5f) * step;
       const Vec3f color = paint(spec, u, v);
       for (int c = 0; c < 3; ++c)
         image.at(x, static_cast<int>(row), c) = std::clamp(color[c], 0.0f, 0.95f);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Procedural textures: linear RGB images over the unit square [0, 1)^2, rows along v. Surface patterns
-// repeat without a seam in both directions; pictures do not need to. Pure functions of their spec.
+// Procedural textures: linear RGB images over the unit square [0, 1)^2, rows along v. Surface
+// patterns repeat without a seam in both directions; pictures do not need to. Pure functions of
+// their spec.
 #pragma once
 
 #include <array>
@@ -13,25 +14,26 @@ namespace glint {
 
 // Noise on the torus: smooth in [0, 1], periodic with `period` lattice cells over the unit square.
 float tile_noise(float u, float v, int period, std::uint64_t seed);
-// Sum of `octaves` noises, each with twice the period and half the weight of the one before; [0, 1].
+// Sum of `octaves` noises, each with twice the period and half the weight of the one before; [0,
+// 1].
 float fractal_noise(float u, float v, int period, int octaves, std::uint64_t seed);
 // Uniform in [0, 1) from two integers: the tone of plank (x, y).
 float cell_value(int x, int y, std::uint64_t seed);
 
 enum class PatternKind {
-  kPlain,      // painted surface, faint mottling
-  kPlanks,     // floor boards along u
-  kParquet,    // basket weave of strips
-  kTiles,      // square tiles in two colours with grout
-  kBricks,     // running bond with mortar
-  kWallpaper,  // stripes and rosettes
-  kCarpet,     // tufts over a soft lattice
-  kMarble,     // veined slabs
-  kWood,       // furniture wood, grain along v
-  kFabric,     // woven cloth with a check
-  kRug,        // bordered carpet with medallions, one period is the whole rug
-  kBookSpines, // 16 columns, one binding each
-  kLandscape,  // pictures
+  kPlain,       // painted surface, faint mottling
+  kPlanks,      // floor boards along u
+  kParquet,     // basket weave of strips
+  kTiles,       // square tiles in two colours with grout
+  kBricks,      // running bond with mortar
+  kWallpaper,   // stripes and rosettes
+  kCarpet,      // tufts over a soft lattice
+  kMarble,      // veined slabs
+  kWood,        // furniture wood, grain along v
+  kFabric,      // woven cloth with a check
+  kRug,         // bordered carpet with medallions, one period is the whole rug
+  kBookSpines,  // 16 columns, one binding each
+  kLandscape,   // pictures
   kBlocks,
   kCircles,
   kWaves,

@@ -20,13 +20,14 @@ struct PlacedItem {
 };
 
 struct RoomModel {
-  Vec3f size{};                   // width, depth, height in metres
+  Vec3f size{};  // width, depth, height in metres
   TraceScene scene;
   std::vector<PlacedItem> items;  // pairwise disjoint; the rug is not among them
   Vec2f container_place{};        // where the container is dropped
   float support_height = 0;       // top of the rug that it lands on
   Bounds bounds() const {
-    return {.low = {-0.5f * size.x, -0.5f * size.y, 0}, .high = {0.5f * size.x, 0.5f * size.y, size.z}};
+    return {
+        .low = {-0.5f * size.x, -0.5f * size.y, 0}, .high = {0.5f * size.x, 0.5f * size.y, size.z}};
   }
 };
 
@@ -39,6 +40,8 @@ struct FurnitureAsset {
 using AssetSource = std::function<std::vector<FurnitureAsset>(TraceScene&)>;
 
 // Deterministic in (program, seed). `assets` may be empty.
-RoomModel build_room(const RoomProgram& program, std::uint64_t seed, const AssetSource& assets = {});
+RoomModel build_room(
+    const RoomProgram& program, std::uint64_t seed, const AssetSource& assets = {}
+);
 
 }  // namespace glint

@@ -36,14 +36,14 @@ RoomProgram living_room() {
       .ceramic = srgb_hex(0x2E7F86),
       .pot = srgb_hex(0xA8552F),
       .curtain = srgb_hex(0xB5452F),
-      .walls =
-          {WallProgram{.finish = wall, .furniture = {kFloorLamp, kStool}, .windows = 1, .pictures = 1},
-           {.finish = wall, .furniture = {kSofa, kPlant}, .pictures = 2},
-           {.finish = pattern(PatternKind::kBricks, 1.0f, 0xA2543A, 0x7C3A28, 0xB8AC9C),
-            .furniture = {kBookshelf, kSideboard},
-            .pictures = 2},
-           {.finish = wall, .furniture = {kArmchair}, .windows = 1, .doors = 1, .pictures = 1}}
-  };
+      .walls = {
+          WallProgram{
+              .finish = wall, .furniture = {kFloorLamp, kStool}, .windows = 1, .pictures = 1},
+          {.finish = wall, .furniture = {kSofa, kPlant}, .pictures = 2},
+          {.finish = pattern(PatternKind::kBricks, 1.0f, 0xA2543A, 0x7C3A28, 0xB8AC9C),
+           .furniture = {kBookshelf, kSideboard},
+           .pictures = 2},
+          {.finish = wall, .furniture = {kArmchair}, .windows = 1, .doors = 1, .pictures = 1}}};
 }
 
 RoomProgram study() {
@@ -61,15 +61,14 @@ RoomProgram study() {
       .ceramic = srgb_hex(0xC7A23A),
       .pot = srgb_hex(0x4A5A66),
       .curtain = srgb_hex(0xE6D9B8),
-      .walls =
-          {WallProgram{.finish = wall, .furniture = {kBookshelf, kBookshelf, kPlant}, .pictures = 1},
-           {.finish = wall, .furniture = {kDesk}, .windows = 1, .pictures = 2},
-           {.finish = wall, .furniture = {kArmchair, kFloorLamp}, .windows = 1, .pictures = 2},
-           {.finish = pattern(PatternKind::kWallpaper, 1.6f, 0xC9BFA2, 0xB0A27F, 0x53705C),
-            .furniture = {kSideboard, kWardrobe},
-            .doors = 1,
-            .pictures = 1}}
-  };
+      .walls = {
+          WallProgram{.finish = wall, .furniture = {kBookshelf, kBookshelf, kPlant}, .pictures = 1},
+          {.finish = wall, .furniture = {kDesk}, .windows = 1, .pictures = 2},
+          {.finish = wall, .furniture = {kArmchair, kFloorLamp}, .windows = 1, .pictures = 2},
+          {.finish = pattern(PatternKind::kWallpaper, 1.6f, 0xC9BFA2, 0xB0A27F, 0x53705C),
+           .furniture = {kSideboard, kWardrobe},
+           .doors = 1,
+           .pictures = 1}}};
 }
 
 RoomProgram loft() {
@@ -87,14 +86,13 @@ RoomProgram loft() {
       .ceramic = srgb_hex(0xE07A5F),
       .pot = srgb_hex(0xDDD6C8),
       .curtain = srgb_hex(0x5C7F92),
-      .walls =
-          {WallProgram{.finish = brick, .furniture = {kSofa, kFloorLamp}, .pictures = 3},
-           {.finish = brick, .furniture = {kPlant, kStool}, .windows = 2},
-           {.finish = pattern(PatternKind::kPlain, 2.0f, 0xD9A441, 0xC28E2E),
-            .furniture = {kMediaUnit, kPlant},
-            .pictures = 2},
-           {.finish = brick, .furniture = {kBookshelf, kDesk}, .doors = 1, .pictures = 2}}
-  };
+      .walls = {
+          WallProgram{.finish = brick, .furniture = {kSofa, kFloorLamp}, .pictures = 3},
+          {.finish = brick, .furniture = {kPlant, kStool}, .windows = 2},
+          {.finish = pattern(PatternKind::kPlain, 2.0f, 0xD9A441, 0xC28E2E),
+           .furniture = {kMediaUnit, kPlant},
+           .pictures = 2},
+          {.finish = brick, .furniture = {kBookshelf, kDesk}, .doors = 1, .pictures = 2}}};
 }
 
 RoomProgram gallery() {
@@ -112,14 +110,13 @@ RoomProgram gallery() {
       .ceramic = srgb_hex(0x3A5BA0),
       .pot = srgb_hex(0x8C6A4A),
       .curtain = srgb_hex(0x7D1D2E),
-      .walls =
-          {WallProgram{.finish = wall, .furniture = {kStool, kStool, kPlant}, .pictures = 4},
-           {.finish = wall, .furniture = {kArmchair, kArmchair}, .windows = 1, .pictures = 2},
-           {.finish = pattern(PatternKind::kPlain, 2.0f, 0x46627F, 0x38506A),
-            .furniture = {kSideboard, kPlant},
-            .pictures = 3},
-           {.finish = wall, .furniture = {kStool}, .windows = 1, .doors = 1, .pictures = 2}}
-  };
+      .walls = {
+          WallProgram{.finish = wall, .furniture = {kStool, kStool, kPlant}, .pictures = 4},
+          {.finish = wall, .furniture = {kArmchair, kArmchair}, .windows = 1, .pictures = 2},
+          {.finish = pattern(PatternKind::kPlain, 2.0f, 0x46627F, 0x38506A),
+           .furniture = {kSideboard, kPlant},
+           .pictures = 3},
+          {.finish = wall, .furniture = {kStool}, .windows = 1, .doors = 1, .pictures = 2}}};
 }
 
 RoomProgram lounge() {
@@ -137,21 +134,21 @@ RoomProgram lounge() {
       .ceramic = srgb_hex(0x7F9F5F),
       .pot = srgb_hex(0x27374D),
       .curtain = srgb_hex(0xC8963E),
-      .walls =
-          {WallProgram{.finish = paper, .furniture = {kMediaUnit, kFloorLamp}, .pictures = 3},
-           {.finish = paper, .furniture = {kSofa, kPlant}, .pictures = 2},
-           {.finish = paper, .furniture = {kArmchair}, .windows = 1, .doors = 1, .pictures = 1},
-           {.finish = pattern(PatternKind::kPlanks, 1.6f, 0x8A5F3B, 0x5F3E25, 0x24160C),
-            .furniture = {kWardrobe, kSideboard},
-            .windows = 1,
-            .pictures = 2}}
-  };
+      .walls = {
+          WallProgram{.finish = paper, .furniture = {kMediaUnit, kFloorLamp}, .pictures = 3},
+          {.finish = paper, .furniture = {kSofa, kPlant}, .pictures = 2},
+          {.finish = paper, .furniture = {kArmchair}, .windows = 1, .doors = 1, .pictures = 1},
+          {.finish = pattern(PatternKind::kPlanks, 1.6f, 0x8A5F3B, 0x5F3E25, 0x24160C),
+           .furniture = {kWardrobe, kSideboard},
+           .windows = 1,
+           .pictures = 2}}};
 }
 
 }  // namespace
 
 const std::vector<RoomProgram>& room_programs() {
-  static const std::vector<RoomProgram> programs{living_room(), study(), loft(), gallery(), lounge()};
+  static const std::vector<RoomProgram> programs{
+      living_room(), study(), loft(), gallery(), lounge()};
   return programs;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What each of the five rooms consists of: finishes and the furniture of its walls. Sizes, positions,
-// mirroring and details come from the seed.
+// What each of the five rooms consists of: finishes and the furniture of its walls. Sizes,
+// positions, mirroring and details come from the seed.
 #pragma once
 
 #include <array>

@@ -14,9 +14,10 @@ namespace glint {
 
 namespace {
 
-constexpr float kMargin = 0.001f;        // metres, of collision hulls
-constexpr float kWallThickness = 0.06f;  // panes collide as thick walls, grown outwards: no tunnelling
-constexpr float kContainerMass = 40;     // kg
+constexpr float kMargin = 0.001f;  // metres, of collision hulls
+constexpr float kWallThickness =
+    0.06f;                            // panes collide as thick walls, grown outwards: no tunnelling
+constexpr float kContainerMass = 40;  // kg
 
 btVector3 to_bullet(Vec3f v) { return {v.x, v.y, v.z}; }
 Vec3f from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -33,8 +34,7 @@ Pose from_bullet(const btTransform& transform) {
   const btMatrix3x3& m = transform.getBasis();
   return {
       .rotation = {{from_bullet(m[0]), from_bullet(m[1]), from_bullet(m[2])}},
-      .translation = from_bullet(transform.getOrigin())
-  };
+      .translation = from_bullet(transform.getOrigin())};
 }
 
 // A Bullet world with the bodies that live in it. Shapes are kept until the world is gone.
@@ -75,9 +75,7 @@ class World {
     return bodies_.back().get();
   }
 
-  void step(double seconds) {
-    dynamics_.stepSimulation(static_cast<btScalar>(seconds), 0);
-  }
+  void step(double seconds) { dynamics_.stepSimulation(static_cast<btScalar>(seconds), 0); }
 
   bool asleep() const {
     for (const auto& body : bodies_)
@@ -141,9 +139,10 @@ float bounding_radius(const ContainerObject& object) {
 Mat3f random_upright(Rng& rng) {
   const float tilt = 0.12f;
   const Vec4<double> q{
-      1, static_cast<double>(rng.uniform(-tilt, tilt)), static_cast<double>(rng.uniform(-tilt, tilt)),
-      static_cast<double>(rng.uniform(-2, 2))
-  };
+      1,
+      static_cast<double>(rng.uniform(-tilt, tilt)),
+      static_cast<double>(rng.uniform(-tilt, tilt)),
+      static_cast<double>(rng.uniform(-2, 2))};
   const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   return cast<float>(rotation_from_quaternion({q.w / norm, q.x / norm, q.y / norm, q.z / norm}));
 }
@@ -151,7 +150,11 @@ Mat3f random_upright(Rng& rng) {
 // The lowest of many random places where the object's bounding sphere touches neither the container
 // nor the spheres placed before.
 bool find_start(
-    const ContainerShape& shape, const std::vector<Vec4f>& placed, float radius, Rng& rng, Vec3f& place
+    const ContainerShape& shape,
+    const std::vector<Vec4f>& placed,
+    float radius,
+    Rng& rng,
+    Vec3f& place
 ) {
   constexpr int kTries = 4000;
   const float rim = shape.beam + radius + 0.005f;
@@ -199,9 +202,8 @@ void check_result(const ContainerShape& shape, const SettleResult& result) {
   );
   const Vec3f half = 0.5f * shape.size;
   for (const Pose& pose : result.objects) {
-    const Vec3f local = transpose_times(
-        result.container.rotation, pose.translation - result.container.translation
-    );
+    const Vec3f local =
+        transpose_times(result.container.rotation, pose.translation - result.container.translation);
     const Bounds inside{.low = {-half.x, -half.y, 0}, .high = {half.x, half.y, shape.size.z}};
     GLINT_CHECK(inside.contains(local), kEnvironment, "settle: an object left the container");
   }
@@ -218,22 +220,28 @@ SettleResult settle(
   World world;
   constexpr float kFloor = 5;
   world.add(
-      world.shape<btBoxShape>(btVector3(kFloor, kFloor, 0.5f)), 0,
-      at({0, 0, options.support_height - 0.5f}), options.floor_friction
+      world.shape<btBoxShape>(btVector3(kFloor, kFloor, 0.5f)),
+      0,
+      at({0, 0, options.support_height - 0.5f}),
+      options.floor_friction
   );
   const Pose start = yawed(
       options.yaw, {options.place.x, options.place.y, options.support_height + options.drop_height}
   );
   const Vec3f middle{0, 0, 0.5f * shape.size.z};
   btRigidBody* box = world.add(
-      container_shape(world, shape), kContainerMass, to_bullet(compose(start, translated(middle))),
+      container_shape(world, shape),
+      kContainerMass,
+      to_bullet(compose(start, translated(middle))),
       options.body_friction
   );
   std::vector<btRigidBody*> bodies;
   const std::vector<Pose> places = start_poses(shape, objects, rng);
   for (std::size_t i = 0; i < objects.size(); ++i)
     bodies.push_back(world.add(
-        object_shape(world, objects[i]), objects[i].mass, to_bullet(compose(start, places[i])),
+        object_shape(world, objects[i]),
+        objects[i].mass,
+        to_bullet(compose(start, places[i])),
         options.body_friction
     ));
   SettleResult result;
@@ -243,7 +251,8 @@ SettleResult settle(
     ++result.num_steps;
   }
   result.container = compose(from_bullet(box->getWorldTransform()), translated(-middle));
-  for (const btRigidBody* body : bodies) result.objects.push_back(from_bullet(body->getWorldTransform()));
+  for (const btRigidBody* body : bodies)
+    result.objects.push_back(from_bullet(body->getWorldTransform()));
   check_result(shape, result);
   return result;
 }

@@ -44,9 +44,14 @@ void add_planar(TraceMesh& mesh, const std::array<Vec3f, 4>& corners) {
 std::array<Vec3f, 8> octagon(Vec3f center, float x, float y, float cut, float z) {
   const auto at = [&](float dx, float dy) { return Vec3f{center.x + dx, center.y + dy, z}; };
   return {
-      at(x - cut, -y), at(x, -y + cut), at(x, y - cut), at(x - cut, y),
-      at(-x + cut, y), at(-x, y - cut), at(-x, -y + cut), at(-x + cut, -y)
-  };
+      at(x - cut, -y),
+      at(x, -y + cut),
+      at(x, y - cut),
+      at(x - cut, y),
+      at(-x + cut, y),
+      at(-x, y - cut),
+      at(-x, -y + cut),
+      at(-x + cut, -y)};
 }
 
 }  // namespace
@@ -59,7 +64,8 @@ Pose yawed(float yaw, Vec3f translation) {
 }
 
 Pose compose(const Pose& outer, const Pose& inner) {
-  return {.rotation = outer.rotation * inner.rotation, .translation = outer.apply(inner.translation)};
+  return {
+      .rotation = outer.rotation * inner.rotation, .translation = outer.apply(inner.translation)};
 }
 
 void Bounds::include(Vec3f point) {

@@ -20,7 +20,7 @@ struct Pose {
   Vec3f apply(Vec3f local) const { return rotation * local + translation; }
 };
 Pose translated(Vec3f translation);
-Pose yawed(float yaw, Vec3f translation);           // turned about z
+Pose yawed(float yaw, Vec3f translation);            // turned about z
 Pose compose(const Pose& outer, const Pose& inner);  // outer(inner(x))
 
 // Axis-aligned box; empty until something is included.

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/glassroom/glassroom.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "datasets/glassroom/contact_sheet.h"
+#include "datasets/glassroom/glassroom_scene.h"
+#include "datasets/glassroom/gltf_assets.h"
+#include "datasets/glassroom/priors.h"
+#include "datasets/glassroom/sfm_points.h"
+#include "datasets/glassroom/write_scene.h"
+#include "glint/core/error.h"
+#include "glint/core/progress.h"
+#include "glint/scene/image_files.h"
+
+namespace glint {
+
+namespace {
+
+// Part of every cache key: raise it whenever the same options give other files.
+constexpr int kGeneratorVersion = 1;
+constexpr int kTestEvery = 8;
+constexpr int kSheetColumns = 8, kSheetTileWidth = 240;
+
+bool is_test_view(int view) { return view % kTestEvery == 0; }
+
+// A folder beside the final one, removed unless it was renamed.
+class UnfinishedFolder {
+ public:
+  explicit UnfinishedFolder(const fs::path& final_path) {
+    const fs::path absolute = fs::absolute(final_path).lexically_normal();
+    const fs::path target = absolute.has_filename() ? absolute : absolute.parent_path();
+    path_ = target.parent_path() / fmt::format(".{}.{}", target.filename().string(), ::getpid());
+    std::error_code code;
+    fs::remove_all(path_, code);
+    fs::create_directories(path_, code);
+    GLINT_CHECK(!code, kEnvironment, "{}: cannot be created ({})", path_.string(), code.message());
+  }
+  ~UnfinishedFolder() {
+    std::error_code code;
+    fs::remove_all(path_, code);
+  }
+  UnfinishedFolder(const UnfinishedFolder&) = delete;
+  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+  // Takes the place of an older scene, if there is one.
+  void finish(const fs::path& final_path) {
+    std::error_code code;
+    fs::remove_all(final_path, code);
+    if (!code) fs::rename(path_, final_path, code);
+    GLINT_CHECK(
+        !code, kEnvironment, "{}: cannot be written ({})", final_path.string(), code.message()
+    );
+  }
+
+ private:
+  fs::path path_;
+};
+
+// Hash of the scene that a folder holds; empty when there is nothing. A folder with anything else
+// in it is not touched.
+std::string stored_hash(const fs::path& folder) {
+  std::error_code code;
+  if (!fs::exists(folder, code) || fs::is_empty(folder, code)) return {};
+  const fs::path description = folder / "scene.json";
+  const Json json =
+      fs::exists(description, code) ? Json::parse(read_file(description), nullptr, false) : Json();
+  GLINT_CHECK(
+      json.is_object() && json.value("dataset", "") == "glassroom" && json.contains("hash") &&
+          json["hash"].is_string(),
+      kUsage,
+      "{}: is there already and is not a GlassRoom scene; choose another folder",
+      folder.string()
+  );
+  return json["hash"];
+}
+
+Image albedo_behind(const PathTracer& tracer, const Camera& camera) {
+  Image albedo(camera.width, camera.height, 3);
+  const Vec3f eye = cast<float>(camera.center());
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) {
+      const auto hit =
+          tracer.first_hit(eye, cast<float>(camera.ray_in_world(x + 0.5, y + 0.5)), true);
+      for (int c = 0; c < 3; ++c) albedo.at(x, y, c) = hit.hit ? hit.albedo[c] : 0.0f;
+    }
+  return albedo;
+}
+
+Json vector_json(Vec3f v) { return Json::array({v.x, v.y, v.z}); }
+
+Json pose_json(const Pose& pose) {
+  Json rows = Json::array();
+  for (const Vec3f& row : pose.rotation.rows) rows.push_back(vector_json(row));
+  return {{"rotation_world_from_local", rows}, {"translation", vector_json(pose.translation)}};
+}
+
+Json container_json(const GlassRoomScene& scene) {
+  const ContainerShape& shape = scene.container;
+  Json panes = Json::array();
+  for (const Pane& pane : container_panes(shape)) {
+    Vec3f normal{};
+    normal[pane.axis] = 1;
+    panes.push_back(
+        {{"center", vector_json(scene.settled.container.apply(pane.center))},
+         {"normal", vector_json(scene.settled.container.rotation * normal)},
+         {"half_size_in_container", vector_json(pane.half_size)}}
+    );
+  }
+  return {
+      {"size", vector_json(shape.size)},
+      {"beam", shape.beam},
+      {"pane_thickness", shape.pane_thickness},
+      {"ior", shape.glass_ior},
+      {"pose", pose_json(scene.settled.container)},
+      {"panes", panes},
+      {"settling_steps", scene.settled.num_steps}};
+}
+
+Json materials_json(const TraceScene& scene) {
+  constexpr const char* kKinds[] = {
+      "diffuse", "rough conductor", "rough plastic", "thin dielectric"};
+  Json materials = Json::array();
+  for (const Material& m : scene.materials)
+    materials.push_back(
+        {{"name", m.name},
+         {"kind", kKinds[static_cast<int>(m.kind)]},
+         {"albedo", vector_json(m.albedo)},
+         {"textured", m.texture >= 0},
+         {"roughness", m.roughness},
+         {"ior", m.ior},
+         {"emission", vector_json(m.emission)}}
+    );
+  return materials;
+}
+
+Json items_json(const RoomModel& room) {
+  Json items = Json::array();
+  for (const PlacedItem& item : room.items)
+    items.push_back(
+        {{"kind", item.kind},
+         {"low", vector_json(item.bounds.low)},
+         {"high", vector_json(item.bounds.high)}}
+    );
+  return items;
+}
+
+// Renders and writes one scene into a folder.
+class SceneMaker {
+ public:
+  SceneMaker(const GlassRoomOptions& options, const fs::path& folder)
+      : options_(options),
+        folder_(folder),
+        seed_(options.seed + hash_name(options.scene)),
+        scene_(build_glassroom_scene(options)),
+        exposure_(fit_exposure(*scene_, seed_)),
+        sheet_(
+            options.views,
+            kSheetColumns,
+            {kSheetTileWidth, std::max(1, kSheetTileWidth * options.height / options.width)}
+        ) {
+    std::vector<Camera> train;
+    for (int view = 0; view < options.views; ++view) {
+      if (is_test_view(view)) continue;
+      train.push_back(scene_->cameras[static_cast<std::size_t>(view)]);
+      train_views_.push_back(view);
+    }
+    points_ = sfm_points(*scene_->tracer, train, sfm_model_, seed_);
+    cloud_.positions.resize(points_.size());
+    cloud_.colors.resize(points_.size());
+  }
+
+  void make() {
+    Progress progress("glassroom " + options_.scene, static_cast<std::size_t>(options_.views));
+    for (int view = 0; view < options_.views; ++view) {
+      make_view(view);
+      progress.advance();
+    }
+    write_cameras(folder_, scene_->cameras);
+    write_point_ply(folder_ / "sparse" / "0" / "points3D.ply", cloud_);
+    write_mesh_ply(folder_ / "gt" / "mesh.ply", truth_mesh(scene_->room.scene));
+    write_png(folder_ / "contact_sheet.png", sheet_.image());
+    write_file(folder_ / "scene.json", description().dump(1) + "\n");
+  }
+
+ private:
+  void make_view(int view) {
+    const Camera& camera = scene_->cameras[static_cast<std::size_t>(view)];
+    const auto stream = static_cast<std::uint64_t>(view);
+    const PathTracerOutput truth =
+        scene_->tracer->render(camera, {.spp = options_.spp, .seed = seed_, .view = stream});
+    const Priors priors =
+        simulate_priors(truth, albedo_behind(*scene_->tracer, camera), prior_model_, seed_, stream);
+    write_view(folder_, view, truth, priors, exposure_);
+    sheet_.add(view, truth, priors, exposure_);
+    color_points(view, display_image(truth.radiance, exposure_));
+  }
+
+  void color_points(int view, const Image& image) {
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const SfmPoint& point = points_[i];
+      if (train_views_[static_cast<std::size_t>(point.view)] != view) continue;
+      const float* rgb = image.pixel(point.x, point.y);
+      cloud_.positions[i] = point.position;
+      cloud_.colors[i] = {rgb[0], rgb[1], rgb[2]};
+    }
+  }
+
+  Json description() const {
+    std::vector<std::string> train, test;
+    for (int view = 0; view < options_.views; ++view)
+      (is_test_view(view) ? test : train).push_back(view_name(view));
+    return {
+        {"name", options_.scene},
+        {"dataset", "glassroom"},
+        {"hash", glassroom_hash(options_)},
+        {"generator_version", kGeneratorVersion},
+        {"options", config_to_json(options_)},
+        {"layout_seed", scene_->layout_seed},
+        {"render_seed", seed_},
+        {"simulated_priors", true},
+        {"priors_label", "simulated priors"},
+        {"prior_model", config_to_json(prior_model_)},
+        {"sfm_model", config_to_json(sfm_model_)},
+        {"num_points", points_.size()},
+        {"exposure", exposure_},
+        {"image_encoding", "sRGB(clamp(gt/rgb)); gt radiance = scene radiance * exposure"},
+        {"up", "z"},
+        {"unit", "metre"},
+        {"split", {{"train", train}, {"test", test}}},
+        {"glass_share", scene_->glass_share},
+        {"room_size", vector_json(scene_->room.size)},
+        {"container", container_json(*scene_)},
+        {"items", items_json(scene_->room)},
+        {"materials", materials_json(scene_->room.scene)},
+        {"files", file_hashes(folder_)}};
+  }
+
+  const GlassRoomOptions& options_;
+  fs::path folder_;
+  std::uint64_t seed_;
+  std::unique_ptr<GlassRoomScene> scene_;
+  float exposure_;
+  ContactSheet sheet_;
+  PriorModel prior_model_;
+  SfmModel sfm_model_;
+  std::vector<int> train_views_;
+  std::vector<SfmPoint> points_;
+  PointCloud cloud_;
+};
+
+}  // namespace
+
+std::string glassroom_hash(const GlassRoomOptions& options) {
+  GlassRoomOptions spec = options;
+  // The folder's content counts, not where it lies.
+  if (!options.assets.empty()) spec.assets = asset_hash(options.assets);
+  const Json key{{"options", config_to_json(spec)}, {"version", kGeneratorVersion}};
+  return fmt::format("{:016x}", hash_name(key.dump()));
+}
+
+bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder) {
+  if (stored_hash(folder) == glassroom_hash(options)) return false;
+  UnfinishedFolder unfinished(folder);
+  SceneMaker(options, unfinished.path()).make();
+  unfinished.finish(folder);
+  return true;
+}
+
+}  // namespace glint

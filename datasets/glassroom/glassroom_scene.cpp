@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/glassroom/glassroom_scene.h"
+
+#include <algorithm>
+
+#include "datasets/glassroom/gltf_assets.h"
+#include "glint/core/error.h"
+#include "glint/core/progress.h"
+
+namespace glint {
+
+namespace {
+
+constexpr int kLayoutTries = 16;
+constexpr int kObjects = 6;
+constexpr double kMinGlass = 0.15, kMaxGlass = 0.40;
+constexpr float kMiddle = 0.2f;       // linear luminance that the median pixel gets
+constexpr double kMaxClipped = 0.04;  // share of pixels
+constexpr ImageSize kProbeSize{64, 36};
+
+void check_options(const GlassRoomOptions& o) {
+  const auto in_range = [](const char* field, int value, int low, int high) {
+    GLINT_CHECK(
+        value >= low && value <= high,
+        kUsage,
+        "glassroom: {} is {}, expected {} to {}",
+        field,
+        value,
+        low,
+        high
+    );
+  };
+  in_range("width", o.width, 8, 8192);
+  in_range("height", o.height, 8, 8192);
+  in_range("views", o.views, 2, 9999);
+  in_range("spp", o.spp, 1, 1 << 20);
+}
+
+Bounds container_bounds(const ContainerShape& shape, const Pose& pose) {
+  Bounds bounds;
+  for (const Bounds& beam : container_beams(shape))
+    for (int corner = 0; corner < 8; ++corner)
+      bounds.include(pose.apply(
+          {(corner & 1) ? beam.low.x : beam.high.x,
+           (corner & 2) ? beam.low.y : beam.high.y,
+           (corner & 4) ? beam.low.z : beam.high.z}
+      ));
+  return bounds;
+}
+
+// Share of a coarse grid of pixels that meet glass first, mean over the cameras.
+double mean_glass_share(const PathTracer& tracer, const std::vector<Camera>& cameras) {
+  std::size_t glass = 0, total = 0;
+  for (const Camera& full : cameras) {
+    const Camera camera = resized(full, kProbeSize);
+    const Vec3f eye = cast<float>(camera.center());
+    for (int y = 0; y < camera.height; y += 2)
+      for (int x = 0; x < camera.width; x += 2, ++total)
+        glass +=
+            tracer.first_hit(eye, cast<float>(camera.ray_in_world(x + 0.5, y + 0.5)), false).glass;
+  }
+  return static_cast<double>(glass) / static_cast<double>(total);
+}
+
+std::unique_ptr<GlassRoomScene> try_layout(const GlassRoomOptions& options, std::uint64_t seed) {
+  auto scene = std::make_unique<GlassRoomScene>();
+  scene->layout_seed = seed;
+  const AssetSource assets = options.assets.empty() ? AssetSource() : gltf_assets(options.assets);
+  RoomModel& room = scene->room = build_room(room_program(options.scene), seed, assets);
+  Rng rng(seed, hash_name(options.scene + "/container"));
+  scene->container = random_container(rng);
+  std::vector<ContainerObject> objects = random_objects(scene->container, kObjects, rng);
+  const SettleOptions drop{
+      .support_height = room.support_height,
+      .place = room.container_place,
+      .yaw = rng.uniform(-0.6f, 0.6f)};
+  scene->settled = settle(scene->container, objects, drop, rng);
+  GLINT_CHECK(scene->settled.at_rest, kEnvironment, "settle: not at rest in time");
+  scene->container_bounds = container_bounds(scene->container, scene->settled.container);
+  add_container(room.scene, scene->container, scene->settled.container);
+  add_objects(room.scene, std::move(objects), scene->settled.objects, rng);
+  scene->tracer = std::make_unique<PathTracer>(room.scene);
+  const CameraPathOptions path{.size = {options.width, options.height}, .views = options.views};
+  scene->cameras = camera_path(*scene->tracer, room.bounds(), scene->container_bounds, path, rng);
+  scene->glass_share = mean_glass_share(*scene->tracer, scene->cameras);
+  GLINT_CHECK(
+      scene->glass_share >= kMinGlass && scene->glass_share <= kMaxGlass,
+      kEnvironment,
+      "glass covers {:.0f} % of the images",
+      100 * scene->glass_share
+  );
+  return scene;
+}
+
+}  // namespace
+
+std::unique_ptr<GlassRoomScene> build_glassroom_scene(const GlassRoomOptions& options) {
+  check_options(options);
+  room_program(options.scene);
+  std::string reason;
+  for (int attempt = 0; attempt < kLayoutTries; ++attempt) try {
+      return try_layout(options, options.seed * 1000 + static_cast<std::uint64_t>(attempt));
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::kEnvironment) throw;
+      reason = error.what();
+      log::info(fmt::format("{}: layout {} rejected: {}", options.scene, attempt, reason));
+    }
+  throw Error(
+      ExitCode::kEnvironment,
+      fmt::format(
+          "glassroom: none of {} layouts of {} worked (the last: {}); try another seed",
+          kLayoutTries,
+          options.scene,
+          reason
+      )
+  );
+}
+
+float fit_exposure(const GlassRoomScene& scene, std::uint64_t seed) {
+  constexpr std::size_t kProbes = 12;
+  std::vector<float> luminance, largest;
+  for (std::size_t i = 0; i < kProbes; ++i) {
+    const Camera camera = resized(scene.cameras[i * scene.cameras.size() / kProbes], kProbeSize);
+    const PathTracerOutput probe =
+        scene.tracer->render(camera, {.spp = 16, .seed = seed ^ 0xE5705u, .view = i});
+    for (std::size_t k = 0; k < probe.radiance.num_pixels(); ++k) {
+      const float* rgb = probe.radiance.data() + 3 * k;
+      luminance.push_back(0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
+      largest.push_back(std::max({rgb[0], rgb[1], rgb[2]}));
+    }
+  }
+  const auto quantile = [](std::vector<float>& values, double share) {
+    const auto at = values.begin() +
+                    static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return std::max(*at, 1e-6f);
+  };
+  return std::min(kMiddle / quantile(luminance, 0.5), 1 / quantile(largest, 1 - kMaxClipped));
+}
+
+}  // namespace glint

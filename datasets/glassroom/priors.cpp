@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/glassroom/priors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "glint/core/rng.h"
+#include "glint/scene/image_files.h"
+
+namespace glint {
+
+namespace {
+
+constexpr float kDepthLow = 0.05f, kDepthHigh = 0.95f;
+
+// Sum of plane waves with random directions and phases: smooth, mean 0, variance 1.
+class SmoothField {
+ public:
+  SmoothField(float wavelength_pixels, Rng& rng) {
+    for (Wave& wave : waves_) {
+      const float angle = rng.uniform(0, 2 * std::numbers::pi_v<float>);
+      const float k = 2 * std::numbers::pi_v<float> / (wavelength_pixels * rng.uniform(0.8f, 1.6f));
+      wave = {
+          k * std::cos(angle), k * std::sin(angle), rng.uniform(0, 2 * std::numbers::pi_v<float>)};
+    }
+  }
+  float operator()(int x, int y) const {
+    float sum = 0;
+    for (const Wave& w : waves_)
+      sum += std::sin(w.kx * static_cast<float>(x) + w.ky * static_cast<float>(y) + w.phase);
+    return sum * std::sqrt(2.0f / kWaves);
+  }
+
+ private:
+  static constexpr int kWaves = 12;
+  struct Wave {
+    float kx = 0, ky = 0, phase = 0;
+  };
+  std::array<Wave, kWaves> waves_{};
+};
+
+// z with P(N(0, 1) > z) = rate, by bisection of the complementary error function.
+float normal_quantile_above(float rate) {
+  double low = -8, high = 8;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (0.5 * std::erfc(middle / std::numbers::sqrt2) > static_cast<double>(rate) ? low : high) =
+        middle;
+  }
+  return static_cast<float>(low);
+}
+
+// Separable Gaussian; pixels where `valid` is false neither give nor get anything.
+Image blurred(const Image& image, float sigma, const std::vector<char>& valid) {
+  const int radius = std::max(1, static_cast<int>(std::ceil(2.5f * sigma)));
+  const auto pass = [&](const Image& in, bool horizontal) {
+    Image out(in.width(), in.height(), in.channels());
+    for (int y = 0; y < in.height(); ++y)
+      for (int x = 0; x < in.width(); ++x) {
+        float total = 0;
+        for (int k = -radius; k <= radius; ++k) {
+          const int sx = horizontal ? x + k : x, sy = horizontal ? y : y + k;
+          if (sx < 0 || sy < 0 || sx >= in.width() || sy >= in.height()) continue;
+          if (!valid[static_cast<std::size_t>(sy * in.width() + sx)]) continue;
+          const float t = static_cast<float>(k) / sigma, weight = std::exp(-0.5f * t * t);
+          total += weight;
+          for (int c = 0; c < in.channels(); ++c) out.at(x, y, c) += weight * in.at(sx, sy, c);
+        }
+        if (total <= 0 || !valid[static_cast<std::size_t>(y * in.width() + x)]) total = 0;
+        for (int c = 0; c < in.channels(); ++c)
+          out.at(x, y, c) = total > 0 ? out.at(x, y, c) / total : 0.0f;
+      }
+    return out;
+  };
+  return pass(pass(image, true), false);
+}
+
+Vec3f rgb(ImageView image, int x, int y) {
+  return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
+}
+void set_rgb(Image& image, int x, int y, Vec3f value) {
+  for (int c = 0; c < 3; ++c) image.at(x, y, c) = value[c];
+}
+
+class Simulation {
+ public:
+  Simulation(
+      const PathTracerOutput& truth,
+      ImageView behind_albedo,
+      const PriorModel& model,
+      std::uint64_t seed,
+      std::uint64_t view
+  )
+      : truth_(truth),
+        behind_albedo_(behind_albedo),
+        model_(model),
+        rng_(seed, view),
+        width_(truth.depth.width()),
+        height_(truth.depth.height()),
+        sigma_(std::max(0.5f, model.blur * static_cast<float>(width_))) {
+    const SmoothField field = smooth_field(0.12f);
+    const float threshold = normal_quantile_above(model.failure_rate);
+    for_each_pixel([&](int x, int y) {
+      valid_.push_back(truth.depth.at(x, y) > 0);
+      fails_.push_back(truth.glass.at(x, y) != 0 && field(x, y) > threshold);
+    });
+  }
+
+  Image normal() {
+    Image chosen = choose(truth_.normal, truth_.behind_normal);
+    Image smooth = blurred(chosen, sigma_, valid_);
+    const SmoothField about_x = smooth_field(0.2f), about_y = smooth_field(0.2f);
+    const float radians =
+        model_.sigma_normal_deg * std::numbers::pi_v<float> / 180 / std::numbers::sqrt2_v<float>;
+    for_each_pixel([&](int x, int y) {
+      if (!valid_[index(x, y)]) return;
+      const Vec3f n = rgb(smooth, x, y);
+      const float norm = length(n);
+      const Vec3f unit = norm > 1e-4f ? (1 / norm) * n : rgb(chosen, x, y);
+      set_rgb(smooth, x, y, turned(unit, radians * about_x(x, y), radians * about_y(x, y)));
+    });
+    return smooth;
+  }
+
+  Image depth() {
+    Image z = blurred(choose(truth_.depth, truth_.behind_depth), sigma_, valid_);
+    const float far = std::max(1e-3f, *std::max_element(z.values().begin(), z.values().end()));
+    const float scale = std::exp(model_.sigma_scale * rng_.normal());
+    const float shift = model_.sigma_shift * rng_.normal();
+    const float bend = rng_.uniform(-model_.bend, model_.bend);
+    const SmoothField error = smooth_field(0.25f);
+    for_each_pixel([&](int x, int y) {
+      float& value = z.at(x, y);
+      value = scale * value * (1 + bend * (value / far - 0.5f)) + shift +
+              model_.sigma_depth * value * error(x, y);
+    });
+    normalize_depth(z);
+    return z;
+  }
+
+  Image color(const Image& first, float glass_low, float glass_high) {
+    Image chosen = choose(first, behind_albedo_);
+    const SmoothField glass_tone = smooth_field(0.3f);
+    for_each_pixel([&](int x, int y) {
+      if (truth_.glass.at(x, y) == 0 || fails_[index(x, y)]) return;
+      const float t = std::clamp(0.5f + 0.25f * glass_tone(x, y), 0.0f, 1.0f);
+      const float tone = srgb_decode(std::lerp(glass_low, glass_high, t));
+      set_rgb(chosen, x, y, {tone, tone, tone});
+    });
+    Image smooth = blurred(chosen, sigma_, valid_);
+    const SmoothField error = smooth_field(0.15f);
+    for_each_pixel([&](int x, int y) {
+      for (int c = 0; c < 3; ++c) {
+        float& value = smooth.at(x, y, c);
+        // Noise in the stored encoding; it is scaled down where the value is near black, so that
+        // glass stays below the albedo threshold that methods use.
+        const float encoded = srgb_encode(value);
+        const float noise = model_.sigma_pixel * rng_.normal() * std::min(1.0f, 4 * encoded);
+        value = std::clamp(encoded * (1 + model_.sigma_color * error(x, y)) + noise, 0.0f, 1.0f);
+      }
+    });
+    return smooth;
+  }
+
+ private:
+  template <class F>
+  void for_each_pixel(F&& f) const {
+    for (int y = 0; y < height_; ++y)
+      for (int x = 0; x < width_; ++x) f(x, y);
+  }
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * width_ + x); }
+  SmoothField smooth_field(float share) { return {share * static_cast<float>(width_), rng_}; }
+
+  // The first surface, or the one behind where the predictor fails.
+  Image choose(ImageView first, ImageView behind) const {
+    Image chosen(width_, height_, first.channels);
+    for_each_pixel([&](int x, int y) {
+      const ImageView& source = fails_[index(x, y)] ? behind : first;
+      for (int c = 0; c < first.channels; ++c) chosen.at(x, y, c) = source.at(x, y, c);
+    });
+    return chosen;
+  }
+
+  static Vec3f turned(Vec3f n, float about_x, float about_y) {
+    const float cx = std::cos(about_x), sx = std::sin(about_x);
+    const float cy = std::cos(about_y), sy = std::sin(about_y);
+    const Vec3f a{n.x, cx * n.y - sx * n.z, sx * n.y + cx * n.z};
+    return {cy * a.x + sy * a.z, a.y, -sy * a.x + cy * a.z};
+  }
+
+  void normalize_depth(Image& z) const {
+    float low = std::numeric_limits<float>::infinity(), high = -low;
+    for (std::size_t i = 0; i < valid_.size(); ++i)
+      if (valid_[i]) low = std::min(low, z.values()[i]), high = std::max(high, z.values()[i]);
+    const float span = std::max(1e-6f, high - low);
+    for (std::size_t i = 0; i < valid_.size(); ++i) {
+      const float share = (z.values()[i] - low) / span;
+      z.values()[i] = valid_[i] ? std::lerp(kDepthLow, kDepthHigh, share) : 0.0f;
+    }
+  }
+
+  const PathTracerOutput& truth_;
+  ImageView behind_albedo_;
+  const PriorModel& model_;
+  Rng rng_;
+  int width_, height_;
+  float sigma_;
+  std::vector<char> valid_, fails_;
+};
+
+}  // namespace
+
+Priors simulate_priors(
+    const PathTracerOutput& truth,
+    ImageView behind_albedo,
+    const PriorModel& model,
+    std::uint64_t seed,
+    std::uint64_t view
+) {
+  Simulation simulation(truth, behind_albedo, model, seed, view);
+  Priors priors;
+  priors.normal = simulation.normal();
+  priors.depth = simulation.depth();
+  priors.albedo = simulation.color(truth.albedo, 0.0f, 0.036f);
+  priors.basecolor = simulation.color(truth.basecolor, 0.82f, 0.93f);
+  return priors;
+}
+
+Image encode_depth(ImageView depth) {
+  Image encoded(depth.width, depth.height, 3);
+  for (int y = 0; y < depth.height; ++y)
+    for (int x = 0; x < depth.width; ++x) {
+      const float value = std::clamp(depth.at(x, y), 0.0f, 1.0f);
+      const float high = std::floor(value * 255) / 255;
+      encoded.at(x, y, 0) = high;
+      encoded.at(x, y, 1) = std::min(1.0f, (value - high) * 256);
+    }
+  return encoded;
+}
+
+}  // namespace glint
