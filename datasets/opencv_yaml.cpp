@@ -160,10 +160,28 @@ std::vector<std::string> read_names(const YamlFile& file) {
   return names;
 }
 
+// Both files list the same cameras; a shorter list is a file that was cut off.
+void check_same_names(const YamlFile& intrinsics, const YamlFile& extrinsics) {
+  if (intrinsics["names"].empty()) return;
+  std::vector<std::string> a = read_names(intrinsics), b = read_names(extrinsics);
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  GLINT_CHECK(
+      a == b,
+      kBadReference,
+      "{}: names: {} names, not the {} of {}; list the same cameras in both files",
+      extrinsics.path(),
+      b.size(),
+      a.size(),
+      intrinsics.path()
+  );
+}
+
 }  // namespace
 
 std::vector<OpencvCamera> read_opencv_cameras(const fs::path& intri, const fs::path& extri) {
   const YamlFile intrinsics(intri), extrinsics(extri);
+  check_same_names(intrinsics, extrinsics);
   std::vector<OpencvCamera> cameras;
   for (const std::string& name : read_names(extrinsics)) {
     OpencvCamera camera;

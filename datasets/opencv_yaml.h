@@ -21,7 +21,7 @@ struct OpencvCamera {
 };
 
 // In the order of extri.yml's `names`. Errors (kBadReference): a file that OpenCV cannot parse, no
-// `names`. A bad field of one camera becomes one of its `problems`.
+// `names`, other names in the two files. A bad field of one camera becomes one of its `problems`.
 std::vector<OpencvCamera> read_opencv_cameras(const fs::path& intri, const fs::path& extri);
 
 }  // namespace glint

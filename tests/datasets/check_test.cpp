@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+// The checker against a room whose depth and normals are known in closed form: silent when nothing
+// is wrong, and naming every defect that is planted.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "datasets/check_geometry.h"
+#include "datasets/dataset.h"
+#include "glint/core/config.h"
+#include "glint/core/rng.h"
+#include "glint/scene/image_files.h"
+#include "glint/scene/ply.h"
+#include "tests/support/box_room.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+using namespace glint::test;
+using Catch::Contains;
+
+namespace {
+
+constexpr ImageSize kSize{96, 72};
+
+std::string list(const std::vector<Finding>& findings) {
+  std::string text;
+  for (const Finding& finding : findings)
+    text += fmt::format("[{}] {}: {}\n", finding.check, finding.where, finding.message);
+  return text;
+}
+
+// Findings after `change` was made to the views before, and `damage` to the folder after writing.
+std::vector<Finding> findings_after(
+    const std::function<void(std::vector<View>&)>& change,
+    const std::function<void(const fs::path&)>& damage = [](const fs::path&) {}
+) {
+  const TempFolder folder;
+  std::vector<View> views = box_room_views(10, kSize);
+  change(views);
+  write_easyvolcap(folder.path(), views);
+  damage(folder.path());
+  return check_dataset(folder.path());
+}
+
+std::vector<Finding> findings_after_damage(const std::function<void(const fs::path&)>& damage) {
+  return findings_after([](std::vector<View>&) {}, damage);
+}
+
+// Exactly one finding, of that check.
+Finding only(const std::vector<Finding>& findings, const std::string& check) {
+  INFO(list(findings));
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].check == check);
+  return findings[0];
+}
+
+void for_each_pixel(View& view, const std::function<void(View&, int, int)>& f) {
+  for (int y = 0; y < view.camera.height; ++y)
+    for (int x = 0; x < view.camera.width; ++x) f(view, x, y);
+}
+
+void to_ray_length(std::vector<View>& views) {
+  for (View& view : views)
+    for_each_pixel(view, [](View& v, int x, int y) {
+      const double cosine = length(v.camera.ray_in_cam(x + 0.5, y + 0.5));
+      v.truth.depth.at(x, y) *= static_cast<float>(cosine);
+    });
+}
+
+void flip_axis(Image& normal, int axis) {
+  for (std::size_t i = 0; i < normal.num_pixels(); ++i)
+    normal.data()[3 * i + static_cast<std::size_t>(axis)] *= -1;
+}
+
+}  // namespace
+
+TEST_CASE("a clean dataset has no findings") {
+  const std::vector<Finding> findings = findings_after([](std::vector<View>&) {});
+  INFO(list(findings));
+  CHECK(findings.empty());
+}
+
+TEST_CASE("a clean nerfstudio dataset has no findings") {
+  const TempFolder folder;
+  write_nerfstudio(folder.path(), box_room_views(10, kSize));
+  const std::vector<Finding> findings = check_dataset(folder.path());
+  INFO(list(findings));
+  CHECK(findings.empty());
+}
+
+TEST_CASE("ray-length depth is told from planar depth") {
+  const Finding finding = only(findings_after(to_ray_length), "ray-length-depth");
+  CHECK_THAT(finding.where, Contains("gt/depth"));
+}
+
+TEST_CASE("noise on depth and priors is no defect") {
+  Rng rng(3);
+  const auto noisy = [&](std::vector<View>& views) {
+    for (View& view : views) {
+      for (float& z : view.truth.depth.values()) z *= 1 + 0.003f * rng.normal();
+      for (float& n : view.priors.normal.values())
+        n = std::clamp(n + 0.1f * rng.normal(), -1.0f, 1.0f);
+    }
+  };
+  const std::vector<Finding> findings = findings_after(noisy);
+  INFO(list(findings));
+  CHECK(findings.empty());
+}
+
+TEST_CASE("every wrong sign pattern of true and prior normals is found") {
+  for (int pattern = 1; pattern < 8; ++pattern) {
+    INFO("flipped: " << flipped_axes(pattern));
+    const auto flip = [&](Image View::*, std::vector<View>& views, bool prior) {
+      for (View& view : views)
+        for (int axis = 0; axis < 3; ++axis)
+          if ((pattern >> axis & 1) != 0)
+            flip_axis(prior ? view.priors.normal : view.truth.normal, axis);
+    };
+    for (const bool prior : {false, true}) {
+      const Finding finding = only(
+          findings_after([&](std::vector<View>& views) { flip(nullptr, views, prior); }),
+          "normal-axes"
+      );
+      CHECK_THAT(finding.where, Contains(prior ? "diffrens/normal" : "gt/normal"));
+      CHECK_THAT(finding.message, Contains("axes " + flipped_axes(pattern) + " are flipped"));
+    }
+  }
+}
+
+TEST_CASE("normals in world axes are found") {
+  const Finding finding = only(
+      findings_after([](std::vector<View>& views) {
+        for (View& view : views)
+          for_each_pixel(view, [](View& v, int x, int y) {
+            float* n = v.truth.normal.pixel(x, y);
+            const Vec3d world = transpose_times(
+                v.camera.rotation_cam_from_world, cast<double>(Vec3f{n[0], n[1], n[2]})
+            );
+            for (int c = 0; c < 3; ++c) n[c] = static_cast<float>(world[c]);
+          });
+      }),
+      "normal-axes"
+  );
+  CHECK_THAT(finding.message, Contains("world axes"));
+}
+
+TEST_CASE("prior normals that face away are found without true depth") {
+  const Finding finding = only(
+      findings_after(
+          [](std::vector<View>& views) {
+            for (View& view : views) flip_axis(view.priors.normal, 2);
+          },
+          [](const fs::path& folder) { fs::remove_all(folder / "gt"); }
+      ),
+      "normal-axes"
+  );
+  CHECK_THAT(finding.message, Contains("face the camera"));
+}
+
+TEST_CASE("depth that does not belong to the poses is found") {
+  const std::vector<Finding> findings = findings_after([](std::vector<View>& views) {
+    for (View& view : views)
+      for (float& z : view.truth.depth.values()) z *= 1000;  // millimetres
+  });
+  CHECK_THAT(list(findings), Contains("[depth-poses]"));
+}
+
+TEST_CASE("intrinsics of another size are found, stated or not") {
+  const auto declare = [](const fs::path& folder, const std::string& from, const std::string& to) {
+    std::string text = read_file(folder / "intri.yml");
+    text.replace(text.find(from), from.size(), to);
+    write_file(folder / "intri.yml", text);
+  };
+  Finding finding = only(
+      findings_after_damage([&](const fs::path& f) { declare(f, "W_0004: 96", "W_0004: 192"); }),
+      "intrinsics-size"
+  );
+  CHECK_THAT(finding.where, Contains("camera 0004"));
+  CHECK_THAT(finding.message, Contains("192 x 72"));
+  finding = only(
+      findings_after(
+          [](std::vector<View>& views) {
+            views[4].camera = resized(views[4].camera, {192, 144});
+          },
+          [&](const fs::path& f) { declare(f, "H_0004: 144\nW_0004: 192\n", ""); }
+      ),
+      "intrinsics-size"
+  );
+  CHECK_THAT(finding.message, Contains("principal point (96.0, 72.0)"));
+}
+
+TEST_CASE("every missing file is found") {
+  const std::vector<Finding> findings = findings_after_damage([](const fs::path& folder) {
+    fs::remove(folder / "images/0003/000000.png");
+    fs::remove(folder / "gt/normal/0005.exr");
+    fs::remove(folder / "diffrens/normal/0007/000000.png");
+  });
+  INFO(list(findings));
+  REQUIRE(findings.size() == 3);
+  for (const Finding& finding : findings) CHECK(finding.check == "missing-file");
+  CHECK_THAT(findings[0].where, Contains("images/0003"));
+  CHECK_THAT(findings[1].where, Contains("gt/normal/0005.exr"));
+  CHECK_THAT(findings[2].where, Contains("diffrens/normal/0007"));
+}
+
+TEST_CASE("a test picture among the train views is found by its bytes") {
+  const Finding finding = only(
+      findings_after_damage([](const fs::path& folder) {
+        fs::copy_file(
+            folder / "images/0008/000000.png",
+            folder / "images/0003/000000.png",
+            fs::copy_options::overwrite_existing
+        );
+      }),
+      "test-in-train"
+  );
+  CHECK_THAT(finding.message, Contains("train view 0003"));
+}
+
+TEST_CASE("a test pose among the train views is found") {
+  const Finding finding = only(
+      findings_after([](std::vector<View>& views) {
+        Rng rng(1);
+        std::string name = views[3].name;
+        views[3] = views[8];
+        views[3].name = name;
+        for (float& v : views[3].rgb.values()) v += 0.01f * rng.normal();  // another exposure
+      }),
+      "test-in-train"
+  );
+  CHECK_THAT(finding.message, Contains("same pose as train view 0003"));
+}
+
+TEST_CASE("views in both lists of a split are found") {
+  const TempFolder folder;
+  write_nerfstudio(folder.path(), box_room_views(4, kSize));
+  Json json = Json::parse(read_file(folder / "transforms.json"));
+  json["train_filenames"] = {"images/0000.png", "images/0001.png", "images/0002.png"};
+  json["test_filenames"] = {"images/0002.png", "images/0003.png"};
+  write_file(folder / "transforms.json", json.dump());
+  const Finding finding = only(check_dataset(folder.path()), "test-in-train");
+  CHECK_THAT(finding.where, Contains("images/0002.png"));
+}
+
+TEST_CASE("values that are not finite are found in maps and poses") {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  Finding finding = only(
+      findings_after([&](std::vector<View>& views) { views[2].truth.depth.at(5, 5) = infinity; }),
+      "non-finite"
+  );
+  CHECK_THAT(finding.where, Contains("gt/depth/0002.exr"));
+  finding = only(
+      findings_after([&](std::vector<View>& views) { views[2].truth.normal.at(5, 5, 1) = nan; }),
+      "non-finite"
+  );
+  CHECK_THAT(finding.where, Contains("gt/normal/0002.exr"));
+  finding = only(
+      findings_after_damage([](const fs::path& folder) {
+        std::string text = read_file(folder / "extri.yml");
+        const std::size_t at = text.find("data: [ ", text.find("T_0001")) + 8;
+        text.replace(at, text.find(',', at) - at, ".Inf");
+        write_file(folder / "extri.yml", text);
+      }),
+      "non-finite"
+  );
+  CHECK_THAT(finding.where, Contains("camera 0001"));
+}
+
+TEST_CASE("unreadable files and wrong sizes are found") {
+  const std::vector<Finding> findings = findings_after_damage([](const fs::path& folder) {
+    write_file(folder / "images/0001/000000.png", "no picture");
+    const std::string depth = read_file(folder / "gt/depth/0002.exr");
+    write_file(folder / "gt/depth/0002.exr", std::string_view(depth).substr(0, depth.size() / 2));
+    write_exr(folder / "gt/normal/0004.exr", Image(10, 10, 3), true);
+    write_file(folder / "sparse/0/points3D.ply", "ply\n");
+  });
+  INFO(list(findings));
+  REQUIRE(findings.size() == 4);
+  CHECK(findings[0].check == "unreadable-file");
+  CHECK_THAT(findings[0].where, Contains("images/0001"));
+  CHECK(findings[1].check == "unreadable-file");
+  CHECK_THAT(findings[1].where, Contains("gt/depth/0002.exr"));
+  CHECK(findings[2].check == "wrong-size");
+  CHECK_THAT(findings[2].message, Contains("10 x 10"));
+  CHECK(findings[3].check == "unreadable-file");
+  CHECK_THAT(findings[3].where, Contains("points3D.ply"));
+}
+
+TEST_CASE("negative depth, normals without unit length and points in other axes are found") {
+  const std::vector<Finding> findings = findings_after(
+      [](std::vector<View>& views) {
+        views[1].truth.depth.at(3, 3) = -1;
+        for (float& n : views[2].truth.normal.values()) n *= 0.8f;
+      },
+      [](const fs::path& folder) {
+        PointCloud points = read_point_ply(folder / "sparse/0/points3D.ply");
+        for (Vec3f& p : points.positions) p = {p.x, p.z + 20, p.y};
+        write_point_ply(folder / "sparse/0/points3D.ply", points);
+      }
+  );
+  INFO(list(findings));
+  REQUIRE(findings.size() == 3);
+  CHECK(findings[0].check == "depth-values");
+  CHECK(findings[1].check == "normal-length");
+  CHECK(findings[2].check == "points");
+}
+
+TEST_CASE("bad camera fields are all found, and a cut-off camera file is one finding") {
+  const std::vector<Finding> findings = findings_after_damage([](const fs::path& folder) {
+    std::string text = read_file(folder / "intri.yml");
+    for (const char* key : {"K_0002", "K_0005"}) text[text.find(key)] = 'L';
+    write_file(folder / "intri.yml", text);
+  });
+  CHECK(std::count_if(findings.begin(), findings.end(), [](const Finding& finding) {
+          return finding.check == "camera-field";
+        }) == 2);
+  const Finding finding = only(
+      findings_after_damage([](const fs::path& folder) {
+        write_file(folder / "extri.yml", "%YAML:1.0\n---\nnames: [ \"0");
+      }),
+      "unreadable-file"
+  );
+  CHECK_THAT(finding.message, Contains("extri.yml"));
+}
+
+TEST_CASE("several defects at once are all named") {
+  const std::vector<Finding> findings = findings_after(
+      [](std::vector<View>& views) {
+        to_ray_length(views);
+        for (View& view : views) flip_axis(view.truth.normal, 1);
+      },
+      [](const fs::path& folder) { fs::remove(folder / "images/0003/000000.png"); }
+  );
+  CHECK_THAT(
+      list(findings),
+      Contains("[ray-length-depth]") && Contains("[normal-axes]") && Contains("[missing-file]")
+  );
+}
+
+TEST_CASE("a folder that no loader knows cannot be checked") {
+  const TempFolder folder;
+  bad_reference([&] { check_dataset(folder.path()); });
+}

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: MIT
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "datasets/dataset.h"
+#include "datasets/scene_index.h"
+#include "glint/core/parallel.h"
+#include "glint/scene/image_files.h"
+#include "tests/support/box_room.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+using namespace glint::test;
+using Catch::Contains;
+
+namespace {
+
+constexpr ImageSize kSize{48, 36};
+
+// A folder with a room of 10 views, numbered 0 to 9.
+struct RoomFolder : TempFolder {
+  std::vector<View> views = box_room_views(10, kSize);
+  RoomFolder() { write_easyvolcap(path(), views); }
+
+  void replace(const std::string& name, const std::string& from, const std::string& to) const {
+    std::string text = read_file(path() / name);
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    write_file(path() / name, text.replace(at, from.size(), to));
+  }
+  std::string load_error() const {
+    return bad_reference([&] { load_scene(path(), {}); });
+  }
+};
+
+float largest_difference(ImageView a, ImageView b) {
+  REQUIRE(a.size() == b.size());
+  REQUIRE(a.channels == b.channels);
+  float largest = 0;
+  for (std::size_t i = 0; i < a.num_pixels() * static_cast<std::size_t>(a.channels); ++i)
+    largest = std::max(largest, std::abs(a.data[i] - b.data[i]));
+  return largest;
+}
+
+// Largest distance of the two cameras' images of points in front of them, in pixels.
+double projection_difference(const Camera& a, const Camera& b) {
+  double largest = 0;
+  for (const double x : {0.0, 20.0, 48.0})
+    for (const double y : {0.0, 36.0}) {
+      const Vec3d point = a.to_world(2.0 * a.ray_in_cam(x, y));
+      const Vec2d pixel = b.project(b.to_cam(point));
+      largest = std::max({largest, std::abs(pixel.x - x), std::abs(pixel.y - y)});
+    }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("a folder in EasyVolcap's layout is loaded whole") {
+  const RoomFolder folder;
+  const Scene scene = load_scene(folder.path(), {});
+  CHECK(scene.dataset == "easyvolcap");
+  CHECK(scene.name == folder.path().filename().string());
+  REQUIRE(scene.test.size() == 2);  // views 0 and 8
+  REQUIRE(scene.train.size() == 8);
+  CHECK(scene.test[1].name == "0008");
+  const View& loaded = scene.train[2];
+  const View& made = folder.views[3];
+  CHECK(loaded.name == "0003");
+  CHECK(loaded.camera.size() == kSize);
+  CHECK(projection_difference(made.camera, loaded.camera) < 1e-9);
+  CHECK(largest_difference(loaded.rgb, made.rgb) <= 0.5f / 255 + 1e-6f);
+  CHECK(largest_difference(loaded.truth.depth, made.truth.depth) == 0);
+  CHECK(largest_difference(loaded.truth.normal, made.truth.normal) == 0);
+  CHECK(largest_difference(loaded.priors.normal, made.truth.normal) < 0.01f);
+  CHECK(loaded.priors.depth.at(3, 4) == Approx(0.2f * made.truth.depth.at(3, 4)).margin(0.003));
+  CHECK(loaded.priors.albedo.empty());
+  CHECK(loaded.truth.glass.empty());
+  CHECK(scene.points.positions.size() == 10 * 6 * 5);
+  CHECK(scene.bounds_min.x == Approx(0).margin(0.01));
+}
+
+TEST_CASE("Rodrigues vectors give the same poses as matrices") {
+  const RoomFolder folder;
+  std::string text = read_file(folder / "extri.yml");
+  for (const View& view : folder.views) {
+    const Vec4<double> q = quaternion_from_rotation(view.camera.rotation_cam_from_world);
+    const Vec3d axis{q.x, q.y, q.z};
+    const Vec3d vector = (2 * std::atan2(length(axis), q.w) / length(axis)) * axis;
+    const std::size_t at = text.find("Rot_" + view.name);
+    text.replace(
+        at,
+        text.find("T_" + view.name) - at,
+        fmt::format(
+            "R_{}: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n   data: [ {:.17g}, {:.17g}, "
+            "{:.17g} ]\n",
+            view.name,
+            vector.x,
+            vector.y,
+            vector.z
+        )
+    );
+  }
+  write_file(folder / "extri.yml", text);
+  const Scene scene = load_scene(folder.path(), {});
+  CHECK(projection_difference(folder.views[3].camera, scene.train[2].camera) < 1e-9);
+}
+
+TEST_CASE("options choose size, split, priors and truth") {
+  const RoomFolder folder;
+  LoadOptions options;
+  options.size = {24, 18};
+  options.test_every = 5;
+  options.with_priors = false;
+  Scene scene = load_scene(folder.path(), options);
+  CHECK(scene.test.size() == 2);
+  CHECK(scene.test[1].name == "0005");
+  CHECK(scene.train[0].priors.normal.empty());
+  CHECK(scene.train[0].rgb.size() == ImageSize{24, 18});
+  CHECK(scene.train[0].camera.fx == Approx(0.5 * folder.views[1].camera.fx));
+  CHECK(scene.train[0].truth.depth.size() == ImageSize{24, 18});
+  options = {};
+  options.test_every = 0;
+  options.max_pixels = 500;
+  options.with_truth = false;
+  scene = load_scene(folder.path(), options);
+  CHECK(scene.test.empty());
+  CHECK(scene.train.size() == 10);
+  CHECK(scene.train[0].rgb.num_pixels() <= 500);
+  CHECK(scene.train[0].rgb.num_pixels() > 400);
+  CHECK(scene.train[0].truth.depth.empty());
+}
+
+TEST_CASE("a halved scene is the scene rendered at half size, away from the room's edges") {
+  const RoomFolder folder;
+  LoadOptions options;
+  options.size = {24, 18};
+  const Scene scene = load_scene(folder.path(), options);
+  const View half = box_room_views(10, options.size)[3];
+  int same = 0, all = 0;
+  for (int y = 0; y < 18; ++y)
+    for (int x = 0; x < 24; ++x, ++all) {
+      const float expected = half.truth.depth.at(x, y);
+      if (std::abs(scene.train[2].truth.depth.at(x, y) - expected) < 1e-5f * expected) ++same;
+    }
+  // Only pixels whose footprint holds two walls differ.
+  CHECK(same > 0.8 * all);
+}
+
+TEST_CASE("scene.json names the dataset and the hash, and says that priors are simulated") {
+  const RoomFolder folder;
+  write_file(
+      folder / "scene.json",
+      R"({"name": "room_1", "dataset": "glassroom", "hash": "abc", "simulated_priors": true, "more": [1]})"
+  );
+  const Scene scene = load_scene(folder.path(), {});
+  CHECK(scene.name == "room_1");
+  CHECK(scene.dataset == "glassroom");
+  CHECK(scene.spec_hash == "abc");
+  CHECK(scene.simulated_priors);
+  CHECK_THAT(
+      describe_scene(scene),
+      Contains("10 (8 train, 2 test)") && Contains("normal (8 views)") && Contains("simulated") &&
+          Contains("48 x 36")
+  );
+  write_file(folder / "scene.json", R"({"name": "room)");
+  CHECK_THAT(folder.load_error(), Contains("scene.json"));
+}
+
+TEST_CASE("the hash of a scene changes with its cameras and is stable otherwise") {
+  const RoomFolder folder;
+  const std::string hash = load_scene(folder.path(), {}).spec_hash;
+  CHECK(hash.size() == 16);
+  set_num_threads(1);
+  CHECK(load_scene(folder.path(), {}).spec_hash == hash);
+  set_num_threads(0);
+  folder.replace("intri.yml", "H_0003: 36", "H_0003: 36 ");
+  CHECK(load_scene(folder.path(), {}).spec_hash != hash);
+}
+
+TEST_CASE("cut-off camera files are errors that name the file") {
+  const RoomFolder folder;
+  for (const char* name : {"intri.yml", "extri.yml"}) {
+    const std::string text = read_file(folder / name);
+    for (std::size_t length = 0; length + 20 < text.size(); length += 97) {
+      INFO(name << " of " << length << " bytes");
+      write_file(folder / name, std::string_view(text).substr(0, length));
+      CHECK_THAT(folder.load_error(), Contains(name));
+    }
+    write_file(folder / name, text);
+  }
+}
+
+TEST_CASE("bad fields of a camera are named") {
+  const RoomFolder good;
+  const auto message = [](const char* file, const std::string& from, const std::string& to) {
+    const RoomFolder folder;
+    folder.replace(file, from, to);
+    return folder.load_error();
+  };
+  CHECK_THAT(
+      message("intri.yml", "K_0004", "L_0004"), Contains("intri.yml: K_0004: 0 values, expected 9")
+  );
+  CHECK_THAT(message("extri.yml", "T_0004", "U_0004"), Contains("extri.yml: T_0004"));
+  CHECK_THAT(message("extri.yml", "names:", "nemas:"), Contains("names: expected a list"));
+  CHECK_THAT(
+      message("intri.yml", "H_0004: 36", "H_0004: -2"), Contains("H_0004: not a number of pixels")
+  );
+  CHECK_THAT(
+      message("intri.yml", "W_0004: 48", "W_0004: 96"), Contains("96 x 36") && Contains("48 x 36")
+  );
+  CHECK_THAT(
+      message(
+          "extri.yml",
+          "T_0004: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n   data: [ ",
+          "T_0004: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n   data: [ .Nan, "
+      ),
+      Contains("T_0004: 4 values, expected 3")
+  );
+  CHECK_THAT(
+      message(
+          "intri.yml",
+          "D_0004: !!opencv-matrix\n   rows: 5\n   cols: 1\n   dt: d\n   data: [ 0,",
+          "D_0004: !!opencv-matrix\n   rows: 5\n   cols: 1\n   dt: d\n   data: [ 0.1, 0,"
+      ),
+      Contains("D_0004: 6 values, expected 4 or 5")
+  );
+}
+
+TEST_CASE("poses that are not finite or no rotations are errors that name the camera") {
+  std::vector<View> views = box_room_views(3, kSize);
+  const auto message = [&] {
+    const TempFolder folder;
+    write_easyvolcap(folder.path(), views);
+    return bad_reference([&] { load_scene(folder.path(), {}); });
+  };
+  Camera& camera = views[1].camera;
+  const Camera good = camera;
+  camera.rotation_cam_from_world.rows[0] = 2.0 * camera.rotation_cam_from_world.rows[0];
+  CHECK_THAT(message(), Contains("camera 0001") && Contains("no rotation"));
+  camera = good;
+  camera.rotation_cam_from_world.rows[2] = -camera.rotation_cam_from_world.rows[2];
+  CHECK_THAT(message(), Contains("no rotation"));
+  camera = good;
+  camera.fx = -1;
+  CHECK_THAT(message(), Contains("focal lengths"));
+  camera = good;
+  TempFolder folder;
+  write_easyvolcap(folder.path(), views);
+  std::string text = read_file(folder / "extri.yml");
+  const std::size_t at = text.find("data: [ ", text.find("T_0001")) + 8;
+  text.replace(at, text.find(',', at) - at, ".Nan");
+  write_file(folder / "extri.yml", text);
+  CHECK_THAT(
+      bad_reference([&] { load_scene(folder.path(), {}); }),
+      Contains("camera 0001") && Contains("not finite")
+  );
+}
+
+TEST_CASE("missing and unusable images and maps are errors that name the file") {
+  const auto message = [](auto&& damage) {
+    const RoomFolder folder;
+    damage(folder);
+    return folder.load_error();
+  };
+  CHECK_THAT(
+      message([](const RoomFolder& f) { fs::remove_all(f / "images/0002"); }),
+      Contains("images/0002")
+  );
+  CHECK_THAT(
+      message([](const RoomFolder& f) { write_file(f / "images/0002/000000.png", ""); }),
+      Contains("images/0002/000000.png: the file is empty")
+  );
+  CHECK_THAT(
+      message([](const RoomFolder& f) { fs::remove(f / "gt/depth/0002.exr"); }),
+      Contains("gt/depth/0002.exr")
+  );
+  CHECK_THAT(
+      message([](const RoomFolder& f) { write_exr(f / "gt/depth/0002.exr", Image(4, 4, 1)); }),
+      Contains("4 x 4") && Contains("48 x 36")
+  );
+  CHECK_THAT(
+      message([](const RoomFolder& f) {
+        Image depth(kSize.width, kSize.height, 1);
+        depth.at(5, 6) = std::nanf("");
+        write_exr(f / "gt/depth/0002.exr", depth);
+      }),
+      Contains("gt/depth/0002.exr: pixel (5, 6) is nan")
+  );
+}
+
+TEST_CASE("a scene without images and a folder that is no dataset are errors") {
+  const TempFolder folder;
+  CHECK_THAT(
+      bad_reference([&] { load_scene(folder.path(), {}); }),
+      Contains("easyvolcap: intri.yml") && Contains("nerfstudio: transforms.json")
+  );
+  CHECK_THAT(
+      bad_reference([&] { load_scene(folder / "nowhere", {}); }), Contains("no such folder")
+  );
+  fs::create_directory(folder / "images");
+  write_file(folder / "intri.yml", "%YAML:1.0\n---\nnames: [ ]\n");
+  write_file(folder / "extri.yml", "%YAML:1.0\n---\nnames: [ ]\n");
+  CHECK_THAT(bad_reference([&] { load_scene(folder.path(), {}); }), Contains("names"));
+  write_easyvolcap(folder.path(), box_room_views(1, kSize));
+  CHECK_THAT(bad_reference([&] { load_scene(folder.path(), {}); }), Contains("no train views"));
+}
+
+TEST_CASE("coloured depth priors carry 24 bits") {
+  const TempFolder folder;
+  Image encoded(1, 1, 3);
+  encoded.at(0, 0, 0) = 100 / 255.0f;
+  encoded.at(0, 0, 1) = 200 / 255.0f;
+  encoded.at(0, 0, 2) = 50 / 255.0f;
+  write_png(folder / "depth.png", encoded);
+  const double expected = (100 + 200 / 256.0 + 50 / 65536.0) / 255.0;
+  CHECK(read_depth_prior(folder / "depth.png").at(0, 0) == Approx(expected).epsilon(1e-7));
+}

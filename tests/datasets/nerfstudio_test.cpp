@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "datasets/dataset.h"
+#include "datasets/undistort.h"
+#include "glint/core/config.h"
+#include "glint/scene/image_files.h"
+#include "glint/scene/ply.h"
+#include "tests/support/box_room.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+using namespace glint::test;
+using Catch::Contains;
+
+namespace {
+
+constexpr ImageSize kSize{48, 36};
+
+struct RoomFolder : TempFolder {
+  std::vector<View> views = box_room_views(10, kSize);
+  Json json;
+  RoomFolder() {
+    write_nerfstudio(path(), views);
+    json = Json::parse(read_file(path() / "transforms.json"));
+  }
+
+  Scene load(const LoadOptions& options = {}) const {
+    write_file(path() / "transforms.json", json.dump());
+    return load_scene(path(), options);
+  }
+  std::string load_error() const {
+    return bad_reference([&] { load(); });
+  }
+};
+
+double pose_difference(const Camera& a, const Camera& b) {
+  double largest = length(a.translation_cam_from_world - b.translation_cam_from_world);
+  for (int i = 0; i < 3; ++i)
+    largest = std::max(
+        largest, length(a.rotation_cam_from_world.rows[i] - b.rotation_cam_from_world.rows[i])
+    );
+  return largest;
+}
+
+// Where a lens with OpenCV's model puts the image point (x, y) of a pinhole camera.
+Vec2d distort(const Camera& c, const std::vector<double>& k, double px, double py) {
+  const double x = (px - c.cx) / c.fx, y = (py - c.cy) / c.fy, r2 = x * x + y * y;
+  const double radial = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+  const double dx = 2 * k[2] * x * y + k[3] * (r2 + 2 * x * x);
+  const double dy = k[2] * (r2 + 2 * y * y) + 2 * k[3] * x * y;
+  return {c.fx * (x * radial + dx) + c.cx, c.fy * (y * radial + dy) + c.cy};
+}
+
+}  // namespace
+
+TEST_CASE("OpenGL camera-to-world matrices become our poses") {
+  const RoomFolder folder;
+  const Scene scene = folder.load();
+  CHECK(scene.dataset == "nerfstudio");
+  REQUIRE(scene.train.size() == 8);
+  REQUIRE(scene.test.size() == 2);
+  CHECK(scene.test[1].name == "0008");
+  CHECK(pose_difference(scene.train[2].camera, folder.views[3].camera) < 1e-12);
+  CHECK(scene.train[2].camera.fx == folder.views[3].camera.fx);
+  CHECK(
+      scene.train[2].rgb.at(7, 9, 1) ==
+      Approx(folder.views[3].rgb.at(7, 9, 1)).margin(0.5 / 255 + 1e-6)
+  );
+  CHECK(scene.points.positions.empty());
+}
+
+TEST_CASE("intrinsics may stand in the frame, follow from an angle, or from the image") {
+  RoomFolder folder;
+  const double fx = folder.views[0].camera.fx;
+  folder.json["frames"][3]["fl_x"] = 2 * fx;
+  Scene scene = folder.load();
+  CHECK(scene.train[2].camera.fx == 2 * fx);
+  CHECK(scene.train[1].camera.fx == fx);
+  for (const char* key : {"fl_x", "fl_y", "cx", "cy", "w", "h"}) folder.json.erase(key);
+  folder.json["frames"][3].erase("fl_x");
+  CHECK_THAT(folder.load_error(), Contains("no focal length"));
+  folder.json["camera_angle_x"] = 75 * 3.14159265358979323846 / 180;
+  scene = folder.load();
+  CHECK(scene.train[0].camera.fx == Approx(fx));
+  CHECK(scene.train[0].camera.fy == Approx(fx));
+  CHECK(scene.train[0].camera.cx == 24);
+}
+
+TEST_CASE("intrinsics follow images that were scaled, not images of another shape") {
+  RoomFolder folder;
+  for (const char* key : {"w", "h", "fl_x", "fl_y", "cx", "cy"})
+    folder.json[key] = 3 * folder.json[key].get<double>();
+  const Scene scene = folder.load();
+  CHECK(scene.train[0].camera.size() == kSize);
+  CHECK(scene.train[0].camera.fx == Approx(folder.views[0].camera.fx));
+  CHECK(scene.train[0].camera.cy == Approx(18));
+  folder.json["h"] = 3 * 48;
+  CHECK_THAT(folder.load_error(), Contains("144 x 144") && Contains("48 x 36"));
+}
+
+TEST_CASE("file names may lack their extension, and equal stems keep their folder") {
+  RoomFolder folder;
+  folder.json["frames"][0]["file_path"] = "./images/0000";
+  fs::create_directory(folder / "more");
+  fs::copy_file(folder / "images/0000.png", folder / "more/0001.png");
+  folder.json["frames"].push_back(folder.json["frames"][0]);
+  folder.json["frames"][10]["file_path"] = "more/0001.png";
+  const Scene scene = folder.load();
+  CHECK(scene.test[0].name == "0000");
+  CHECK(scene.train[0].name == "images_0001");
+  CHECK(scene.train.back().name == "more_0001");
+}
+
+TEST_CASE("split lists rule where there are any") {
+  RoomFolder folder;
+  folder.json["train_filenames"] = {"images/0001.png", "images/0002.png"};
+  folder.json["val_filenames"] = {"./images/0003.png"};
+  Scene scene = folder.load();
+  CHECK(scene.train.size() == 2);
+  REQUIRE(scene.test.size() == 1);
+  CHECK(scene.test[0].name == "0003");
+  folder.json["test_filenames"] = {"images/0004.png"};
+  scene = folder.load();
+  REQUIRE(scene.test.size() == 1);
+  CHECK(scene.test[0].name == "0004");
+  folder.json["train_filenames"] = "images/0001.png";
+  CHECK_THAT(folder.load_error(), Contains("train_filenames: expected a list"));
+}
+
+TEST_CASE("a point cloud is read where the file names one") {
+  RoomFolder folder;
+  write_point_ply(folder / "sparse.ply", {{{1, 2, 3}, {4, 5, 6}}, {{0, 0, 0}, {1, 1, 1}}, {}});
+  folder.json["ply_file_path"] = "sparse.ply";
+  CHECK(folder.load().points.positions.size() == 2);
+  folder.json["ply_file_path"] = "none.ply";
+  CHECK_THAT(folder.load_error(), Contains("none.ply: no such file"));
+}
+
+TEST_CASE("cut-off and damaged transforms are errors that name file and field") {
+  RoomFolder folder;
+  const std::string text = folder.json.dump();
+  for (std::size_t length = 0; length < text.size(); length += 101) {
+    write_file(folder / "transforms.json", std::string_view(text).substr(0, length));
+    CHECK_THAT(bad_reference([&] { load_scene(folder.path(), {}); }), Contains("transforms.json"));
+  }
+  const auto message = [](auto&& change) {
+    RoomFolder changed;
+    change(changed.json);
+    return changed.load_error();
+  };
+  CHECK_THAT(message([](Json& j) { j.erase("frames"); }), Contains("frames: expected a list"));
+  CHECK_THAT(message([](Json& j) { j["frames"] = Json::array(); }), Contains("no train views"));
+  CHECK_THAT(
+      message([](Json& j) { j["frames"][4].erase("transform_matrix"); }),
+      Contains("frame 4: transform_matrix: expected 4 x 4")
+  );
+  CHECK_THAT(
+      message([](Json& j) { j["frames"][4]["transform_matrix"][1][3] = nullptr; }),
+      Contains("found null")
+  );
+  CHECK_THAT(
+      message([](Json& j) { j["frames"][4]["transform_matrix"][1][1] = 5; }),
+      Contains("images/0004.png") && Contains("no rotation")
+  );
+  CHECK_THAT(message([](Json& j) { j["fl_x"] = "wide"; }), Contains("fl_x is \"wide\""));
+  CHECK_THAT(
+      message([](Json& j) { j["frames"][4].erase("file_path"); }), Contains("frame 4: file_path")
+  );
+  CHECK_THAT(
+      message([](Json& j) { j["camera_model"] = "OPENCV_FISHEYE"; }),
+      Contains("undistort the images")
+  );
+  CHECK_THAT(
+      message([](Json& j) { j["frames"][4]["file_path"] = "images/none.png"; }),
+      Contains("images/none.png: no such file")
+  );
+}
+
+TEST_CASE("undistortion looks up every pixel where the lens put it") {
+  Camera camera = box_room_views(1, {200, 150})[0].camera;
+  camera.cx = 104;
+  camera.cy = 71;
+  const std::vector<double> k{0.06, -0.05, -0.001, 0.002, 0.01};
+  // The photograph of a ramp: its value tells where a pixel was looked up.
+  Image ramp(200, 150, 2);
+  for (int y = 0; y < 150; ++y)
+    for (int x = 0; x < 200; ++x) {
+      ramp.at(x, y, 0) = static_cast<float>(x) + 0.5f;
+      ramp.at(x, y, 1) = static_cast<float>(y) + 0.5f;
+    }
+  const Undistortion undistortion(camera, k);
+  const Camera& straight = undistortion.camera();
+  const Image result = undistortion.apply(ramp, Undistortion::Lookup::kBilinear);
+  REQUIRE(result.size() == straight.size());
+  CHECK(straight.fx == camera.fx);
+  CHECK(straight.width < 200);  // this lens leaves empty borders, which are cropped
+  CHECK(straight.width > 180);
+  for (int y = 0; y < straight.height; y += 7)
+    for (int x = 0; x < straight.width; x += 7) {
+      const Vec3d ray = straight.ray_in_cam(x + 0.5, y + 0.5);
+      const Vec2d expected =
+          distort(camera, k, ray.x * camera.fx + camera.cx, ray.y * camera.fy + camera.cy);
+      // OpenCV interpolates at 1/32 pixel.
+      CHECK(static_cast<double>(result.at(x, y, 0)) == Approx(expected.x).margin(1.0 / 32));
+      CHECK(static_cast<double>(result.at(x, y, 1)) == Approx(expected.y).margin(1.0 / 32));
+    }
+}
+
+TEST_CASE("p1 and p2 reach the lens model unswapped, and a hopeless lens is an error") {
+  RoomFolder folder;
+  folder.json["p1"] = 0.01;
+  const Scene scene = folder.load();
+  const Undistortion expected(folder.views[1].camera, std::vector<double>{0, 0, 0.01, 0, 0});
+  const Image image =
+      expected.apply(read_image(folder / "images/0001.png", 3), Undistortion::Lookup::kBilinear);
+  const Image& loaded = scene.train[0].rgb;
+  REQUIRE(loaded.size() == image.size());
+  CHECK(std::equal(image.values().begin(), image.values().end(), loaded.values().begin()));
+  folder.json["k1"] = 50;
+  CHECK_THAT(folder.load_error(), Contains("distortion coefficients") && Contains("frame"));
+}
+
+TEST_CASE("real captures are loaded") {
+  for (const std::string name : {"fox", "barcelona_pavilion"}) {
+    const fs::path folder = fs::path("../shared/data") / name;
+    if (!fs::exists(folder)) {
+      WARN("skipped: " << folder << " is not there");
+      continue;
+    }
+    LoadOptions options;
+    options.max_pixels = 20000;
+    const Scene scene = load_scene(folder, options);
+    CHECK(scene.train.size() + scene.test.size() == (name == "fox" ? 50 : 100));
+    CHECK(scene.train[0].rgb.num_pixels() <= 20000);
+    CHECK(scene.name == name);
+    CHECK(check_dataset(folder).empty());
+  }
+}
