@@ -74,6 +74,26 @@ inline void add_box(TraceScene& scene, int material, Vec3f low, Vec3f high) {
     add_quad(scene, material, {corner(s[0]), corner(s[1]), corner(s[2]), corner(s[3])});
 }
 
+// A wavy floor of 2 cells^2 triangles over [-2.5, 2.5]^2.
+inline void add_carpet(TraceScene& scene, int material, int cells) {
+  TraceMesh mesh;
+  mesh.name = "carpet";
+  mesh.material = material;
+  for (int i = 0; i <= cells; ++i)
+    for (int j = 0; j <= cells; ++j) {
+      const float x = 5 * static_cast<float>(i) / static_cast<float>(cells) - 2.5f;
+      const float y = 5 * static_cast<float>(j) / static_cast<float>(cells) - 2.5f;
+      mesh.vertices.push_back({x, y, 0.05f + 0.02f * std::sin(9 * x) * std::cos(7 * y)});
+    }
+  for (int i = 0; i < cells; ++i)
+    for (int j = 0; j < cells; ++j) {
+      const int v = i * (cells + 1) + j;
+      mesh.faces.push_back({v, v + 1, v + cells + 1});
+      mesh.faces.push_back({v + 1, v + cells + 2, v + cells + 1});
+    }
+  scene.meshes.push_back(mesh);
+}
+
 // A room with a lamp, a table, a glass box on it, and things of every material inside.
 inline TraceScene glass_box_room() {
   TraceScene scene;
