@@ -19,10 +19,9 @@ constexpr std::size_t kMaxFileLines = 600;
 constexpr std::size_t kMaxFunctionLines = 60;
 constexpr std::size_t kMaxKernelLines = 100;  // CUDA kernels: fetch, loop, call, store
 
-// What a folder's files may include; the longest matching folder decides. "x/" is the folder and
-// all below it.
+// What files may include, by the beginning of their path; the longest that fits decides.
 struct Layer {
-  std::string folder;
+  std::string path;
   std::vector<std::string> may_include;
 };
 const std::vector<Layer>& layers() {
