@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-constexpr int kMoments = 5;  // E[x], E[y], E[x^2], E[y^2], E[x y]
+constexpr std::size_t kMoments = 5;  // E[x], E[y], E[x^2], E[y^2], E[x y]
 
 // The moments of one image row; channels interleaved, zeros before and after it for the window.
 struct MomentRow {
@@ -22,50 +22,54 @@ struct MomentRow {
 };
 
 using TapRows = std::array<const float*, kSsimTaps>;
+using Weights = std::array<double, kSsimTaps>;
+
+// Sums of a block of values, small enough for the nearest cache while the taps are added.
+constexpr std::size_t kBlock = 128;
+using BlockSums = std::array<std::array<double, kBlock>, kMoments>;
+
+// Adds one tap of the window: n values of a row of each image.
+void add_products(const float* x, const float* y, double w, std::size_t n, BlockSums& sums) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double a = static_cast<double>(x[i]), b = static_cast<double>(y[i]);
+    const double wa = w * a, wb = w * b;
+    sums[0][i] += wa;
+    sums[1][i] += wb;
+    sums[2][i] = fma_of(wa, a, sums[2][i]);
+    sums[3][i] = fma_of(wb, b, sums[3][i]);
+    sums[4][i] = fma_of(wa, b, sums[4][i]);
+  }
+}
 
 // Weighted sums over the rows under the window's column, for n values of a row.
 void vertical_pass(
-    const TapRows& x,
-    const TapRows& y,
-    const std::array<double, kSsimTaps>& w,
-    std::size_t n,
-    MomentRow& row
+    const TapRows& x, const TapRows& y, const Weights& w, std::size_t n, MomentRow& row
 ) {
-  double* __restrict mu_x = row.moment(0), * __restrict mu_y = row.moment(1);
-  double* __restrict xx = row.moment(2), * __restrict yy = row.moment(3);
-  double* __restrict xy = row.moment(4);
-  for (std::size_t i = 0; i < n; ++i) {
-    double sums[kMoments] = {};
-    for (int k = 0; k < kSsimTaps; ++k) {
-      const double a = static_cast<double>(x[k][i]), b = static_cast<double>(y[k][i]);
-      const double wa = w[k] * a, wb = w[k] * b;
-      sums[0] += wa;
-      sums[1] += wb;
-      sums[2] = fma_of(wa, a, sums[2]);
-      sums[3] = fma_of(wb, b, sums[3]);
-      sums[4] = fma_of(wa, b, sums[4]);
-    }
-    mu_x[i] = sums[0], mu_y[i] = sums[1], xx[i] = sums[2], yy[i] = sums[3], xy[i] = sums[4];
+  for (std::size_t begin = 0; begin < n; begin += kBlock) {
+    const std::size_t count = std::min(kBlock, n - begin);
+    BlockSums sums{};
+    for (int k = 0; k < kSsimTaps; ++k) add_products(x[k] + begin, y[k] + begin, w[k], count, sums);
+    for (std::size_t m = 0; m < kMoments; ++m)
+      std::copy_n(sums[m].data(), count, row.moment(m) + begin);
   }
 }
 
 // Finishes the window along the row and evaluates the formula. ssim: n values, channels
-// interleaved.
+// interleaved, so that neighbouring pixels are `channels` values apart.
 void horizontal_pass(
-    MomentRow& row,
-    const std::array<double, kSsimTaps>& w,
-    int channels,
-    std::size_t n,
-    double* __restrict ssim
+    MomentRow& row, const Weights& w, std::ptrdiff_t channels, std::size_t n, double* ssim
 ) {
-  const std::ptrdiff_t step = channels;
-  const double* moments[kMoments];
-  for (std::size_t m = 0; m < kMoments; ++m) moments[m] = row.moment(m) - kSsimRadius * step;
-  for (std::size_t i = 0; i < n; ++i) {
-    double sums[kMoments] = {};
-    for (int m = 0; m < kMoments; ++m)
-      for (int k = 0; k < kSsimTaps; ++k) sums[m] = fma_of(w[k], moments[m][i + k * step], sums[m]);
-    ssim[i] = ssim_from_moments(sums[0], sums[1], sums[2], sums[3], sums[4]);
+  for (std::size_t begin = 0; begin < n; begin += kBlock) {
+    const std::size_t count = std::min(kBlock, n - begin);
+    BlockSums sums{};
+    for (std::size_t m = 0; m < kMoments; ++m)
+      for (int k = 0; k < kSsimTaps; ++k) {
+        const double* from = row.moment(m) + begin + (k - kSsimRadius) * channels;
+        for (std::size_t i = 0; i < count; ++i) sums[m][i] = fma_of(w[k], from[i], sums[m][i]);
+      }
+    for (std::size_t i = 0; i < count; ++i)
+      ssim[begin + i] =
+          ssim_from_moments(sums[0][i], sums[1][i], sums[2][i], sums[3][i], sums[4][i]);
   }
 }
 

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/depth.h"
+
+#include <CLI/CLI.hpp>
+
+#include "glint/core/error.h"
+#include "glint/scene/camera.h"
+#include "glint/scene/image_files.h"
+#include "metrics/tools/tool.h"
+
+namespace glint {
+namespace {
+
+class DepthTool final : public MetricTool {
+ public:
+  std::string name() const override { return "glint-depth"; }
+  std::string description() const override {
+    return "Errors of depth maps: planar z in metres, one channel, EXR or NPY; 0 or not finite: no "
+           "depth.";
+  }
+  std::string example() const override {
+    return "glint-depth out/ci/runs/room_1/2dgs/0 data/room_1 --allow-missing --glass data/room_1";
+  }
+  FolderLayout prediction_layout() const override { return {{"renders"}, {"depth.exr"}}; }
+  FolderLayout reference_layout() const override { return {{"gt/depth"}, {}}; }
+
+  void add_options(CLI::App& app) override {
+    app.add_option("--align", alignment_, "fit per image")
+        ->check(CLI::IsMember({"none", "median", "scale", "affine"}))
+        ->capture_default_str();
+    app.add_option("--max-depth", max_depth_, "metres; depths at or beyond do not exist")
+        ->check(CLI::PositiveNumber);
+    auto* release = app.add_flag(
+        "--release", release_, "the official release: median scale, below 20 m, holes skipped"
+    );
+    release->excludes("--align")->excludes("--max-depth");
+    app.add_option("--ray", intrinsics_, "FX FY CX CY: the prediction holds distances along rays")
+        ->expected(4);
+    app.add_flag("--planar", planar_, "the prediction holds planar z (the default)")
+        ->excludes("--ray");
+  }
+
+  void check_options() const override {
+    GLINT_CHECK(
+        intrinsics_.empty() || (intrinsics_[0] > 0 && intrinsics_[1] > 0),
+        kUsage,
+        "--ray: focal lengths {} and {}; expected pixels above 0",
+        intrinsics_[0],
+        intrinsics_[1]
+    );
+  }
+
+  Image load_prediction(const fs::path& path) const override {
+    const bool metric = protocol().alignment == DepthAlignment::kNone;
+    GLINT_CHECK(
+        !metric || !is_integer_format(path),
+        kBadPrediction,
+        "{}: an integer image holds no metres; give EXR or NPY, or fit it with --align",
+        path.string()
+    );
+    Image depth = read_image(path, 1);
+    if (!intrinsics_.empty()) make_planar(depth);
+    return depth;
+  }
+  Image load_reference(const fs::path& path) const override {
+    GLINT_CHECK(
+        !is_integer_format(path),
+        kBadReference,
+        "{}: an integer image holds no metres; give EXR or NPY",
+        path.string()
+    );
+    return read_image(path, 1);
+  }
+
+  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
+      const override {
+    const DepthFit fit = fit_depth(pair.prediction, pair.reference, regions[0].mask, protocol());
+    std::vector<ToolScores> scores;
+    for (const Region& region : regions) {
+      const auto errors =
+          depth_errors(pair.prediction, pair.reference, region.mask, protocol(), fit);
+      scores.push_back(errors ? to_scores(*errors) : ToolScores{});
+    }
+    return scores;
+  }
+
+  Json protocol(const std::string&) const override { return config_to_json(protocol()); }
+
+ private:
+  DepthProtocol protocol() const {
+    if (release_) return release_depth_protocol();
+    DepthProtocol protocol;
+    protocol.alignment = Json(alignment_).get<DepthAlignment>();
+    protocol.max_depth = max_depth_;
+    return protocol;
+  }
+
+  // Distances along rays become planar z: divided by the length of the ray with z = 1.
+  void make_planar(Image& depth) const {
+    const Camera camera{
+        depth.width(),
+        depth.height(),
+        intrinsics_[0],
+        intrinsics_[1],
+        intrinsics_[2],
+        intrinsics_[3]};
+    for (int y = 0; y < depth.height(); ++y)
+      for (int x = 0; x < depth.width(); ++x)
+        depth.at(x, y) /= static_cast<float>(length(camera.ray_in_cam(x + 0.5, y + 0.5)));
+  }
+
+  // Values that a table does not have under its id get the alignment in theirs.
+  ToolScores to_scores(const DepthErrors& errors) const {
+    const std::string suffix = release_ ? "-release" : alignment_ == "none" ? "" : "-" + alignment_;
+    return {
+        {"depth-absrel" + suffix, errors.absrel},
+        {"depth-rmse" + suffix, errors.rmse},
+        {"depth-delta1" + suffix, errors.delta1},
+        {"depth-coverage", errors.coverage}};
+  }
+
+  std::string alignment_ = "none";
+  double max_depth_ = 0;  // metres; 0: no limit
+  bool release_ = false, planar_ = false;
+  std::vector<double> intrinsics_;  // fx fy cx cy in pixels, when given
+};
+
+}  // namespace
+
+std::unique_ptr<MetricTool> make_depth_tool() { return std::make_unique<DepthTool>(); }
+
+}  // namespace glint

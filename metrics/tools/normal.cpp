@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/normal.h"
+
+#include <CLI/CLI.hpp>
+
+#include <array>
+
+#include "glint/core/error.h"
+#include "glint/scene/image_files.h"
+#include "metrics/tools/tool.h"
+
+namespace glint {
+namespace {
+
+// Factors of x, y, z that lead to OpenCV axes (x right, y down, z forward).
+struct Axes {
+  const char* name;
+  std::array<float, 3> to_opencv;
+};
+constexpr std::array<Axes, 3> kAxes = {{
+    {"opencv", {1, 1, 1}},
+    {"opengl", {1, -1, -1}},         // x right, y up, z to the viewer
+    {"stablenormal", {-1, -1, -1}},  // x left, y up, z to the viewer
+}};
+
+// Integer files store (n + 1) / 2; black is no normal.
+void decode_integers(Image& normals) {
+  for (std::size_t i = 0; i < normals.num_pixels(); ++i) {
+    float* n = normals.data() + 3 * i;
+    const bool black = n[0] == 0 && n[1] == 0 && n[2] == 0;
+    for (int c = 0; c < 3; ++c) n[c] = black ? 0 : 2 * n[c] - 1;
+  }
+}
+
+Image load_normals(const fs::path& path, const std::string& axes) {
+  Image normals = read_image(path);
+  GLINT_CHECK(
+      normals.channels() == 3,
+      kBadReference,
+      "{}: {} channels, expected 3 (a normal)",
+      path.string(),
+      normals.channels()
+  );
+  if (is_integer_format(path)) decode_integers(normals);
+  for (const Axes& known : kAxes)
+    if (axes == known.name)
+      for (std::size_t i = 0; i < normals.values().size(); ++i)
+        normals.data()[i] *= known.to_opencv[i % 3];
+  return normals;
+}
+
+class NormalTool final : public MetricTool {
+ public:
+  std::string name() const override { return "glint-normal"; }
+  std::string description() const override {
+    return "Angles between normal maps in camera space: EXR or NPY, or PNG as (n + 1) / 2.";
+  }
+  std::string example() const override {
+    return "glint-normal predicted/ data/room_1/gt/normal --axes opengl --csv";
+  }
+  FolderLayout prediction_layout() const override { return {{"renders"}, {"normal.exr"}}; }
+  FolderLayout reference_layout() const override { return {{"gt/normal"}, {}}; }
+
+  void add_options(CLI::App& app) override {
+    const CLI::IsMember known({"opencv", "opengl", "stablenormal"});
+    app.add_option("--axes", axes_, "of the prediction: opencv, opengl or stablenormal")
+        ->check(known)
+        ->capture_default_str();
+    app.add_option("--reference-axes", reference_axes_, "the same of the reference")
+        ->check(known)
+        ->capture_default_str();
+  }
+
+  Image load_prediction(const fs::path& path) const override { return load_normals(path, axes_); }
+  Image load_reference(const fs::path& path) const override {
+    return load_normals(path, reference_axes_);
+  }
+
+  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
+      const override {
+    const BasicImage<double> angles = normal_angles_deg(pair.prediction, pair.reference);
+    std::vector<ToolScores> scores;
+    for (const Region& region : regions) {
+      const auto errors = normal_errors_from_angles(angles, pair.prediction, region.mask);
+      scores.push_back(errors ? to_scores(*errors) : ToolScores{});
+    }
+    return scores;
+  }
+
+  Json protocol(const std::string&) const override {
+    Json json = config_to_json(NormalProtocol{});
+    json["prediction_axes"] = axes_;
+    json["reference_axes"] = reference_axes_;
+    return json;
+  }
+
+ private:
+  static ToolScores to_scores(const NormalErrors& errors) {
+    ToolScores scores = {{"normal-mae", errors.mean_deg}, {"normal-median", errors.median_deg}};
+    for (std::size_t i = 0; i < kNormalThresholdsDeg.size(); ++i)
+      scores.emplace_back(fmt::format("normal-{}", kNormalThresholdsDeg[i]), errors.below[i]);
+    scores.emplace_back("normal-coverage", errors.coverage);
+    scores.emplace_back("normal-dropped", errors.dropped);
+    return scores;
+  }
+
+  std::string axes_ = "opencv", reference_axes_ = "opencv";
+};
+
+}  // namespace
+
+std::unique_ptr<MetricTool> make_normal_tool() { return std::make_unique<NormalTool>(); }
+
+}  // namespace glint

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/tools/pairing.h"
+
+#include <algorithm>
+#include <map>
+
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+const std::vector<std::string> kExtensions = {".png", ".jpg", ".jpeg", ".exr", ".npy"};
+
+struct NaturalLess {
+  bool operator()(const std::string& a, const std::string& b) const { return natural_less(a, b); }
+};
+using FilesByName = std::map<std::string, fs::path, NaturalLess>;
+
+fs::path enter_layout(const fs::path& folder, const FolderLayout& layout) {
+  for (const std::string& name : layout.subfolders)
+    if (fs::is_directory(folder / name)) return folder / name;
+  return folder;
+}
+
+std::vector<fs::path> matching(std::vector<fs::path> files, const std::string& pattern) {
+  if (pattern.empty()) return files;
+  std::erase_if(files, [&](const fs::path& file) {
+    return !glob_match(pattern, file.filename().string());
+  });
+  return files;
+}
+
+std::vector<fs::path> list_folders(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code))
+    if (entry.is_directory(code)) folders.push_back(entry.path());
+  return folders;
+}
+
+// The image of one view's folder; empty when it has none.
+fs::path image_in(const fs::path& folder, const FolderLayout& layout, const std::string& pattern) {
+  const std::vector<fs::path> files = matching(list_files(folder, kExtensions), pattern);
+  if (pattern.empty())
+    for (const std::string& wanted : layout.files)
+      for (const fs::path& file : files)
+        if (file.filename() == wanted) return file;
+  GLINT_CHECK(
+      files.size() <= 1,
+      kBadReference,
+      "{}: {} images ({}, {}, ...); choose one with --pattern",
+      folder.string(),
+      files.size(),
+      files[0].filename().string(),
+      files[1].filename().string()
+  );
+  return files.empty() ? fs::path() : files[0];
+}
+
+void check_exists(const fs::path& path, ExitCode exit_code, const char* what) {
+  std::error_code code;
+  if (!fs::exists(path, code))
+    throw Error(exit_code, fmt::format("{}: no such file or folder ({})", path.string(), what));
+}
+
+FilesByName list_by_name(
+    const fs::path& folder, const FolderLayout& layout, const std::string& pattern
+) {
+  FilesByName files;
+  for (const NamedFile& file : list_images(folder, layout, pattern)) files[file.name] = file.path;
+  return files;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i)
+    text += (i == 0 ? "" : ", ") + names[i];
+  return names.size() > kShown ? text + ", ..." : text;
+}
+
+// The file itself, or the entry of that name in the folder.
+fs::path mask_for(const std::string& name, const fs::path& mask, const FilesByName& masks) {
+  if (mask.empty() || masks.empty()) return mask;
+  const auto found = masks.find(name);
+  GLINT_CHECK(found != masks.end(), kBadReference, "{}: no mask named '{}'", mask.string(), name);
+  return found->second;
+}
+
+FilesByName list_masks(const fs::path& mask, const FolderLayout& layout) {
+  if (mask.empty()) return {};
+  check_exists(mask, ExitCode::kBadReference, "mask");
+  return fs::is_directory(mask) ? list_by_name(mask, layout, {}) : FilesByName{};
+}
+
+void check_missing(const Pairing& pairing, const PairingOptions& options) {
+  const std::string where = options.prediction.string() + " against " + options.reference.string();
+  GLINT_CHECK(
+      !pairing.pairs.empty(),
+      kBadPrediction,
+      "{}: no name in common; found only on one side: {}",
+      where,
+      joined(pairing.missing)
+  );
+  GLINT_CHECK(
+      pairing.missing.empty() || options.allow_missing,
+      kBadPrediction,
+      "{}: {} names only on one side: {}; add them, or score the others with --allow-missing",
+      where,
+      pairing.missing.size(),
+      joined(pairing.missing)
+  );
+}
+
+Pairing match_by_name(const FilesByName& predictions, const FilesByName& references) {
+  Pairing pairing;
+  for (const auto& [name, path] : references)
+    if (const auto found = predictions.find(name); found != predictions.end())
+      pairing.pairs.push_back({name, found->second, path, {}, {}});
+    else
+      pairing.missing.push_back(name + " (no prediction)");
+  for (const auto& [name, path] : predictions)
+    if (!references.contains(name)) pairing.missing.push_back(name + " (no reference)");
+  return pairing;
+}
+
+}  // namespace
+
+std::vector<NamedFile> list_images(
+    const fs::path& folder, const FolderLayout& layout, const std::string& pattern
+) {
+  const fs::path inside = enter_layout(folder, layout);
+  FilesByName files;
+  for (const fs::path& file : matching(list_files(inside, kExtensions), pattern)) {
+    const auto [entry, fresh] = files.emplace(file.stem().string(), file);
+    GLINT_CHECK(
+        fresh,
+        kBadReference,
+        "{}: {} and {} have one name; choose with --pattern",
+        inside.string(),
+        entry->second.filename().string(),
+        file.filename().string()
+    );
+  }
+  if (files.empty())
+    for (const fs::path& view : list_folders(inside))
+      if (const fs::path file = image_in(view, layout, pattern); !file.empty())
+        files.emplace(view.filename().string(), file);
+  GLINT_CHECK(
+      !files.empty(),
+      kBadReference,
+      "{}: no image{}{}; expected .png, .jpg, .exr or .npy files, or a folder with one per view",
+      inside.string(),
+      pattern.empty() ? "" : " matching ",
+      pattern
+  );
+  std::vector<NamedFile> images;
+  for (const auto& [name, path] : files) images.push_back({name, path});
+  return images;
+}
+
+Pairing pair_files(const PairingOptions& options) {
+  check_exists(options.prediction, ExitCode::kBadPrediction, "prediction");
+  check_exists(options.reference, ExitCode::kBadReference, "reference");
+  const bool folders = fs::is_directory(options.reference);
+  GLINT_CHECK(
+      fs::is_directory(options.prediction) == folders,
+      kUsage,
+      "{} and {}: one is a folder, the other a file; give two files or two folders",
+      options.prediction.string(),
+      options.reference.string()
+  );
+  Pairing pairing;
+  if (folders) {
+    const FilesByName predictions = with_exit_code(ExitCode::kBadPrediction, [&] {
+      return list_by_name(options.prediction, options.prediction_layout, options.pattern);
+    });
+    pairing =
+        match_by_name(predictions, list_by_name(options.reference, options.reference_layout, {}));
+    check_missing(pairing, options);
+  } else {
+    const std::string name = options.prediction.stem().string();
+    pairing.pairs.push_back({name, options.prediction, options.reference, {}, {}});
+  }
+  const FilesByName masks = list_masks(options.mask, options.mask_layout);
+  const FilesByName glass = list_masks(options.glass, options.mask_layout);
+  for (FilePair& pair : pairing.pairs) {
+    pair.mask = mask_for(pair.name, options.mask, masks);
+    pair.glass = mask_for(pair.name, options.glass, glass);
+  }
+  return pairing;
+}
+
+}  // namespace glint

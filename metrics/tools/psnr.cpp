@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/psnr.h"
+
+#include "glint/scene/image_files.h"
+#include "metrics/tools/tool.h"
+
+namespace glint {
+namespace {
+
+// Which of the two ids a prediction gets: a float file holds what was rendered, an integer file
+// what was saved.
+const char* id_for(const fs::path& prediction) {
+  return is_integer_format(prediction) ? "psnr-8bit" : "psnr";
+}
+
+class PsnrTool final : public MetricTool {
+ public:
+  std::string name() const override { return "glint-psnr"; }
+  std::string description() const override {
+    return "Peak signal-to-noise ratio in dB. Float predictions (EXR, NPY) give psnr, integer ones "
+           "(PNG, JPEG) psnr-8bit.";
+  }
+  std::string example() const override {
+    return "glint-psnr out/ci/runs/room_1/2dgs/0 data/room_1 --allow-missing --json";
+  }
+  FolderLayout prediction_layout() const override { return {{"renders"}, {"rgb.exr", "rgb.png"}}; }
+  FolderLayout reference_layout() const override {
+    return {{"images"}, {"000000.png", "000000.jpg"}};
+  }
+
+  Image load_prediction(const fs::path& path) const override { return read_image(path, 3); }
+  Image load_reference(const fs::path& path) const override { return read_image(path, 3); }
+
+  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
+      const override {
+    const std::string id = id_for(pair.files.prediction);
+    std::vector<ToolScores> scores;
+    for (const Region& region : regions) {
+      const double error = mse(pair.prediction, pair.reference, region.mask, protocol_of(id));
+      scores.push_back({{id, psnr_from_mse(error)}});
+    }
+    return scores;
+  }
+
+  Json protocol(const std::string& id) const override { return config_to_json(protocol_of(id)); }
+
+  // Identical images count with the cap, so their number is told.
+  Json summary(std::span<const ImageScores> images) const override {
+    int identical = 0;
+    for (const ImageScores& image : images) identical += image.scores[0].second >= kPsnrCapDb;
+    return identical > 0 ? Json{{"num_identical", identical}} : Json::object();
+  }
+
+ private:
+  static PsnrProtocol protocol_of(const std::string& id) {
+    return id == "psnr-8bit" ? psnr_8bit_protocol() : PsnrProtocol{};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<MetricTool> make_psnr_tool() { return std::make_unique<PsnrTool>(); }
+
+}  // namespace glint

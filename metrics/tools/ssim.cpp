@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/ssim.h"
+
+#include <CLI/CLI.hpp>
+
+#include "glint/scene/image_files.h"
+#include "metrics/tools/tool.h"
+
+namespace glint {
+namespace {
+
+struct Variant {
+  std::string name, id;
+  SsimBorder border;
+};
+const std::vector<Variant> kVariants = {
+    {"3dgs", "ssim-3dgs", SsimBorder::kZeroPadded}, {"wang", "ssim-wang", SsimBorder::kValid}};
+
+class SsimTool final : public MetricTool {
+ public:
+  std::string name() const override { return "glint-ssim"; }
+  std::string description() const override {
+    return "Structural similarity: 11x11 Gaussian window, sigma 1.5, per channel, range 1.";
+  }
+  std::string example() const override {
+    return "glint-ssim renders/ images/ --variant all --mask masks/";
+  }
+  FolderLayout prediction_layout() const override { return {{"renders"}, {"rgb.exr", "rgb.png"}}; }
+  FolderLayout reference_layout() const override {
+    return {{"images"}, {"000000.png", "000000.jpg"}};
+  }
+
+  void add_options(CLI::App& app) override {
+    app.add_option("--variant", variant_, "3dgs: zeros outside the image; wang: valid region; all")
+        ->check(CLI::IsMember({"3dgs", "wang", "all"}))
+        ->capture_default_str();
+  }
+
+  Image load_prediction(const fs::path& path) const override { return read_image(path, 3); }
+  Image load_reference(const fs::path& path) const override { return read_image(path, 3); }
+
+  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
+      const override {
+    const SsimMap map = ssim_map(pair.prediction, pair.reference);
+    std::vector<ToolScores> scores(regions.size());
+    for (std::size_t r = 0; r < regions.size(); ++r)
+      for (const Variant& variant : kVariants)
+        if (variant_ == "all" || variant_ == variant.name)
+          if (const auto value = ssim_mean(map, variant.border, regions[r].mask))
+            scores[r].emplace_back(variant.id, *value);
+    return scores;
+  }
+
+  Json protocol(const std::string& id) const override {
+    for (const Variant& variant : kVariants)
+      if (variant.id == id) return config_to_json(SsimProtocol{variant.border});
+    return nullptr;
+  }
+
+ private:
+  std::string variant_ = "3dgs";
+};
+
+}  // namespace
+
+std::unique_ptr<MetricTool> make_ssim_tool() { return std::make_unique<SsimTool>(); }
+
+}  // namespace glint

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/tools/tool.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <iostream>
+
+#include "glint/core/error.h"
+#include "glint/core/parallel.h"
+#include "glint/core/progress.h"
+#include "glint/scene/image_files.h"
+#include "metrics/tools/tool_output.h"
+
+namespace glint {
+namespace {
+
+struct ToolOptions {
+  PairingOptions pairing;
+  bool json = false, csv = false, quiet = false;
+  int threads = 0;
+};
+
+void add_common_options(CLI::App& app, ToolOptions& options) {
+  PairingOptions& pairing = options.pairing;
+  app.add_option("PREDICTION", pairing.prediction, "image, folder of images, or run folder")
+      ->required();
+  app.add_option("REFERENCE", pairing.reference, "image, folder of images, or dataset folder")
+      ->required();
+  app.add_option("--mask", pairing.mask, "pixels that count: image, or folder with one per name");
+  app.add_option(
+      "--glass", pairing.glass, "glass masks: also score the regions glass, glass-border and opaque"
+  );
+  app.add_option("--pattern", pairing.pattern, "which predictions of a folder, e.g. 'rgb.png'");
+  app.add_flag("--allow-missing", pairing.allow_missing, "score the names that both sides have");
+  auto* json = app.add_flag("--json", options.json, "one JSON document, numbers not rounded");
+  app.add_flag("--csv", options.csv, "one row per image, numbers not rounded")->excludes(json);
+  app.add_option("--threads", options.threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  app.add_flag("--quiet", options.quiet, "no progress on standard error");
+}
+
+MaskImage load_mask(const fs::path& path, const Image& reference) {
+  if (path.empty()) return {};
+  MaskImage mask = with_exit_code(ExitCode::kBadReference, [&] { return read_mask(path); });
+  GLINT_CHECK(
+      mask.size() == reference.size(),
+      kBadReference,
+      "{}: mask of {} x {} pixels for a reference of {} x {}",
+      path.string(),
+      mask.width(),
+      mask.height(),
+      reference.width(),
+      reference.height()
+  );
+  return mask;
+}
+
+// The whole image (or the mask), and the glass regions inside it.
+std::vector<Region> load_regions(const LoadedPair& pair) {
+  const MaskImage mask = load_mask(pair.files.mask, pair.reference);
+  const MaskImage glass = load_mask(pair.files.glass, pair.reference);
+  std::vector<Region> regions = evaluation_regions(glass.empty() ? MaskView{} : MaskView(glass));
+  if (mask.empty()) return regions;
+  for (Region& region : regions) {
+    if (region.mask.empty())
+      region.mask = mask;
+    else
+      for (std::size_t i = 0; i < mask.num_pixels(); ++i) region.mask.data()[i] &= mask.data()[i];
+  }
+  std::erase_if(regions, [](const Region& region) {
+    const auto pixels = region.mask.values();
+    return !region.name.empty() && std::count(pixels.begin(), pixels.end(), 0) ==
+                                       static_cast<std::ptrdiff_t>(pixels.size());
+  });
+  return regions;
+}
+
+LoadedPair load_pair(const MetricTool& tool, const FilePair& files) {
+  LoadedPair pair{files, {}, {}};
+  pair.reference =
+      with_exit_code(ExitCode::kBadReference, [&] { return tool.load_reference(files.reference); });
+  pair.prediction = with_exit_code(ExitCode::kBadPrediction, [&] {
+    return tool.load_prediction(files.prediction);
+  });
+  GLINT_CHECK(
+      pair.prediction.size() == pair.reference.size(),
+      kBadPrediction,
+      "{}: {} x {} pixels, but {} has {} x {}; render at the reference's size",
+      files.prediction.string(),
+      pair.prediction.width(),
+      pair.prediction.height(),
+      files.reference.string(),
+      pair.reference.width(),
+      pair.reference.height()
+  );
+  return pair;
+}
+
+ImageScores score_pair(const MetricTool& tool, const FilePair& files) {
+  const LoadedPair pair = load_pair(tool, files);
+  const std::vector<Region> regions = load_regions(pair);
+  ImageScores image{files, {}};
+  try {
+    const std::vector<ToolScores> scores = tool.score(pair, regions);
+    for (std::size_t r = 0; r < regions.size(); ++r)
+      for (const auto& [id, value] : scores[r])
+        image.scores.emplace_back(regions[r].name.empty() ? id : id + "@" + regions[r].name, value);
+  } catch (const Error& error) {
+    const fs::path& file =
+        error.code() == ExitCode::kBadPrediction ? files.prediction : files.reference;
+    throw Error(error.code(), file.string() + ": " + error.what());
+  }
+  GLINT_CHECK(
+      !image.scores.empty(),
+      kBadReference,
+      "{}: no pixel to score (empty mask or a reference without values)",
+      files.reference.string()
+  );
+  return image;
+}
+
+ToolReport score_all(const MetricTool& tool, const PairingOptions& options) {
+  const Pairing pairing = pair_files(options);
+  ToolReport report{
+      options.prediction, options.reference, options.mask, options.glass, {}, pairing.missing};
+  if (!pairing.missing.empty())
+    log::warn(fmt::format("{} names left out, only on one side", pairing.missing.size()));
+  std::unique_ptr<Progress> progress;
+  if (pairing.pairs.size() > 1)
+    progress = std::make_unique<Progress>(tool.name(), pairing.pairs.size());
+  for (const FilePair& files : pairing.pairs) {
+    report.images.push_back(score_pair(tool, files));
+    if (progress) progress->advance(1, files.name);
+  }
+  return report;
+}
+
+void run(MetricTool& tool, ToolOptions& options, std::ostream& out) {
+  tool.check_options();
+  set_quiet(options.quiet);
+  if (options.threads > 0) set_num_threads(options.threads);
+  options.pairing.prediction_layout = tool.prediction_layout();
+  options.pairing.reference_layout = tool.reference_layout();
+  options.pairing.mask_layout = {{"gt/glass", "masks"}, {}};
+  const ToolReport report = score_all(tool, options.pairing);
+  if (options.json)
+    print_json(tool, report, out);
+  else if (options.csv)
+    print_csv(report, out);
+  else
+    print_text(tool, report, out);
+}
+
+}  // namespace
+
+int run_tool(
+    MetricTool& tool, const std::vector<std::string>& args, std::ostream& out, std::ostream& err
+) {
+  CLI::App app(tool.description(), tool.name());
+  app.footer("Example:\n  " + tool.example() + "\n");
+  ToolOptions options;
+  add_common_options(app, options);
+  tool.add_options(app);
+  try {
+    if (args.empty()) {
+      err << app.help();
+      return static_cast<int>(ExitCode::kUsage);
+    }
+    app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
+    run(tool, options, out);
+  } catch (const CLI::ParseError& error) {
+    const bool success = app.exit(error, out, err) == 0;
+    return static_cast<int>(success ? ExitCode::kSuccess : ExitCode::kUsage);
+  } catch (const Error& error) {
+    err << tool.name() << ": " << error.what() << "\n";
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    err << tool.name() << ": " << error.what() << "\n";
+    return static_cast<int>(ExitCode::kEnvironment);
+  }
+  return static_cast<int>(ExitCode::kSuccess);
+}
+
+int run_tool(std::unique_ptr<MetricTool> tool, int argc, char** argv) {
+  return run_tool(*tool, std::vector<std::string>(argv + 1, argv + argc), std::cout, std::cerr);
+}
+
+bool is_integer_format(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+}
+
+}  // namespace glint

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// What the programs glint-psnr, glint-ssim, glint-depth and glint-normal share: command line, files
+// in pairs, masks and regions, and the three forms of output. A program adds how a pair is scored.
+#pragma once
+
+#include <iosfwd>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "glint/core/config.h"
+#include "glint/core/image.h"
+#include "metrics/metric.h"
+#include "metrics/tools/pairing.h"
+
+namespace CLI {
+class App;
+}
+
+namespace glint {
+
+using ToolScores = std::vector<std::pair<std::string, double>>;  // metric id, value; in print order
+
+struct LoadedPair {
+  FilePair files;
+  Image prediction, reference;
+};
+
+struct ImageScores {
+  FilePair files;
+  ToolScores scores;  // "psnr", then "psnr@glass", ...
+};
+
+class MetricTool {
+ public:
+  virtual ~MetricTool() = default;
+
+  virtual std::string name() const = 0;  // "glint-psnr"
+  virtual std::string description() const = 0;
+  virtual std::string example() const = 0;
+  virtual FolderLayout prediction_layout() const = 0;
+  virtual FolderLayout reference_layout() const = 0;
+
+  virtual void add_options(CLI::App&) {}
+  // After parsing. Errors: kUsage.
+  virtual void check_options() const {}
+
+  // One of a pair's files as the metric wants it. Errors (kBadReference): see image_files.h.
+  virtual Image load_prediction(const fs::path& path) const = 0;
+  virtual Image load_reference(const fs::path& path) const = 0;
+  // One entry per region; an empty one where nothing can be scored. Sizes agree already.
+  virtual std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
+      const = 0;
+  virtual Json protocol(const std::string& metric_id) const = 0;
+  // Further results over all images, printed below the means.
+  virtual Json summary(std::span<const ImageScores>) const { return Json::object(); }
+};
+
+// The whole program but for main(). `args` without the program's name. Results go to `out`, errors
+// and usage to `err`. Returns the exit code.
+int run_tool(
+    MetricTool& tool, const std::vector<std::string>& args, std::ostream& out, std::ostream& err
+);
+int run_tool(std::unique_ptr<MetricTool> tool, int argc, char** argv);
+
+std::unique_ptr<MetricTool> make_psnr_tool();
+std::unique_ptr<MetricTool> make_ssim_tool();
+std::unique_ptr<MetricTool> make_depth_tool();
+std::unique_ptr<MetricTool> make_normal_tool();
+
+// ".png", ".jpg", ".jpeg": integers, so that values are multiples of a step.
+bool is_integer_format(const fs::path& path);
+
+}  // namespace glint

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/tools/tool_output.h"
+
+#include <algorithm>
+#include <optional>
+#include <ostream>
+
+#include "metrics/metric.h"
+
+namespace glint {
+namespace {
+
+std::optional<double> find_score(const ToolScores& scores, const std::string& id) {
+  for (const auto& [name, value] : scores)
+    if (name == id) return value;
+  return std::nullopt;
+}
+
+// Two digits more than tables print.
+std::string rounded(const std::string& id, std::optional<double> value) {
+  const Metric* metric = find_metric(id);
+  const int decimals = metric ? metric->decimals + 2 : 6;
+  return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
+}
+
+// CSV fields with a separator, quote or line break are quoted.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+Json scores_json(const ToolScores& scores) {
+  Json json = Json::object();
+  for (const auto& [id, value] : scores) json[id] = value;
+  return json;
+}
+
+Json image_json(const ImageScores& image) {
+  Json json = {
+      {"name", image.files.name},
+      {"prediction", image.files.prediction.string()},
+      {"reference", image.files.reference.string()}};
+  if (!image.files.mask.empty()) json["mask"] = image.files.mask.string();
+  if (!image.files.glass.empty()) json["glass"] = image.files.glass.string();
+  json["metrics"] = scores_json(image.scores);
+  return json;
+}
+
+std::string summary_text(const Json& value) {
+  return value.is_number_float() ? fmt::format("{:.4f}", value.get<double>()) : value.dump();
+}
+
+void print_mean_only(const ToolScores& means, std::ostream& out) {
+  for (const auto& [id, value] : means) {
+    const Metric* metric = find_metric(id);
+    const std::string unit = metric && !metric->unit.empty() ? " " + metric->unit : "";
+    out << fmt::format("{} {}{}\n", id, rounded(id, value), unit);
+  }
+}
+
+void print_table(const ToolReport& report, const ToolScores& means, std::ostream& out) {
+  std::size_t name_width = 4;
+  for (const ImageScores& image : report.images)
+    name_width = std::max(name_width, image.files.name.size());
+  const auto print_row = [&](const std::string& name, auto&& cell) {
+    out << fmt::format("{:<{}}", name, name_width);
+    for (const auto& mean : means)
+      out << fmt::format(
+          "  {:>{}}", cell(mean.first), std::max<std::size_t>(10, mean.first.size())
+      );
+    out << "\n";
+  };
+  print_row("", [](const std::string& id) { return id; });
+  for (const ImageScores& image : report.images)
+    print_row(image.files.name, [&](const std::string& id) {
+      return rounded(id, find_score(image.scores, id));
+    });
+  print_row("mean", [&](const std::string& id) { return rounded(id, find_score(means, id)); });
+}
+
+}  // namespace
+
+ToolScores mean_scores(std::span<const ImageScores> images) {
+  ToolScores means;
+  for (const ImageScores& image : images)
+    for (const auto& score : image.scores)
+      if (!find_score(means, score.first)) means.emplace_back(score.first, 0.0);
+  for (auto& mean : means) {
+    double sum = 0;
+    int count = 0;
+    for (const ImageScores& image : images)
+      if (const auto value = find_score(image.scores, mean.first)) sum += *value, ++count;
+    mean.second = sum / count;
+  }
+  return means;
+}
+
+void print_text(const MetricTool& tool, const ToolReport& report, std::ostream& out) {
+  const ToolScores means = mean_scores(report.images);
+  if (report.images.size() == 1)
+    print_mean_only(means, out);
+  else
+    print_table(report, means, out);
+  const Json summary = tool.summary(report.images);
+  for (const auto& [key, value] : summary.items()) out << key << " " << summary_text(value) << "\n";
+}
+
+void print_csv(const ToolReport& report, std::ostream& out) {
+  const ToolScores means = mean_scores(report.images);
+  out << "name";
+  for (const auto& mean : means) out << "," << mean.first;
+  out << "\n";
+  const auto print_row = [&](const std::string& name, const ToolScores& scores) {
+    out << csv_field(name);
+    for (const auto& mean : means) {
+      const auto value = find_score(scores, mean.first);
+      out << "," << (value ? fmt::format("{}", *value) : "");
+    }
+    out << "\n";
+  };
+  for (const ImageScores& image : report.images) print_row(image.files.name, image.scores);
+  print_row("mean", means);
+}
+
+void print_json(const MetricTool& tool, const ToolReport& report, std::ostream& out) {
+  const ToolScores means = mean_scores(report.images);
+  Json json = {
+      {"tool", tool.name()},
+      {"prediction", report.prediction.string()},
+      {"reference", report.reference.string()}};
+  if (!report.mask.empty()) json["mask"] = report.mask.string();
+  if (!report.glass.empty()) json["glass"] = report.glass.string();
+  json["num_images"] = report.images.size();
+  json["mean"] = scores_json(means);
+  json["summary"] = tool.summary(report.images);
+  json["protocol"] = Json::object();
+  for (const auto& mean : means) {
+    const std::string id = mean.first.substr(0, mean.first.find('@'));
+    json["protocol"][id] = tool.protocol(id);
+  }
+  json["images"] = Json::array();
+  for (const ImageScores& image : report.images) json["images"].push_back(image_json(image));
+  json["missing"] = report.missing;
+  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+}
+
+}  // namespace glint

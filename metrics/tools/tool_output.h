@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// The results of a metric program as text for people, as CSV, and as one JSON document.
+#pragma once
+
+#include <iosfwd>
+#include <vector>
+
+#include "metrics/tools/tool.h"
+
+namespace glint {
+
+struct ToolReport {
+  fs::path prediction, reference, mask, glass;
+  std::vector<ImageScores> images;
+  std::vector<std::string> missing;  // names left out by --allow-missing
+};
+
+// Mean over the images that have the metric, in order of first appearance.
+ToolScores mean_scores(std::span<const ImageScores> images);
+
+void print_text(const MetricTool& tool, const ToolReport& report, std::ostream& out);
+// A row per image and one named "mean"; unrounded.
+void print_csv(const ToolReport& report, std::ostream& out);
+// Unrounded numbers, protocols, file names.
+void print_json(const MetricTool& tool, const ToolReport& report, std::ostream& out);
+
+}  // namespace glint
