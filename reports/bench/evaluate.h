@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Every metric of one view, from the files of its render.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "glint/core/config.h"
+#include "glint/core/files.h"
+#include "glint/scene/scene.h"
+
+namespace glint {
+
+using Scores = std::map<std::string, double>;  // metric id -> value; "psnr@glass" for a region
+
+// `folder`: renders/<view>. Metrics whose map was not rendered, or that have no ground truth, are
+// absent. Errors (kBadPrediction): rgb missing, a file damaged or of another size than the view.
+Scores score_view(const fs::path& folder, const View& view);
+
+// The protocols behind the ids, for metrics.json.
+Json score_protocols();
+
+// Mean of each metric over the views that have it.
+Scores mean_scores(const std::vector<Scores>& views);
+
+}  // namespace glint

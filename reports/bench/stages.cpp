@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "reports/bench/stages.h"
+
+#include <chrono>
+
+#include "glint/core/progress.h"
+#include "reports/bench/evaluate.h"
+#include "reports/bench/interrupt.h"
+#include "reports/bench/strip.h"
+
+namespace glint {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void write_metrics(
+    const RunSpec& spec, const Scores& means, const std::vector<Scores>& scores,
+    const std::vector<View>& views
+) {
+  Json json = {{"scene", spec.scene}, {"method", spec.method}, {"seed", spec.options.seed}};
+  json["metrics"] = means;
+  json["views"] = Json::array();
+  for (std::size_t i = 0; i < views.size(); ++i)
+    json["views"].push_back({{"name", views[i].name}, {"metrics", scores[i]}});
+  json["protocol"] = score_protocols();
+  write_file(spec.folder / "metrics.json", json.dump(2) + "\n");
+}
+
+}  // namespace
+
+std::unique_ptr<Method> load_trained(const RunSpec& spec) {
+  GLINT_CHECK(
+      trained_cost(spec).has_value(),
+      kBadPrediction,
+      "{}: training has not finished here; run `glint-bench train` first",
+      spec.folder.string()
+  );
+  auto method = find_method(spec.method).create(spec.config);
+  with_exit_code(ExitCode::kBadPrediction, [&] { method->load(spec.folder.string()); });
+  return method;
+}
+
+void render_stage(const RunSpec& spec, const Scene& scene, const Method& method) {
+  std::error_code code;
+  fs::remove_all(spec.folder / "renders", code);
+  for (const View& view : scene.test) {
+    throw_if_interrupted();
+    const RenderOutput output = method.render(view.camera);
+    GLINT_CHECK(
+        output.rgb.size() == view.camera.size() && output.rgb.channels() == 3,
+        kBadPrediction,
+        "{} rendered {} as {}x{}x{}, expected {}x{}x3",
+        spec.method,
+        view.name,
+        output.rgb.width(),
+        output.rgb.height(),
+        output.rgb.channels(),
+        view.camera.width,
+        view.camera.height
+    );
+    write_render(view_folder(spec.folder, view.name), output);
+  }
+  write_strip(spec.folder, scene.test);
+}
+
+double measure_fps(const Method& method, const Scene& scene, const TimingOptions& options) {
+  const auto render = [&](int frame) {
+    method.render(scene.test[static_cast<std::size_t>(frame) % scene.test.size()].camera);
+  };
+  for (int frame = 0; frame < options.warmup; ++frame) render(frame);
+  const auto start = Clock::now();
+  for (int frame = 0; frame < options.frames; ++frame) render(frame);
+  return options.frames / seconds_since(start);
+}
+
+std::map<std::string, double> eval_stage(
+    const RunSpec& spec, const Scene& scene, const std::map<std::string, double>& cost
+) {
+  std::vector<Scores> scores;
+  for (const View& view : scene.test)
+    scores.push_back(with_exit_code(ExitCode::kBadPrediction, [&] {
+      return score_view(view_folder(spec.folder, view.name), view);
+    }));
+  Scores means = mean_scores(scores);
+  means.insert(cost.begin(), cost.end());
+  write_metrics(spec, means, scores, scene.test);
+  return means;
+}
+
+}  // namespace glint

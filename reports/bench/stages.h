@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The stages of a run: train -> render -> eval. Each reads what the one before left in the run folder.
+#pragma once
+
+#include <memory>
+
+#include "metrics/metric.h"
+#include "reports/bench/run_folder.h"
+
+namespace glint {
+
+struct TimingOptions {
+  int frames = 50, warmup = 5;
+};
+
+// Trains from scratch into spec.folder: config.json, log.jsonl, the method's files, then env.json
+// with seconds and peak memory. Errors: whatever the method throws; kBadPrediction when a loss or
+// parameter is not finite (the last good state is in checkpoint/); Interrupted.
+std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene);
+
+// The trained method of a run folder. Errors (kBadPrediction): not trained, files damaged.
+std::unique_ptr<Method> load_trained(const RunSpec& spec);
+
+// Renders the test views into renders/, and strip.png for people.
+void render_stage(const RunSpec& spec, const Scene& scene, const Method& method);
+
+// Frames a second over the test cameras: the inverse of the mean frame time. Nothing is written or
+// converted inside the clock.
+double measure_fps(const Method& method, const Scene& scene, const TimingOptions& options);
+
+// Scores renders/ against the scene's test views and writes metrics.json (means, per-view values with
+// names, protocols). `cost` joins the means: "fps", "train-minutes", "peak-memory", "num-surfels".
+// Returns the means by id; regions as "psnr@glass". Errors (kBadPrediction): a render is missing,
+// damaged or of another size.
+std::map<std::string, double> eval_stage(
+    const RunSpec& spec, const Scene& scene, const std::map<std::string, double>& cost
+);
+
+}  // namespace glint

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// records.jsonl: what a profile's folder knows about its cells. One JSON object a line, appended when
+// a cell ends, whether it finished or failed; never rewritten. docs/RECORDS.md lists the fields.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "glint/core/config.h"
+#include "glint/core/files.h"
+
+namespace glint {
+
+inline constexpr int kRecordSchema = 1;
+
+// One entry of scene x method x seed.
+struct CellKey {
+  std::string scene, method;
+  std::uint64_t seed = 0;
+  std::string text() const;  // "room_1/glint/no-trans/0"
+  friend auto operator<=>(const CellKey&, const CellKey&) = default;
+};
+
+struct Failure {
+  std::string stage;    // "dataset", "train", "render", "eval"
+  std::string kind;     // "bad-input", "usage", "environment", "not-finite", "out-of-memory", "unknown"
+  std::string message;
+  std::vector<std::string> log_tail;  // last lines of log.jsonl
+};
+
+struct Record {
+  int schema = kRecordSchema;
+  std::string profile, dataset;
+  CellKey cell;
+  std::optional<Failure> failure;         // set: the cell failed, `metrics` is empty
+  std::map<std::string, double> metrics;  // id -> mean over test views; "psnr@glass" for a region
+  std::string resolution;                 // of the test views, "160x90"
+  std::string config_hash, dataset_hash;  // equal hashes: nothing to do again
+  std::size_t num_surfels = 0;
+  std::vector<std::string> warnings;      // of the method: losses off, missing priors
+  Json timings = Json::object();          // stage -> seconds
+  Json environment = Json::object();      // machine, build, date
+
+  bool ok() const { return !failure.has_value(); }
+};
+
+Json record_to_json(const Record& record);
+// Unknown fields are ignored and absent ones keep their defaults, so older and newer files read.
+// Errors (kBadPrediction): `json` is no record (no cell, wrong types).
+Record record_from_json(const Json& json, std::string_view where);
+
+void append_record(const fs::path& file, const Record& record);
+
+// All cells of a file, the last record of each winning, in the order of the first appearance. Lines
+// torn by a crash while appending are reported and skipped; no file means no records.
+// Errors (kBadPrediction): a line that is JSON but no record, a newer schema.
+std::vector<Record> read_records(const fs::path& file);
+
+const Record* find_record(const std::vector<Record>& records, const CellKey& cell);
+
+// 16 hex digits of the 64-bit FNV-1a of the text.
+std::string hash_text(std::string_view text);
+
+}  // namespace glint

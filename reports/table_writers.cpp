@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "reports/table_writers.h"
+
+#include <algorithm>
+
+namespace glint {
+
+namespace {
+
+constexpr std::string_view kPublishedNote =
+    "† published by the paper's authors, measured on their own data; not comparable digit by digit.";
+constexpr std::string_view kPartialNote = "* mean over fewer scenes than other methods; not ranked.";
+
+std::string status_word(CellStatus status) {
+  switch (status) {
+    case CellStatus::kOk: return "ok";
+    case CellStatus::kPartial: return "partial";
+    case CellStatus::kMissing: return "missing";
+    case CellStatus::kFailed: return "failed";
+    case CellStatus::kNotApplicable: return "not applicable";
+  }
+  return "missing";
+}
+
+std::string group_title(const TableColumn& column) {
+  return column.published ? column.group + "†" : column.group;
+}
+
+bool has_value(const TableCell& cell) {
+  return cell.status == CellStatus::kOk || cell.status == CellStatus::kPartial;
+}
+
+std::string join(const std::vector<std::string>& parts, std::string_view separator) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) text += (i ? std::string(separator) : "") + parts[i];
+  return text;
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv_value(const TableCell& cell, const TableColumn& column) {
+  const bool text = !column.field.empty();
+  if (!has_value(cell)) return status_word(cell.status);
+  return csv_field(text || column.published ? cell.text : fmt::format("{:.10g}", cell.value));
+}
+
+Json cell_json(const TableCell& cell, const TableColumn& column) {
+  Json json = Json::object();
+  json["status"] = status_word(cell.status);
+  if (has_value(cell)) {
+    json["text"] = shown_text(cell, column);
+    if (column.field.empty()) json["value"] = cell.value;
+  }
+  if (cell.num_seeds > 0) {
+    json["n_scenes"] = cell.num_scenes;
+    json["n_seeds"] = cell.num_seeds;
+    json["spread"] = cell.spread;
+    json["spread_kind"] = cell.num_seeds > 2 ? "std" : (cell.num_seeds == 2 ? "range" : "none");
+  }
+  if (cell.rank > 0) json["rank"] = cell.rank;
+  if (!cell.note.empty()) json["note"] = cell.note;
+  return json;
+}
+
+Json column_json(const TableColumn& column) {
+  const char* direction = column.order == RankOrder::kHigherFirst  ? "higher"
+                          : column.order == RankOrder::kLowerFirst ? "lower"
+                                                                  : "none";
+  return {
+      {"id", column.id},
+      {"title", column.title},
+      {"group", column.group},
+      {"metric", column.metric},
+      {"unit", column.unit},
+      {"direction", direction},
+      {"decimals", column.decimals},
+      {"scale", column.scale},
+      {"published", column.published}};
+}
+
+}  // namespace
+
+std::string shown_text(const TableCell& cell, const TableColumn& column) {
+  if (cell.status == CellStatus::kNotApplicable) return "–";
+  if (!has_value(cell)) return status_word(cell.status);
+  std::string text = cell.text;
+  if (cell.num_seeds > 1) text += fmt::format(" ± {:.{}f}", cell.spread, column.decimals);
+  return cell.status == CellStatus::kPartial ? text + "*" : text;
+}
+
+std::string shown_title(const TableColumn& column) {
+  std::string title = column.title;
+  if (!column.unit.empty()) title += fmt::format(" ({})", column.unit);
+  if (column.order != RankOrder::kNone)
+    title += fmt::format(" {}", order_arrow(column.order));
+  return title;
+}
+
+std::vector<std::string> table_notes(const Table& table) {
+  std::vector<std::string> notes = table.notes;
+  const bool published = std::any_of(
+      table.columns.begin(), table.columns.end(), [](const TableColumn& c) { return c.published; }
+  );
+  bool partial = false;
+  for (const TableRow& row : table.rows)
+    for (const TableCell& cell : row.cells) partial |= cell.status == CellStatus::kPartial;
+  if (partial) notes.emplace_back(kPartialNote);
+  if (published) notes.emplace_back(kPublishedNote);
+  return notes;
+}
+
+std::string table_markdown(const Table& table) {
+  std::vector<std::string> header{"Method"}, rule{"---"};
+  for (const TableColumn& column : table.columns) {
+    header.push_back(fmt::format("{}<br>{}", shown_title(column), group_title(column)));
+    rule.push_back("---:");
+  }
+  std::string text = fmt::format("## {}\n\n{}\n\n", table.title, table.caption);
+  text += fmt::format("| {} |\n| {} |\n", join(header, " | "), join(rule, " | "));
+  for (const TableRow& row : table.rows) {
+    std::vector<std::string> cells{row.title};
+    for (std::size_t i = 0; i < row.cells.size(); ++i) {
+      const char* mark = row.cells[i].rank == 1 ? "**" : (row.cells[i].rank == 2 ? "_" : "");
+      cells.push_back(mark + shown_text(row.cells[i], table.columns[i]) + mark);
+    }
+    text += fmt::format("| {} |\n", join(cells, " | "));
+  }
+  text += "\n";
+  for (const std::string& note : table_notes(table)) text += fmt::format("- {}\n", note);
+  return text;
+}
+
+std::string table_csv(const Table& table) {
+  std::vector<std::string> header{"method"};
+  for (const TableColumn& column : table.columns) header.push_back(csv_field(column.id));
+  std::string text = join(header, ",") + "\n";
+  for (const TableRow& row : table.rows) {
+    std::vector<std::string> cells{csv_field(row.method)};
+    for (std::size_t i = 0; i < row.cells.size(); ++i)
+      cells.push_back(csv_value(row.cells[i], table.columns[i]));
+    text += join(cells, ",") + "\n";
+  }
+  return text;
+}
+
+Json table_json(const Table& table) {
+  Json json = {{"id", table.id}, {"title", table.title}, {"caption", table.caption}};
+  json["columns"] = Json::array();
+  for (const TableColumn& column : table.columns) json["columns"].push_back(column_json(column));
+  json["rows"] = Json::array();
+  for (const TableRow& row : table.rows) {
+    Json cells = Json::object();
+    for (std::size_t i = 0; i < row.cells.size(); ++i)
+      cells[table.columns[i].id] = cell_json(row.cells[i], table.columns[i]);
+    json["rows"].push_back(
+        {{"method", row.method}, {"title", row.title}, {"cells", std::move(cells)}}
+    );
+  }
+  json["order_agreement"] = Json::array();
+  for (const OrderAgreement& order : table.agreement)
+    json["order_agreement"].push_back(
+        {{"column", order.column}, {"kendall_tau", order.tau}, {"n_methods", order.num_methods}}
+    );
+  json["notes"] = table_notes(table);
+  return json;
+}
+
+void write_table(const fs::path& folder, const Table& table) {
+  write_file(folder / (table.id + ".md"), table_markdown(table));
+  write_file(folder / (table.id + ".tex"), table_latex(table));
+  write_file(folder / (table.id + ".csv"), table_csv(table));
+  write_file(folder / (table.id + ".json"), table_json(table).dump(2) + "\n");
+}
+
+}  // namespace glint

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: MIT
+#include "reports/tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "reports/kendall.h"
+#include "reports/published.h"
+
+namespace glint {
+
+namespace {
+
+using RecordPointers = std::vector<const Record*>;
+
+std::string dataset_title_of(const TableDefinition& definition, const std::string& dataset) {
+  return dataset == definition.dataset ? definition.dataset_title : dataset;
+}
+
+TableColumn published_column(
+    const TableColumn& measured, const std::string& dataset, const PublishedValue& sample
+) {
+  TableColumn column = measured;
+  column.id = fmt::format("published/{}/{}", dataset, measured.paper_column);
+  column.group = dataset;
+  column.dataset = dataset;
+  column.metric.clear();
+  column.unit = sample.unit == "1" ? "" : sample.unit;
+  column.decimals = sample.decimals;
+  column.published = true;
+  return column;
+}
+
+// The paper's numbers of one of its datasets; columns it does not have are left out.
+void add_published_columns(
+    const TableDefinition& definition, const std::string& dataset, std::vector<TableColumn>& columns
+) {
+  for (const TableColumn& measured : definition.columns)
+    for (const PublishedValue& value : published_values())
+      if (value.table == definition.paper_table && value.dataset == dataset &&
+          value.column == measured.paper_column) {
+        columns.push_back(published_column(measured, dataset, value));
+        break;
+      }
+}
+
+std::vector<TableColumn> columns_of(
+    const TableDefinition& definition, const std::vector<Record>& records
+) {
+  std::vector<TableColumn> columns = definition.columns;
+  std::set<std::string> further;
+  for (const Record& record : records)
+    if (record.dataset != definition.dataset) further.insert(record.dataset);
+  if (!definition.every_dataset) further.clear();
+  for (const std::string& dataset : further)
+    for (TableColumn column : definition.columns) {
+      column.id = fmt::format("{}/{}", dataset, column.id);
+      column.dataset = dataset;
+      column.group = dataset_title_of(definition, dataset);
+      columns.push_back(column);
+    }
+  for (const std::string& dataset : definition.paper_datasets)
+    add_published_columns(definition, dataset, columns);
+  return columns;
+}
+
+std::vector<TableRowDefinition> rows_of(
+    const TableDefinition& definition, const std::vector<Record>& records
+) {
+  std::vector<TableRowDefinition> rows = definition.rows;
+  std::set<std::string> listed, extra;
+  for (const TableRowDefinition& row : rows) listed.insert(row.method);
+  for (const Record& record : records)
+    for (const std::string& pattern : definition.other_methods)
+      if (!listed.count(record.cell.method) && glob_match(pattern, record.cell.method))
+        extra.insert(record.cell.method);
+  for (const std::string& method : extra) rows.push_back({method, method, ""});
+  return rows;
+}
+
+std::set<std::string> scenes_of(const std::vector<Record>& records, const std::string& dataset) {
+  std::set<std::string> scenes;
+  for (const Record& record : records)
+    if (record.dataset == dataset) scenes.insert(record.cell.scene);
+  return scenes;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+// Over seeds. Two values have no meaningful deviation: their range is given instead.
+double spread_of(const std::vector<double>& values) {
+  if (values.size() < 2) return 0;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  if (values.size() == 2) return *high - *low;
+  const double mean = mean_of(values);
+  double sum = 0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  return std::sqrt(sum / static_cast<double>(values.size() - 1));
+}
+
+std::string failure_note(const Record& record) {
+  std::string note = fmt::format(
+      "{} failed ({}: {})", record.cell.text(), record.failure->stage, record.failure->message
+  );
+  std::replace(note.begin(), note.end(), '\n', ' ');
+  return note;
+}
+
+std::string format_value(double value, const TableColumn& column) {
+  return fmt::format("{:.{}f}", value, column.decimals);
+}
+
+TableCell cell_without_values(const RecordPointers& records) {
+  TableCell cell;
+  for (const Record* record : records)
+    if (!record->ok()) {
+      cell.status = CellStatus::kFailed;
+      cell.note = failure_note(*record);
+      return cell;
+    }
+  cell.note = records.empty() ? "not built or not run" : "not measured";
+  return cell;
+}
+
+// Scenes first, then seeds. `expected`: scenes that any method has.
+TableCell measured_cell(
+    const RecordPointers& records, const TableColumn& column, std::size_t expected
+) {
+  std::map<std::uint64_t, std::vector<double>> scenes_of_seed;
+  for (const Record* record : records)
+    if (const auto it = record->metrics.find(column.metric);
+        record->ok() && it != record->metrics.end())
+      scenes_of_seed[record->cell.seed].push_back(it->second * column.scale);
+  if (scenes_of_seed.empty()) return cell_without_values(records);
+
+  std::vector<double> seed_means;
+  std::size_t fewest = expected;
+  for (const auto& [seed, values] : scenes_of_seed) {
+    seed_means.push_back(mean_of(values));
+    fewest = std::min(fewest, values.size());
+  }
+  TableCell cell;
+  cell.value = mean_of(seed_means);
+  cell.spread = spread_of(seed_means);
+  cell.num_scenes = static_cast<int>(fewest);
+  cell.num_seeds = static_cast<int>(seed_means.size());
+  cell.text = format_value(cell.value, column);
+  cell.status = fewest == expected ? CellStatus::kOk : CellStatus::kPartial;
+  if (cell.status == CellStatus::kPartial)
+    cell.note = fmt::format("mean over {} of {} scenes", fewest, expected);
+  return cell;
+}
+
+std::string text_field(const Record& record, const std::string& field) {
+  if (field == "resolution") return record.resolution;
+  const auto it = record.environment.find(field);
+  return it != record.environment.end() && it->is_string() ? it->get<std::string>() : "";
+}
+
+TableCell text_cell(const RecordPointers& records, const TableColumn& column) {
+  std::set<std::string> values;
+  for (const Record* record : records)
+    if (const std::string text = text_field(*record, column.field); record->ok() && !text.empty())
+      values.insert(text);
+  if (values.empty()) return cell_without_values(records);
+  TableCell cell;
+  cell.status = CellStatus::kOk;
+  for (const std::string& value : values) cell.text += (cell.text.empty() ? "" : ", ") + value;
+  return cell;
+}
+
+TableCell published_cell(
+    const TableDefinition& definition, const TableColumn& column, const TableRowDefinition& row
+) {
+  TableCell cell;
+  const PublishedValue* value =
+      find_published(definition.paper_table, column.dataset, row.paper_row, column.paper_column);
+  cell.status = value ? CellStatus::kOk : CellStatus::kNotApplicable;
+  if (!value) return cell;
+  cell.value = value->value;
+  cell.text = value->text;
+  cell.note = value->source;
+  return cell;
+}
+
+TableRow build_row(
+    const TableDefinition& definition, const TableRowDefinition& row,
+    const std::vector<TableColumn>& columns, const std::vector<Record>& records
+) {
+  TableRow result{row.method, row.title, row.paper_row, {}};
+  for (const TableColumn& column : columns) {
+    if (column.published) {
+      result.cells.push_back(published_cell(definition, column, row));
+      continue;
+    }
+    RecordPointers matching;
+    for (const Record& record : records)
+      if (record.dataset == column.dataset && record.cell.method == row.method)
+        matching.push_back(&record);
+    result.cells.push_back(
+        column.metric.empty()
+            ? text_cell(matching, column)
+            : measured_cell(matching, column, scenes_of(records, column.dataset).size())
+    );
+  }
+  return result;
+}
+
+// 1 for the best; equal values share a rank and the next one is skipped. Methods beyond the paper's
+// rows (controls, variants) are ranked too: they are results like any other.
+void rank_column(Table& table, std::size_t column) {
+  const RankOrder order = table.columns[column].order;
+  std::vector<double> values;
+  for (const TableRow& row : table.rows)
+    if (row.cells[column].status == CellStatus::kOk) values.push_back(row.cells[column].value);
+  if (order == RankOrder::kNone || values.size() < 2) return;
+  for (TableRow& row : table.rows) {
+    TableCell& cell = row.cells[column];
+    if (cell.status != CellStatus::kOk) continue;
+    const auto better = std::count_if(values.begin(), values.end(), [&](double other) {
+      return order == RankOrder::kHigherFirst ? other > cell.value : other < cell.value;
+    });
+    cell.rank = better < 3 ? static_cast<int>(better) + 1 : 0;
+  }
+}
+
+// Against the first published group, the paper's counterpart of the data.
+void add_agreement(Table& table, std::size_t measured, const std::string& paper_dataset) {
+  const std::string published_id =
+      fmt::format("published/{}/{}", paper_dataset, table.columns[measured].paper_column);
+  const auto it = std::find_if(
+      table.columns.begin(), table.columns.end(), [&](const TableColumn& column) {
+        return column.id == published_id;
+      }
+  );
+  if (it == table.columns.end()) return;
+  const auto published = static_cast<std::size_t>(it - table.columns.begin());
+  std::vector<double> ours, theirs;
+  for (const TableRow& row : table.rows)
+    if (row.cells[measured].status == CellStatus::kOk &&
+        row.cells[published].status == CellStatus::kOk) {
+      ours.push_back(row.cells[measured].value);
+      theirs.push_back(row.cells[published].value);
+    }
+  const double tau = kendall_tau(ours, theirs);
+  if (std::isfinite(tau))
+    table.agreement.push_back({table.columns[measured].id, tau, static_cast<int>(ours.size())});
+}
+
+void add_notes(Table& table, const TableDefinition& definition, const std::vector<Record>& records) {
+  std::set<std::uint64_t> seeds;
+  for (const Record& record : records) seeds.insert(record.cell.seed);
+  std::string scenes;
+  for (const std::string& scene : scenes_of(records, definition.dataset))
+    scenes += (scenes.empty() ? "" : ", ") + scene;
+  table.notes.push_back(fmt::format(
+      "Mean over test views, then scenes ({}), then {} seed{}.",
+      scenes.empty() ? "none run yet" : scenes,
+      seeds.size(),
+      seeds.size() == 1 ? "" : "s"
+  ));
+  std::set<std::string> failures;
+  for (const Record& record : records)
+    for (const TableRow& row : table.rows)
+      if (!record.ok() && record.cell.method == row.method) failures.insert(failure_note(record));
+  table.notes.insert(table.notes.end(), failures.begin(), failures.end());
+  for (const OrderAgreement& order : table.agreement)
+    table.notes.push_back(fmt::format(
+        "Kendall's tau of the method order, measured against published, {}: {:.2f} ({} methods).",
+        order.column,
+        order.tau,
+        order.num_methods
+    ));
+}
+
+}  // namespace
+
+Table build_table(const TableDefinition& definition, const std::vector<Record>& records) {
+  Table table{definition.id, definition.title, definition.caption, {}, {}, {}, {}};
+  table.columns = columns_of(definition, records);
+  for (const TableRowDefinition& row : rows_of(definition, records))
+    table.rows.push_back(build_row(definition, row, table.columns, records));
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (table.columns[i].published) continue;
+    rank_column(table, i);
+    if (!table.columns[i].paper_column.empty() && !definition.paper_datasets.empty() &&
+        table.columns[i].dataset == definition.dataset)
+      add_agreement(table, i, definition.paper_datasets.front());
+  }
+  add_notes(table, definition, records);
+  return table;
+}
+
+std::string_view order_arrow(RankOrder order) {
+  if (order == RankOrder::kHigherFirst) return "↑";
+  return order == RankOrder::kLowerFirst ? "↓" : "";
+}
+
+}  // namespace glint

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+
+#include "glint/core/progress.h"
+#include "reports/bench/interrupt.h"
+#include "reports/bench/runner.h"
+#include "reports/verbs/result_tables.h"
+
+namespace glint {
+
+namespace {
+
+int exit_code_of(const RunSummary& summary) {
+  if (summary.interrupted) return kInterruptedExit;
+  return static_cast<int>(summary.failed > 0 ? ExitCode::kPartial : ExitCode::kSuccess);
+}
+
+void print_summary_json(
+    const RunSummary& summary, const fs::path& folder, const std::vector<Table>& tables
+) {
+  Json json = {
+      {"folder", folder.string()},
+      {"ran", summary.ran},
+      {"reused", summary.reused},
+      {"failed", summary.failed},
+      {"interrupted", summary.interrupted}};
+  json["tables"] = Json::array();
+  for (const Table& table : tables) json["tables"].push_back(table_json(table));
+  print_json(json);
+}
+
+int run_all(const CommonOptions& common, bool force) {
+  install_interrupt_handler();
+  RunnerOptions options;
+  options.profile = common.resolved_profile();
+  options.filter = common.filter();
+  options.assignments = common.set;
+  options.out = common.profile_folder(options.profile);
+  options.force = force;
+  options.load = common.scene_loader();
+  const RunSummary summary = run_profile(options);
+  const auto tables = result_tables(options.out);
+  write_tables(options.out, tables);
+  if (common.json)
+    print_summary_json(summary, options.out, tables);
+  else
+    print_tables(tables);
+  log::info(fmt::format(
+      "{} run, {} reused, {} failed{}; tables in {}",
+      summary.ran,
+      summary.reused,
+      summary.failed,
+      summary.interrupted ? ", interrupted (the same command goes on)" : "",
+      (options.out / "tables").string()
+  ));
+  return exit_code_of(summary);
+}
+
+}  // namespace
+
+void add_all_verb(CommandLine& line) {
+  auto force = std::make_shared<bool>(false);
+  CLI::App* verb = line.add_verb(
+      line.app, "all", "run every cell of a profile and print the tables", [&line, force] {
+        return run_all(line.common, *force);
+      }
+  );
+  verb->add_flag("--force", *force, "run finished cells again");
+}
+
+}  // namespace glint

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+
+#include "datasets/dataset.h"
+#include "datasets/glassroom/glassroom.h"
+#include "glint/core/progress.h"
+#include "reports/verbs/verb.h"
+
+namespace glint {
+
+namespace {
+
+struct MakeOptions {
+  std::string dataset;
+  std::vector<std::string> scenes{"room_1"};
+  GlassRoomOptions room;
+};
+
+fs::path folder_for(
+    const CommonOptions& common, const GlassRoomOptions& room, bool out_given, bool single
+) {
+  if (out_given) return single ? fs::path(common.out) : fs::path(common.out) / room.scene;
+  return fs::path(common.data) / "glassroom" /
+         fmt::format("{}-{}", room.scene, glassroom_hash(room).substr(0, 8));
+}
+
+int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
+  GLINT_CHECK(
+      options.dataset == "glassroom",
+      kUsage,
+      "dataset make {}: no such generator; expected glassroom",
+      options.dataset
+  );
+  options.room.seed = common.seed.value_or(0);
+  Json made = Json::array();
+  for (const std::string& scene : options.scenes) {
+    options.room.scene = scene;
+    const fs::path folder =
+        folder_for(common, options.room, out_given, options.scenes.size() == 1);
+    const bool is_new = make_glassroom(options.room, folder);
+    made.push_back({{"scene", scene}, {"folder", folder.string()}, {"made", is_new}});
+    if (!common.json)
+      print_text(fmt::format("{} {}\n", folder.string(), is_new ? "made" : "was there already"));
+  }
+  if (common.json) print_json({{"scenes", made}});
+  return 0;
+}
+
+Json scene_json(const Scene& scene, const std::string& loader) {
+  const bool any = !scene.train.empty();
+  return {
+      {"name", scene.name},
+      {"dataset", scene.dataset},
+      {"loader", loader},
+      {"train_views", scene.train.size()},
+      {"test_views", scene.test.size()},
+      {"width", any ? scene.train[0].camera.width : 0},
+      {"height", any ? scene.train[0].camera.height : 0},
+      {"points", scene.points.positions.size()},
+      {"simulated_priors", scene.simulated_priors},
+      {"spatial_scale", scene.spatial_scale},
+      {"hash", scene.spec_hash}};
+}
+
+int run_info(const CommonOptions& common, const std::string& folder) {
+  const std::string loader = find_loader(folder).name;
+  const Scene scene = load_scene(folder, {});
+  if (common.json)
+    print_json(scene_json(scene, loader));
+  else
+    print_text(describe_scene(scene) + "\n");
+  return 0;
+}
+
+int run_check(const CommonOptions& common, const std::string& folder) {
+  const std::vector<Finding> findings = check_dataset(folder);
+  Json json = {{"folder", folder}, {"findings", Json::array()}};
+  std::string text;
+  for (const Finding& finding : findings) {
+    json["findings"].push_back(
+        {{"check", finding.check}, {"where", finding.where}, {"message", finding.message}}
+    );
+    text += fmt::format("{}: {}: {}\n", finding.check, finding.where, finding.message);
+  }
+  if (common.json)
+    print_json(json);
+  else
+    print_text(findings.empty() ? fmt::format("{}: nothing wrong\n", folder) : text);
+  return static_cast<int>(findings.empty() ? ExitCode::kSuccess : ExitCode::kCheckFailed);
+}
+
+void add_make(CommandLine& line, CLI::App& dataset) {
+  auto options = std::make_shared<MakeOptions>();
+  auto verb = std::make_shared<CLI::App*>(nullptr);
+  *verb = line.add_verb(
+      dataset, "make", "render GlassRoom scenes (--seed varies the layout)", [&line, options, verb] {
+        return run_make(line.common, *options, (*verb)->count("--out") > 0);
+      }
+  );
+  CLI::App& make = **verb;
+  GlassRoomOptions& room = options->room;
+  make.add_option("dataset", options->dataset, "glassroom")->required();
+  make.add_option("--scene", options->scenes, "room_1 ... room_5; several make several")
+      ->capture_default_str();
+  make.add_option("--width", room.width, "pixels")->capture_default_str();
+  make.add_option("--height", room.height, "pixels")->capture_default_str();
+  make.add_option("--views", room.views, "views along the camera path")->capture_default_str();
+  make.add_option("--spp", room.spp, "samples a pixel")->capture_default_str();
+  make.add_option("--assets", room.assets, "folder with glTF furniture");
+}
+
+using FolderAction = int (*)(const CommonOptions&, const std::string&);
+
+void add_folder_verb(
+    CommandLine& line, CLI::App& dataset, const char* name, const char* help, FolderAction action
+) {
+  auto folder = std::make_shared<std::string>();
+  line.add_verb(dataset, name, help, [&line, folder, action] { return action(line.common, *folder); })
+      ->add_option("folder", *folder, "dataset folder")
+      ->required();
+}
+
+}  // namespace
+
+void add_dataset_verb(CommandLine& line) {
+  CLI::App* dataset = line.app.add_subcommand("dataset", "make, describe and check datasets");
+  dataset->require_subcommand(1);
+  add_make(line, *dataset);
+  add_folder_verb(line, *dataset, "info", "what a folder holds, as methods will see it", run_info);
+  add_folder_verb(line, *dataset, "check", "everything wrong with a folder; exit 4", run_check);
+}
+
+}  // namespace glint

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "glint/core/parallel.h"
+#include "reports/bench/machine.h"
+#include "reports/revision.h"
+#include "reports/verbs/verb.h"
+
+namespace glint {
+
+namespace {
+
+constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
+constexpr std::uint64_t kNeededDisk = 2 * kGiB;    // a profile on rooms stays well below
+constexpr std::uint64_t kNeededMemory = 2 * kGiB;
+
+struct Examined {
+  std::string name, value;
+  bool good = true;
+  std::string advice;  // when not good
+};
+
+std::string gib(std::uint64_t bytes) {
+  return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / static_cast<double>(kGiB));
+}
+
+std::vector<Examined> examine(const CommonOptions& common) {
+  const Machine machine = this_machine();
+  const std::uint64_t disk = free_disk_bytes(common.out);
+  return {
+      {"cpu", machine.cpu, true, ""},
+      {"avx2",
+       machine.has_avx2 ? "yes" : "no",
+       machine.has_avx2,
+       "the CPU kernels need AVX2 and FMA; use another machine"},
+      {"threads", fmt::format("{} of {}", num_threads(), machine.cores), true, ""},
+      {"memory",
+       gib(machine.memory_bytes),
+       machine.memory_bytes >= kNeededMemory,
+       "2 GiB are needed; use smaller images"},
+      {"disk",
+       fmt::format("{} free for {}", gib(disk), common.out),
+       disk >= kNeededDisk,
+       "2 GiB are needed; free some or choose another --out"},
+      {"cuda", "no (built without the CUDA backend)", true, ""},
+      {"revision", git_revision(), true, ""}};
+}
+
+int run_doctor(const CommonOptions& common) {
+  bool good = true;
+  Json json = Json::object();
+  std::string text;
+  for (const Examined& examined : examine(common)) {
+    good &= examined.good;
+    json[examined.name] = {{"value", examined.value}, {"ok", examined.good}};
+    text += fmt::format("{:<9} {:<5} {}\n", examined.name, examined.good ? "ok" : "BAD", examined.value);
+    if (!examined.good) text += fmt::format("{:<15} {}\n", "", examined.advice);
+  }
+  if (common.json)
+    print_json(json);
+  else
+    print_text(text);
+  return static_cast<int>(good ? ExitCode::kSuccess : ExitCode::kEnvironment);
+}
+
+}  // namespace
+
+void add_doctor_verb(CommandLine& line) {
+  line.add_verb(line.app, "doctor", "is this machine fit for it", [&line] {
+    return run_doctor(line.common);
+  });
+}
+
+}  // namespace glint

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "reports/verbs/single_run.h"
+
+#include "datasets/dataset.h"
+#include "reports/revision.h"
+
+namespace glint {
+
+namespace {
+
+constexpr int kDefaultIterations = 7000;  // of `train` without --iterations
+
+Scene load_dataset(const fs::path& folder, double max_pixels) {
+  LoadOptions options;
+  options.max_pixels = max_pixels;
+  return with_exit_code(ExitCode::kBadReference, [&] { return load_scene(folder, options); });
+}
+
+std::string config_hash_of(const RunSpec& spec) {
+  const Json identity = {
+      {"method", spec.method},
+      {"overrides", spec.config},
+      {"iterations", spec.options.iterations},
+      {"seed", spec.options.seed},
+      {"sources", source_hash()}};
+  return hash_text(identity.dump());
+}
+
+}  // namespace
+
+SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& options) {
+  find_method(options.method);
+  SingleRun single;
+  RunSpec& spec = single.spec;
+  spec.method = options.method;
+  spec.config = method_overrides(Profile{}, options.method, common.set);
+  spec.options.iterations = common.iterations > 0 ? common.iterations : kDefaultIterations;
+  spec.options.seed = common.seed.value_or(0);
+  spec.dataset_folder = fs::absolute(options.dataset);
+  spec.max_pixels = options.max_pixels;
+  single.scene = load_dataset(spec.dataset_folder, options.max_pixels);
+  spec.dataset = single.scene.dataset;
+  spec.scene = single.scene.name;
+  spec.dataset_hash = single.scene.spec_hash;
+  spec.config_hash = config_hash_of(spec);
+  spec.folder = options.run.empty()
+                    ? run_folder(
+                          fs::path(common.out) / "single",
+                          {spec.scene, spec.method, spec.options.seed}
+                      )
+                    : fs::path(options.run);
+  return single;
+}
+
+SingleRun open_single_run(const std::string& run_folder) {
+  SingleRun single;
+  single.spec = read_run_spec(run_folder);
+  single.scene = load_dataset(single.spec.dataset_folder, single.spec.max_pixels);
+  return single;
+}
+
+}  // namespace glint

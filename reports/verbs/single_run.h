@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// One run apart from any profile: train, render and eval on a folder of the user's.
+#pragma once
+
+#include "reports/bench/stages.h"
+#include "reports/verbs/verb.h"
+
+namespace glint {
+
+struct SingleRunOptions {
+  std::string dataset;         // folder
+  std::string method = "2dgs";
+  std::string run;             // run folder; empty: OUT/single/runs/SCENE/METHOD/SEED
+  double max_pixels = 0;
+};
+
+// Errors (kUsage): no --dataset, unknown method or field; kBadReference: the dataset.
+struct SingleRun {
+  RunSpec spec;
+  Scene scene;
+};
+SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& options);
+// The run of a folder that `train` or `all` filled, with its dataset loaded again.
+SingleRun open_single_run(const std::string& run_folder);
+
+}  // namespace glint

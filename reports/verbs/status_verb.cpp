@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include <map>
+
+#include "glint/core/progress.h"
+#include "reports/bench/run_folder.h"
+#include "reports/verbs/verb.h"
+
+namespace glint {
+
+namespace {
+
+struct StatusRow {
+  CellKey cell;
+  std::string state;   // of state_name(); "started" and "trained" for cells without a record
+  std::string detail;  // PSNR of a finished cell, failure, last logged step
+};
+
+// The last step that an unfinished run logged; empty when there is none.
+std::string last_step(const fs::path& run) {
+  for (const std::string& line : log_tail(run, 1)) {
+    const Json json = Json::parse(line, nullptr, false);
+    if (json.is_object())
+      return fmt::format(
+          "step {}, PSNR {:.2f}", json.value("iteration", 0), json.value("psnr", 0.0)
+      );
+  }
+  return "";
+}
+
+StatusRow status_of(
+    const PlanCell& cell, const std::vector<Record>& records, const fs::path& folder
+) {
+  const CellState state = state_of(cell, records, scene_hash(cell.source));
+  StatusRow row{cell.cell, std::string(state_name(state)), ""};
+  const Record* record = find_record(records, cell.cell);
+  if (state == CellState::kDone && record->metrics.count("psnr"))
+    row.detail = fmt::format("PSNR {:.2f}", record->metrics.at("psnr"));
+  if (state == CellState::kFailed)
+    row.detail = fmt::format("{}: {}", record->failure->stage, record->failure->message);
+  const fs::path run = run_folder(folder, cell.cell);
+  if (state == CellState::kPending && fs::exists(run / "config.json")) {
+    row.state = fs::exists(run / "env.json") ? "trained" : "started";
+    row.detail = last_step(run);
+  }
+  return row;
+}
+
+Json status_json(const std::vector<StatusRow>& rows) {
+  Json json = {{"cells", Json::array()}};
+  for (const StatusRow& row : rows)
+    json["cells"].push_back(
+        {{"scene", row.cell.scene},
+         {"method", row.cell.method},
+         {"seed", row.cell.seed},
+         {"state", row.state},
+         {"detail", row.detail}}
+    );
+  return json;
+}
+
+std::string status_text(const std::vector<StatusRow>& rows) {
+  std::vector<std::vector<std::string>> lines;
+  std::map<std::string, int> counts;
+  for (const StatusRow& row : rows) {
+    lines.push_back({row.cell.text(), row.state, row.detail});
+    ++counts[row.state];
+  }
+  std::string text = aligned_rows(lines), summary;
+  for (const auto& [state, count] : counts)
+    summary += fmt::format("{}{} {}", summary.empty() ? "" : ", ", count, state);
+  return text + summary + "\n";
+}
+
+int run_status(const CommonOptions& common) {
+  const Profile profile = common.resolved_profile();
+  const auto records = read_records(common.records_file(profile));
+  std::vector<StatusRow> rows;
+  for (const PlanCell& cell : make_plan(profile, common.filter(), common.set))
+    rows.push_back(status_of(cell, records, common.profile_folder(profile)));
+  if (common.json)
+    print_json(status_json(rows));
+  else
+    print_text(status_text(rows));
+  return 0;
+}
+
+}  // namespace
+
+void add_status_verb(CommandLine& line) {
+  line.add_verb(line.app, "status", "how far a profile is", [&line] {
+    return run_status(line.common);
+  });
+}
+
+}  // namespace glint

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+
+#include "glint/core/progress.h"
+#include "reports/bench/interrupt.h"
+#include "reports/verbs/single_run.h"
+
+namespace glint {
+
+namespace {
+
+int run_train(const CommonOptions& common, const SingleRunOptions& options) {
+  install_interrupt_handler();
+  const SingleRun single = new_single_run(common, options);
+  const std::string folder = single.spec.folder.string();
+  try {
+    const auto method = train_stage(single.spec, single.scene);
+    for (const std::string& warning : method->warnings()) log::warn(warning);
+    const TrainCost cost = *trained_cost(single.spec);
+    if (common.json)
+      print_json(
+          {{"run", folder},
+           {"num_surfels", method->num_surfels()},
+           {"train_seconds", cost.seconds},
+           {"peak_memory_mb", cost.peak_memory_mb}}
+      );
+    else
+      print_text(fmt::format(
+          "{}: {} surfels in {}\n", folder, method->num_surfels(), format_duration(cost.seconds)
+      ));
+  } catch (const Interrupted&) {
+    log::warn("interrupted: " + folder + " is not complete");
+    return kInterruptedExit;
+  }
+  log::info("next: glint-bench render --run " + folder);
+  return 0;
+}
+
+}  // namespace
+
+void add_train_verb(CommandLine& line) {
+  auto options = std::make_shared<SingleRunOptions>();
+  CLI::App* verb = line.add_verb(
+      line.app, "train", "train one method on one dataset folder", [&line, options] {
+        return run_train(line.common, *options);
+      }
+  );
+  verb->add_option("--dataset", options->dataset, "dataset folder")->required();
+  verb->add_option("--method", options->method, "method id")->capture_default_str();
+  verb->add_option("--run", options->run, "run folder; else OUT/single/runs/SCENE/METHOD/SEED");
+  verb->add_option("--max-pixels", options->max_pixels, "shrink images below this area")
+      ->check(CLI::NonNegativeNumber);
+}
+
+}  // namespace glint

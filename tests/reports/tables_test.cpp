@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// tests/reports/golden: a fixed records.jsonl and the tables that it must give.
+#include "reports/tables.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "metrics/metric.h"
+#include "reports/published.h"
+#include "reports/table_writers.h"
+
+using namespace glint;
+
+namespace {
+
+const fs::path kGolden = "tests/reports/golden";
+
+TableDefinition definition_of(const std::string& id) {
+  for (const TableDefinition& definition : table_definitions())
+    if (definition.id == id) return definition;
+  throw std::runtime_error("no table " + id);
+}
+
+Table golden_table(const std::string& id) {
+  return build_table(definition_of(id), read_records(kGolden / "records.jsonl"));
+}
+
+const TableCell& cell_of(const Table& table, const std::string& method, const std::string& column) {
+  for (const TableRow& row : table.rows)
+    if (row.method == method)
+      for (std::size_t i = 0; i < table.columns.size(); ++i)
+        if (table.columns[i].id == column) return row.cells[i];
+  throw std::runtime_error("no cell " + method + " " + column);
+}
+
+}  // namespace
+
+TEST_CASE("a cell is the mean over scenes, then over seeds") {
+  const Table table = golden_table("table1_photometric");
+  const TableCell& cell = cell_of(table, "2dgs", "psnr");
+  CHECK(cell.value == ((30.0 + 32.5) / 2 + (31.0 + 33.0) / 2) / 2);
+  CHECK(cell.num_scenes == 2);
+  CHECK(cell.num_seeds == 2);
+  CHECK(cell.spread == 32.0 - 31.25);  // two seeds: their range
+}
+
+TEST_CASE("three seeds have a sample standard deviation") {
+  std::vector<Record> records;
+  for (const double psnr : {30.0, 31.0, 33.0}) {
+    Record record;
+    record.dataset = "glassroom";
+    record.cell = {"room_1", "2dgs", records.size()};
+    record.metrics["psnr"] = psnr;
+    records.push_back(record);
+  }
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  CHECK(cell_of(table, "2dgs", "psnr").spread == Approx(std::sqrt(7.0 / 3)).epsilon(1e-14));
+}
+
+TEST_CASE("methods that were not run are missing, in every format a word") {
+  const Table table = golden_table("table1_photometric");
+  CHECK(cell_of(table, "pgsr", "psnr").status == CellStatus::kMissing);
+  CHECK(cell_of(table, "2dgs", "lpips-vgg-3dgs").status == CellStatus::kMissing);
+  CHECK(table_csv(table).find("\npgsr,missing,missing,missing,31.96,0.95,0.07") != std::string::npos);
+  CHECK(table_markdown(table).find("| PGSR | missing |") != std::string::npos);
+  CHECK(table_json(table)["rows"][1]["cells"]["psnr"]["status"] == "missing");
+  CHECK_FALSE(table_json(table)["rows"][1]["cells"]["psnr"].contains("value"));
+}
+
+TEST_CASE("a method that failed everywhere says why") {
+  const TableCell cell = cell_of(golden_table("table1_photometric"), "tsgs", "psnr");
+  CHECK(cell.status == CellStatus::kFailed);
+  CHECK(cell.note == "room_1/tsgs/0 failed (dataset: no points)");
+}
+
+TEST_CASE("a mean over fewer scenes is marked and takes no rank, even when it looks best") {
+  const Table table = golden_table("table1_photometric");
+  const TableCell& partial = cell_of(table, "glint", "psnr");
+  CHECK(partial.status == CellStatus::kPartial);
+  CHECK(partial.num_scenes == 1);
+  CHECK(partial.rank == 0);
+  CHECK(shown_text(partial, table.columns[0]) == "34.00*");
+  CHECK(cell_of(table, "envgs", "psnr").rank == 1);
+  CHECK(cell_of(table, "2dgs", "psnr").rank == 2);
+}
+
+TEST_CASE("ranks go by unrounded values, ties share one, and lower is better where it is") {
+  const TableDefinition definition = definition_of("table2_geometry");
+  std::vector<Record> records;
+  const std::pair<const char*, double> values[] = {
+      {"2dgs", 10.004}, {"pgsr", 10.001}, {"envgs", 10.001}, {"tsgs", 10.009}, {"glint", 12}};
+  for (const auto& [method, value] : values) {
+    Record record;
+    record.dataset = "glassroom";
+    record.cell = {"room_1", method, 0};
+    record.metrics["normal-mae"] = value;
+    records.push_back(record);
+  }
+  const Table table = build_table(definition, records);
+  CHECK(cell_of(table, "pgsr", "normal-mae").rank == 1);
+  CHECK(cell_of(table, "envgs", "normal-mae").rank == 1);
+  CHECK(cell_of(table, "2dgs", "normal-mae").rank == 3);
+  CHECK(cell_of(table, "tsgs", "normal-mae").rank == 0);
+}
+
+TEST_CASE("a single measured method is not best of anything") {
+  std::vector<Record> records(1);
+  records[0].dataset = "glassroom";
+  records[0].cell = {"room_1", "2dgs", 0};
+  records[0].metrics["psnr"] = 30;
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  CHECK(cell_of(table, "2dgs", "psnr").rank == 0);
+}
+
+TEST_CASE("published columns hold the paper's digits and are marked in every format") {
+  const Table table = golden_table("table1_photometric");
+  CHECK(cell_of(table, "glint", "published/3D-FRONT-T/PSNR").text == "34.50");
+  CHECK(table_markdown(table).find("3D-FRONT-T†") != std::string::npos);
+  CHECK(table_latex(table).find("3D-FRONT-T$^\\dagger$ (published)") != std::string::npos);
+  CHECK(table_terminal(table, false).find("3D-FRONT-T†") != std::string::npos);
+  CHECK(table_csv(table).find("published/3D-FRONT-T/PSNR") != std::string::npos);
+}
+
+TEST_CASE("the order of methods is compared with the paper's, column by column") {
+  const Table table = golden_table("table1_photometric");
+  REQUIRE_FALSE(table.agreement.empty());
+  CHECK(table.agreement[0].column == "psnr");
+  CHECK(table.agreement[0].num_methods == 2);  // 2dgs and envgs; glint is incomplete
+  CHECK(table.agreement[0].tau == 1);
+}
+
+TEST_CASE("the paper's missing cells are not applicable, its hours are as printed") {
+  const Table table = golden_table("tableB_cost");
+  CHECK(
+      cell_of(table, "2dgs", "published/3D-FRONT-T/FPS").status == CellStatus::kNotApplicable
+  );
+  CHECK(cell_of(table, "glint", "published/3D-FRONT-T/Training Time").text == "~2.5 h");
+  CHECK(cell_of(table, "2dgs", "device").text == "cpu");
+  CHECK(cell_of(table, "2dgs", "resolution").text == "160x90");
+}
+
+TEST_CASE("records of a further dataset get columns of their own in table 1 only") {
+  auto records = read_records(kGolden / "records.jsonl");
+  Record fox = records[1];
+  fox.dataset = "nerfstudio";
+  fox.cell.scene = "fox";
+  fox.metrics["psnr"] = 21;
+  records.push_back(fox);
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  CHECK(cell_of(table, "2dgs", "nerfstudio/psnr").value == 21);
+  CHECK(cell_of(table, "2dgs", "psnr").num_scenes == 2);
+  CHECK(
+      build_table(definition_of("table2_geometry"), records).columns.size() ==
+      golden_table("table2_geometry").columns.size()
+  );
+}
+
+TEST_CASE("without any record every measured cell is missing and the paper's stand") {
+  for (const TableDefinition& definition : table_definitions()) {
+    const Table table = build_table(definition, {});
+    for (const TableRow& row : table.rows)
+      for (std::size_t i = 0; i < row.cells.size(); ++i)
+        if (!table.columns[i].published) CHECK(row.cells[i].status == CellStatus::kMissing);
+  }
+}
+
+TEST_CASE("columns agree with the metric registry on unit and which way is better") {
+  for (const TableDefinition& definition : table_definitions())
+    for (const TableColumn& column : definition.columns) {
+      const Metric* metric = find_metric(column.metric);
+      if (!metric) continue;  // of cost, meshes and networks: not image metrics
+      INFO(definition.id << " " << column.metric);
+      CHECK(metric->unit == column.unit);
+      CHECK(
+          (metric->direction == Direction::kHigherIsBetter) ==
+          (column.order == RankOrder::kHigherFirst)
+      );
+    }
+}
+
+TEST_CASE("the tables of fixed records equal the golden files") {
+  for (const std::string id : {"table1_photometric", "table2_geometry", "tableB_cost"}) {
+    const Table table = golden_table(id);
+    CHECK(table_markdown(table) == read_file(kGolden / (id + ".md")));
+    CHECK(table_latex(table) == read_file(kGolden / (id + ".tex")));
+    CHECK(table_csv(table) == read_file(kGolden / (id + ".csv")));
+    CHECK(table_json(table).dump(2) + "\n" == read_file(kGolden / (id + ".json")));
+    CHECK(table_terminal(table, true) == read_file(kGolden / (id + ".txt")));
+  }
+}
+
+TEST_CASE("a definition with an unknown key or direction is an error naming the file") {
+  CHECK_THROWS_WITH(
+      parse_table_definition("titel = 'x'", "t"), Catch::Contains("tables/t.toml: no field 'titel'")
+  );
+  CHECK_THROWS_WITH(
+      parse_table_definition("columns = [{metric = 'm', direction = 'up'}]", "t"),
+      Catch::Contains("direction is 'up'")
+  );
+  CHECK_THROWS_WITH(parse_table_definition("a = [", "t"), Catch::Contains("tables/t.toml:1"));
+}
