@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Path tracer on Embree: next-event estimation with multiple importance sampling, Russian roulette
-// (up to 200 bounces), thin dielectrics as specular slabs; shadow rays go straight through thin glass
-// with its transmittance. Deterministic: the random numbers of a pixel depend on (seed, view, pixel,
-// sample) only.
+// (up to 200 bounces), thin dielectrics as specular slabs; shadow rays go straight through thin
+// glass with its transmittance. Deterministic: the random numbers of a pixel depend on (seed, view,
+// pixel, sample) only.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,28 @@
 namespace glint {
 
 struct PathTracerSettings {
-  int spp = 64;             // samples a pixel, stratified in the pixel
-  int max_bounces = 200;    // scatterings of a path; going straight through glass is none
+  int spp = 64;           // samples a pixel, stratified in the pixel
+  int max_bounces = 200;  // scatterings of a path; going straight through glass is none
   std::uint64_t seed = 0;
-  std::uint64_t view = 0;   // stream of this view
-  bool next_event_estimation = true;  // off: BSDF sampling alone (same mean, much noise; for checks)
+  std::uint64_t view = 0;             // stream of this view
+  bool next_event_estimation = true;  // off: BSDF sampling alone (noisy; for checks)
 };
 
 // Radiance is linear. Geometry buffers are of the ray through the pixel centre (no anti-aliasing).
 struct PathTracerOutput {
-  Image radiance;        // [H][W][3]
-  Image depth;           // [H][W][1] planar z of the first surface, glass included; 0: none
-  Image normal;          // [H][W][3] shading normal in camera space, OpenCV axes, facing the camera
-  Image albedo;          // [H][W][3] diffuse albedo of the first surface (glass and conductors: 0)
-  Image basecolor;       // [H][W][3] base colour (glass: its near-white tint)
-  MaskImage glass;       // 255: first surface is thin dielectric
-  Image behind_depth;    // first surface that is not glass, along the straight ray
+  Image radiance;      // [H][W][3]
+  Image depth;         // [H][W][1] planar z of the first surface, glass included; 0: none
+  Image normal;        // [H][W][3] shading normal in camera space, OpenCV axes, facing the camera
+  Image albedo;        // [H][W][3] diffuse albedo of the first surface (glass and conductors: 0)
+  Image basecolor;     // [H][W][3] base colour (glass: its near-white tint)
+  MaskImage glass;     // 255: first surface is thin dielectric
+  Image behind_depth;  // first surface that is not glass, along the straight ray
   Image behind_normal;
-  // Where `glass` is set (0 elsewhere): the part of radiance that passed the first surface, and the part
-  // that it mirrored; transmitted + reflected == radiance exactly. Only the first pane splits. Samples of
-  // a border pixel that miss the pane count as transmitted.
-  Image transmitted;     // [H][W][3]
-  Image reflected;       // [H][W][3]
+  // Where `glass` is set (0 elsewhere): the part of radiance that passed the first surface, and the
+  // part that it mirrored; transmitted + reflected == radiance exactly. Only the first pane splits.
+  // Samples of a border pixel that miss the pane count as transmitted.
+  Image transmitted;  // [H][W][3]
+  Image reflected;    // [H][W][3]
 };
 
 class PathTracer {
@@ -49,9 +49,9 @@ class PathTracer {
   // First hit along a ray, glass included or passed through; for visibility and camera placement.
   struct FirstHit {
     bool hit = false;
-    float t = 0;              // in units of |direction|
+    float t = 0;                 // in units of |direction|
     Vec3f position{}, normal{};  // geometric normal facing the origin
-    Vec3f albedo{};           // linear, textured; 0 for glass
+    Vec3f albedo{};              // linear, textured; 0 for glass
     int mesh = -1;
     bool glass = false;
   };
@@ -63,8 +63,8 @@ class PathTracer {
   std::unique_ptr<State> state_;
 };
 
-// Reflectance of a thin slab of index `ior` at angle cosine `cos_i`, all orders summed, unpolarised:
-// per polarisation R = 2r / (1 + r) without absorption.
+// Reflectance of a thin slab of index `ior` at angle cosine `cos_i`, all orders summed, unpolarised
+// light: per polarisation R = 2r / (1 + r) without absorption.
 float thin_slab_reflectance(float cos_i, float ior);
 
 }  // namespace glint

@@ -12,8 +12,8 @@
 
 namespace glint {
 
-// How opaque kinds scatter: bsdf.h. A thin dielectric is a sheet without thickness that stands for a
-// whole pane: ONE layer of triangles each pane, not a closed slab.
+// How opaque kinds scatter: bsdf.h. A thin dielectric is a sheet without thickness that stands for
+// a whole pane: ONE layer of triangles each pane, not a closed slab.
 enum class MaterialKind { kDiffuse, kRoughConductor, kRoughPlastic, kThinDielectric };
 
 struct Material {
@@ -24,7 +24,7 @@ struct Material {
   float roughness = 0.3f;          // GGX alpha = roughness^2 of conductor and plastic coat
   float ior = 1.5f;                // thin dielectric, plastic coat
   Vec3f tint{1, 1, 1};             // thin dielectric: transmittance of one pass inside the slab
-  Vec3f emission{};  // radiance, linear; > 0 makes every triangle with it an area light, on both sides
+  Vec3f emission{};  // radiance, linear; > 0: every triangle is an area light, on both sides
 };
 
 struct TraceMesh {
@@ -38,9 +38,9 @@ struct TraceMesh {
 
 struct TraceScene {
   std::vector<Material> materials;
-  std::vector<Image> textures;   // linear RGB in [0, 1], repeated, bilinear; v grows with the rows
+  std::vector<Image> textures;  // linear RGB in [0, 1], repeated, bilinear; v grows with the rows
   std::vector<TraceMesh> meshes;
-  Vec3f environment{};           // radiance of rays that leave the scene
+  Vec3f environment{};  // radiance of rays that leave the scene
 };
 
 }  // namespace glint
