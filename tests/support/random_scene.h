@@ -45,14 +45,16 @@ inline double log_uniform(Rng& rng, double low, double high) {
   return std::exp(uniform(rng, std::log(low), std::log(high)));
 }
 inline Vec3d random_direction(Rng& rng) {
-  const auto draw = [&] { return static_cast<double>(rng.normal()); };
-  return normalize(Vec3d{draw(), draw(), draw()});
+  const double z = uniform(rng, -1, 1), azimuth = uniform(rng, 0, 2 * std::numbers::pi);
+  const double radius = std::sqrt(1 - z * z);
+  return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
 }
+// Uniform over rotations [Shoemake 1992].
 inline Vec4<double> random_unit_quaternion(Rng& rng) {
-  const auto draw = [&] { return static_cast<double>(rng.normal()); };
-  const Vec4<double> q{draw(), draw(), draw(), draw()};
-  const double scale = 1 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  return {scale * q.w, scale * q.x, scale * q.y, scale * q.z};
+  const double share = uniform(rng, 0, 1);
+  const double a = uniform(rng, 0, 2 * std::numbers::pi), b = uniform(rng, 0, 2 * std::numbers::pi);
+  const double s = std::sqrt(1 - share), t = std::sqrt(share);
+  return {t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b)};
 }
 
 // A view from a random pose with unequal focal lengths and a principal point off the centre.

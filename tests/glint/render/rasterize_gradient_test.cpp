@@ -144,7 +144,7 @@ void check_gradients(const Case& c) {
     expected.push_back(numeric_gradient(c, parameter));
     largest = std::max(largest, norm(expected.back()));
   }
-  REQUIRE(largest > 1e-4);
+  REQUIRE(largest > 1e-6);
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const std::vector<float>& gradient = actual.*kParameters[i].gradient;
     REQUIRE(gradient.size() == expected[i].size());
