@@ -13,6 +13,8 @@
 
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "glint/core/error.h"
 
@@ -29,6 +31,22 @@ Json config_to_json(const Config& config) {
   return json;
 }
 
+namespace detail {
+// False, and the field as it was, where the value is of another type or no number the field can
+// hold (get() would cut off an integer's fraction and wrap what is too large).
+template <class Field>
+bool set_field(Field& field, const Json& value) {
+  try {
+    Field read = value.get<Field>();
+    if (std::is_integral_v<Field> && Json(read) != value) return false;
+    field = std::move(read);
+    return true;
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  }
+}
+}  // namespace detail
+
 // Sets every field named in `json`. Errors (kUsage): unknown name (the known ones are listed),
 // wrong type. `where` opens the message.
 template <class Config>
@@ -40,11 +58,8 @@ void config_from_json(Config& config, const Json& json, std::string_view where) 
       known += (known.empty() ? "" : ", ") + std::string(name);
       if (key != name) return;
       found = true;
-      try {
-        value.get_to(field);
-      } catch (const nlohmann::json::exception&) {
-        throw Error(ExitCode::kUsage, fmt::format("{}: {} cannot be {}", where, key, value.dump()));
-      }
+      const bool fits = detail::set_field(field, value);
+      GLINT_CHECK(fits, kUsage, "{}: {} cannot be {}", where, key, value.dump());
     });
     GLINT_CHECK(found, kUsage, "{}: no field '{}'; known fields: {}", where, key, known);
   }

@@ -50,7 +50,8 @@ GLINT_HD float exp2_integer(float k) {
 }
 
 // e^x for x in [-87, 87] (clamped outside). Splits off 2^k and evaluates a degree-6 polynomial on
-// [-ln2/2, ln2/2]; relative error below 2e-7. One text for float and Float8.
+// [-ln2/2, ln2/2]: 1 + r + ..., the rest fitted for the least relative error (3e-9, where Taylor's
+// leaves 1e-7). Relative error below 1e-7 with rounding. One text for float and Float8.
 template <class T>
 GLINT_HD T exp_fast(T x) {
   x = min_of(max_of(x, T(-87.0f)), T(87.0f));
@@ -58,11 +59,11 @@ GLINT_HD T exp_fast(T x) {
   // Cody-Waite: ln2 in two parts keeps the remainder exact.
   T r = fma_of(k, T(-0.693145751953125f), x);
   r = fma_of(k, T(-1.42860682030941723e-6f), r);
-  T p = T(1.3888889e-3f);
-  p = fma_of(p, r, T(8.3333333e-3f));
-  p = fma_of(p, r, T(4.1666667e-2f));
-  p = fma_of(p, r, T(0.16666667f));
-  p = fma_of(p, r, T(0.5f));
+  T p = T(1.38145394e-3f);
+  p = fma_of(p, r, T(8.36874545e-3f));
+  p = fma_of(p, r, T(4.1668389e-2f));
+  p = fma_of(p, r, T(0.166665211f));
+  p = fma_of(p, r, T(0.49999994f));
   p = fma_of(p, r, T(1.0f));
   p = fma_of(p, r, T(1.0f));
   return p * exp2_integer(k);
