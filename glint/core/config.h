@@ -51,7 +51,9 @@ bool set_field(Field& field, const Json& value) {
 // wrong type. `where` opens the message.
 template <class Config>
 void config_from_json(Config& config, const Json& json, std::string_view where) {
-  for (const auto& [key, value] : json.items()) {
+  for (const auto& entry : json.items()) {
+    const std::string& key = entry.key();
+    const Json& value = entry.value();
     bool found = false;
     std::string known;
     config.visit([&](const char* name, auto& field, const char*) {
