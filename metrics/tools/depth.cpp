@@ -84,7 +84,11 @@ class DepthTool final : public MetricTool {
     return scores;
   }
 
-  Json protocol(const std::string&) const override { return config_to_json(protocol()); }
+  Json protocol(const std::string&) const override {
+    Json json = config_to_json(protocol());
+    json["prediction"] = intrinsics_.empty() ? "planar z" : "distance along rays, made planar";
+    return json;
+  }
 
  private:
   DepthProtocol protocol() const {
