@@ -41,8 +41,9 @@ std::optional<double> depth_at(ImageView depth, Vec2d point) {
   return 1 / ((1 - t) * ((1 - s) / z[0] + s / z[1]) + t * ((1 - s) / z[2] + s / z[3]));
 }
 
-// Relative difference between the depth carried from pixel (x, y) and the one stored in `to`.
-std::optional<double> carried_error(
+// Relative difference of the depth carried from pixel (x, y) to the one stored in `to`; negative:
+// in front of it.
+std::optional<double> carried_difference(
     const Camera& from,
     int x,
     int y,
@@ -55,7 +56,7 @@ std::optional<double> carried_error(
   if (!(point.z > 1e-6)) return std::nullopt;
   const std::optional<double> stored = depth_at(to_depth, to.project(point));
   if (!stored) return std::nullopt;
-  return std::abs(stored_depth_of(point, kind) - *stored) / *stored;
+  return stored_depth_of(point, kind) / *stored - 1;
 }
 
 // Unit normal of the depth map at a pixel, facing the camera, by central differences; nothing where
@@ -102,21 +103,28 @@ void DepthAgreement::add_pair(
     for (int x = step / 2; x < from.width; x += step) {
       const double depth = static_cast<double>(from_depth.at(x, y));
       if (!(depth > 0)) continue;
-      const auto planar = carried_error(from, x, y, depth, to, to_depth, DepthKind::kPlanar);
-      const auto ray = carried_error(from, x, y, depth, to, to_depth, DepthKind::kRayLength);
+      const auto planar = carried_difference(from, x, y, depth, to, to_depth, DepthKind::kPlanar);
+      const auto ray = carried_difference(from, x, y, depth, to, to_depth, DepthKind::kRayLength);
       if (!planar || !ray) continue;
       ++num_tested_;
-      if (std::min(*planar, *ray) > kAgreement) continue;
-      errors_[0].push_back(*planar);
-      errors_[1].push_back(*ray);
+      if (*planar < -kAgreement) ++num_in_front_[0];
+      if (*ray < -kAgreement) ++num_in_front_[1];
+      if (std::min(std::abs(*planar), std::abs(*ray)) > kAgreement) continue;
+      differences_[0].push_back(std::abs(*planar));
+      differences_[1].push_back(std::abs(*ray));
     }
 }
 
+double DepthAgreement::share_in_front(DepthKind kind) const {
+  return static_cast<double>(num_in_front_[kind == DepthKind::kPlanar ? 0 : 1]) /
+         static_cast<double>(std::max<std::size_t>(num_tested_, 1));
+}
+
 double DepthAgreement::median_error(DepthKind kind) const {
-  std::vector<double> errors = errors_[kind == DepthKind::kPlanar ? 0 : 1];
-  if (errors.empty()) return 0;
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
+  std::vector<double> differences = differences_[kind == DepthKind::kPlanar ? 0 : 1];
+  if (differences.empty()) return 0;
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
   return *middle;
 }
 

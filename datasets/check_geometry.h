@@ -23,14 +23,19 @@ class DepthAgreement {
   void add_pair(const Camera& from, ImageView from_depth, const Camera& to, ImageView to_depth);
 
   std::size_t num_tested() const { return num_tested_; }
-  // Samples that agree to 5 % under at least one reading; the others are hidden from one view.
-  std::size_t num_agreeing() const { return errors_[0].size(); }
+  // Samples that agree to 5 % under at least one reading.
+  std::size_t num_agreeing() const { return differences_[0].size(); }
   double median_error(DepthKind kind) const;  // over the agreeing samples
+  // Share of the tested samples that come out more than 5 % in front of what `to` sees. A surface
+  // may be hidden from `to`, but nothing can stand in front of what it sees: about 0 when all is
+  // well.
+  double share_in_front(DepthKind kind) const;
   // The reading that fits. Ray length needs 200 agreeing samples and half the error of planar.
   DepthKind best() const;
 
  private:
-  std::array<std::vector<double>, 2> errors_;  // by DepthKind
+  std::array<std::vector<double>, 2> differences_;  // absolute, by DepthKind
+  std::array<std::size_t, 2> num_in_front_{};
   std::size_t num_tested_ = 0;
 };
 

@@ -184,23 +184,21 @@ std::vector<std::size_t> sample_views(const SceneIndex& index) {
 void report_depth(
     const DepthAgreement& agreement, const std::string& where, std::vector<Finding>& findings
 ) {
-  constexpr double kLeastShare = 0.3;  // the rest is hidden from one view of the pair
-  constexpr double kMostError = 0.02;  // relative; sensors stay below
+  constexpr double kMostInFront = 0.05;  // share; wrong conventions reach 0.08 to 0.25
+  constexpr double kMostError = 0.02;    // relative; sensors stay below
   const DepthKind kind = agreement.best();
   const double planar = agreement.median_error(DepthKind::kPlanar);
   const double ray_length = agreement.median_error(DepthKind::kRayLength);
-  const auto tested = static_cast<double>(agreement.num_tested());
-  if (static_cast<double>(agreement.num_agreeing()) < kLeastShare * tested ||
-      agreement.median_error(kind) > kMostError)
+  if (agreement.share_in_front(kind) > kMostInFront || agreement.median_error(kind) > kMostError)
     findings.push_back(
         {"depth-poses",
          where,
          fmt::format(
-             "neighbouring views agree on {} of {} samples, with a median difference of {:.2g} "
-             "(relative); "
-             "depth and poses differ in axes, units or convention",
-             agreement.num_agreeing(),
-             agreement.num_tested(),
+             "carried into neighbouring views, {:.0f} % of the depth lies in front of what they "
+             "see, and "
+             "the rest differs by {:.2g} (relative); depth and poses differ in axes, units or "
+             "convention",
+             100 * agreement.share_in_front(kind),
              agreement.median_error(kind)
          )}
     );

@@ -82,6 +82,20 @@ TEST_CASE("a clean dataset has no findings") {
   CHECK(findings.empty());
 }
 
+TEST_CASE("wide steps around an occluder are no defect, and ray lengths still show") {
+  const auto spread = [](std::vector<View>& views) { views = box_room_views(8, kSize, 0.785); };
+  const std::vector<Finding> findings = findings_after(spread);
+  INFO(list(findings));
+  CHECK(findings.empty());
+  only(
+      findings_after([&](std::vector<View>& views) {
+        spread(views);
+        to_ray_length(views);
+      }),
+      "ray-length-depth"
+  );
+}
+
 TEST_CASE("a clean nerfstudio dataset has no findings") {
   const TempFolder folder;
   write_nerfstudio(folder.path(), box_room_views(10, kSize));
@@ -163,6 +177,14 @@ TEST_CASE("depth that does not belong to the poses is found") {
   const std::vector<Finding> findings = findings_after([](std::vector<View>& views) {
     for (View& view : views)
       for (float& z : view.truth.depth.values()) z *= 1000;  // millimetres
+  });
+  CHECK_THAT(list(findings), Contains("[depth-poses]"));
+}
+
+TEST_CASE("poses of another world are found") {
+  const std::vector<Finding> findings = findings_after([](std::vector<View>& views) {
+    const std::vector<View> others = box_room_views(10, kSize, -0.4);
+    for (std::size_t i = 0; i < views.size(); ++i) views[i].camera = others[i].camera;
   });
   CHECK_THAT(list(findings), Contains("[depth-poses]"));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/box_room.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,15 +13,16 @@ namespace glint::test {
 namespace {
 
 constexpr Vec3d kRoom{4.0, 3.0, 2.5};
+constexpr Vec3d kPillarLow{1.8, 1.35, 0.0}, kPillarHigh{2.2, 1.65, 1.4};
 
-struct WallHit {
+struct Hit {
   double t = std::numeric_limits<double>::infinity();
-  Vec3d normal{};  // into the room
+  Vec3d normal{};  // towards the origin of the ray
 };
 
 // First wall along a ray that starts inside.
-WallHit hit_wall(Vec3d origin, Vec3d direction) {
-  WallHit hit;
+Hit hit_wall(Vec3d origin, Vec3d direction) {
+  Hit hit;
   for (int axis = 0; axis < 3; ++axis) {
     if (direction[axis] == 0) continue;
     const double wall = direction[axis] > 0 ? kRoom[axis] : 0;
@@ -31,6 +33,26 @@ WallHit hit_wall(Vec3d origin, Vec3d direction) {
     hit.normal[axis] = direction[axis] > 0 ? -1 : 1;
   }
   return hit;
+}
+
+// Entry into the pillar of a ray that starts outside; t is infinite when it passes by.
+Hit hit_pillar(Vec3d origin, Vec3d direction) {
+  Hit enter;
+  enter.t = 0;
+  double leave = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool forward = direction[axis] > 0;
+    const double near =
+        ((forward ? kPillarLow : kPillarHigh)[axis] - origin[axis]) / direction[axis];
+    const double far =
+        ((forward ? kPillarHigh : kPillarLow)[axis] - origin[axis]) / direction[axis];
+    leave = std::min(leave, far);
+    if (near <= enter.t) continue;
+    enter.t = near;
+    enter.normal = {};
+    enter.normal[axis] = forward ? -1 : 1;
+  }
+  return enter.t < leave && enter.t > 0 ? enter : Hit{};
 }
 
 Vec3f wall_color(Vec3d p) {
@@ -51,7 +73,9 @@ View box_room_view(std::string name, const Camera& camera) {
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
       const Vec3d direction = camera.ray_in_world(x + 0.5, y + 0.5);
-      const WallHit hit = hit_wall(camera.center(), direction);
+      const Hit wall = hit_wall(camera.center(), direction);
+      const Hit pillar = hit_pillar(camera.center(), direction);
+      const Hit& hit = pillar.t < wall.t ? pillar : wall;
       view.truth.depth.at(x, y) = static_cast<float>(hit.t);
       set(view.truth.normal, x, y, cast<float>(camera.rotation_cam_from_world * hit.normal));
       set(view.rgb, x, y, wall_color(camera.center() + hit.t * direction));
@@ -101,11 +125,12 @@ PointCloud wall_points(const std::vector<View>& views) {
 
 }  // namespace
 
-std::vector<View> box_room_views(int count, ImageSize size) {
+std::vector<View> box_room_views(int count, ImageSize size, double step) {
   std::vector<View> views;
   for (int i = 0; i < count; ++i) {
-    const double angle = 0.15 * i;
-    const Vec3d eye{2.0 + 0.9 * std::cos(angle), 1.5 + 0.7 * std::sin(angle), 1.2 + 0.05 * i};
+    const double angle = step * i;
+    const Vec3d eye{
+        2.0 + 0.9 * std::cos(angle), 1.5 + 0.7 * std::sin(angle), 1.2 + 0.05 * std::min(i, 20)};
     const Vec3d target{2.0 - std::cos(angle), 1.5 - std::sin(angle), 0.8};
     views.push_back(
         box_room_view(fmt::format("{:04}", i), look_at(eye, target, {0, 0, 1}, size, 75))

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An empty box-shaped room seen from inside by posed cameras: depth and normals in closed form.
+// A box-shaped room with a pillar in its middle, seen from inside by posed cameras: depth and
+// normals in closed form.
 #pragma once
 
 #include <string>
@@ -10,9 +11,9 @@
 
 namespace glint::test {
 
-// Views from a circle inside the room [0,4] x [0,3] x [0,2.5] metres, z up. rgb, truth.depth,
-// truth.normal and priors.normal are filled.
-std::vector<View> box_room_views(int count, ImageSize size);
+// Views from a circle around the pillar, `step` radians apart, inside the room [0,4] x [0,3] x
+// [0,2.5] metres, z up. rgb, truth.depth, truth.normal and priors.normal are filled.
+std::vector<View> box_room_views(int count, ImageSize size, double step = 0.15);
 
 // The views as an EasyVolcap folder with gt/, diffrens/normal, diffrens/depth and a point cloud.
 void write_easyvolcap(const fs::path& folder, const std::vector<View>& views);
