@@ -14,7 +14,8 @@ namespace glint {
 
 const std::map<std::string, std::string_view>& embedded_files();
 
-// Stems of the embedded files of a folder, in alphabetical order: "profiles" -> {"ci", "paper", ...}.
+// Stems of the embedded files of a folder, in alphabetical order: "profiles" -> {"ci", "paper",
+// ...}.
 std::vector<std::string> embedded_names(std::string_view folder);
 
 // TOML text as JSON. Errors (kUsage): not TOML; the message opens with `where` and the line.

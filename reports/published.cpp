@@ -42,7 +42,9 @@ const std::vector<PublishedValue>& published_values() {
 }
 
 const PublishedValue* find_published(
-    const std::string& table, const std::string& dataset, const std::string& row,
+    const std::string& table,
+    const std::string& dataset,
+    const std::string& row,
     const std::string& column
 ) {
   const auto& values = published_values();

@@ -106,7 +106,8 @@ Record record_from_json(const Json& json, std::string_view where) {
     return record;
   } catch (const nlohmann::json::exception& error) {
     throw Error(
-        ExitCode::kBadPrediction, fmt::format("{}: a field has another type ({})", where, error.what())
+        ExitCode::kBadPrediction,
+        fmt::format("{}: a field has another type ({})", where, error.what())
     );
   }
 }

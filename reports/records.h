@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// records.jsonl: what a profile's folder knows about its cells. One JSON object a line, appended when
-// a cell ends, whether it finished or failed; never rewritten. docs/RECORDS.md lists the fields.
+// records.jsonl: what a profile's folder knows about its cells. One JSON object a line, appended
+// when a cell ends, whether it finished or failed; never rewritten. docs/RECORDS.md lists the
+// fields.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +26,9 @@ struct CellKey {
 };
 
 struct Failure {
-  std::string stage;    // "dataset", "train", "render", "eval"
-  std::string kind;     // "bad-input", "usage", "environment", "not-finite", "out-of-memory", "unknown"
+  std::string stage;  // "dataset", "train", "render", "eval"
+  std::string
+      kind;  // "bad-input", "usage", "environment", "not-finite", "out-of-memory", "unknown"
   std::string message;
   std::vector<std::string> log_tail;  // last lines of log.jsonl
 };
@@ -40,9 +42,9 @@ struct Record {
   std::string resolution;                 // of the test views, "160x90"
   std::string config_hash, dataset_hash;  // equal hashes: nothing to do again
   std::size_t num_surfels = 0;
-  std::vector<std::string> warnings;      // of the method: losses off, missing priors
-  Json timings = Json::object();          // stage -> seconds
-  Json environment = Json::object();      // machine, build, date
+  std::vector<std::string> warnings;  // of the method: losses off, missing priors
+  Json timings = Json::object();      // stage -> seconds
+  Json environment = Json::object();  // machine, build, date
 
   bool ok() const { return !failure.has_value(); }
 };

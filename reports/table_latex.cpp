@@ -73,11 +73,10 @@ std::vector<ColumnGroup> groups_of(const Table& table) {
 std::string latex_header(const Table& table) {
   std::string titles, rules, columns = "Method";
   for (const ColumnGroup& group : groups_of(table)) {
-    titles += fmt::format(" & \\multicolumn{{{}}}{{c}}{{{}}}", group.count, latex_text(group.title));
+    titles +=
+        fmt::format(" & \\multicolumn{{{}}}{{c}}{{{}}}", group.count, latex_text(group.title));
     // The method's column is LaTeX's column 1.
-    rules += fmt::format(
-        "\\cmidrule(lr){{{}-{}}}", group.first + 2, group.first + group.count + 1
-    );
+    rules += fmt::format("\\cmidrule(lr){{{}-{}}}", group.first + 2, group.first + group.count + 1);
   }
   for (const TableColumn& column : table.columns)
     columns += " & " + latex_text(shown_title(column));

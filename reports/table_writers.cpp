@@ -8,16 +8,23 @@ namespace glint {
 namespace {
 
 constexpr std::string_view kPublishedNote =
-    "† published by the paper's authors, measured on their own data; not comparable digit by digit.";
-constexpr std::string_view kPartialNote = "* mean over fewer scenes than other methods; not ranked.";
+    "† published by the paper's authors, measured on their own data; not comparable digit by "
+    "digit.";
+constexpr std::string_view kPartialNote =
+    "* mean over fewer scenes than other methods; not ranked.";
 
 std::string status_word(CellStatus status) {
   switch (status) {
-    case CellStatus::kOk: return "ok";
-    case CellStatus::kPartial: return "partial";
-    case CellStatus::kMissing: return "missing";
-    case CellStatus::kFailed: return "failed";
-    case CellStatus::kNotApplicable: return "not applicable";
+    case CellStatus::kOk:
+      return "ok";
+    case CellStatus::kPartial:
+      return "partial";
+    case CellStatus::kMissing:
+      return "missing";
+    case CellStatus::kFailed:
+      return "failed";
+    case CellStatus::kNotApplicable:
+      return "not applicable";
   }
   return "missing";
 }
@@ -32,7 +39,8 @@ bool has_value(const TableCell& cell) {
 
 std::string join(const std::vector<std::string>& parts, std::string_view separator) {
   std::string text;
-  for (std::size_t i = 0; i < parts.size(); ++i) text += (i ? std::string(separator) : "") + parts[i];
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    text += (i ? std::string(separator) : "") + parts[i];
   return text;
 }
 
@@ -70,7 +78,7 @@ Json cell_json(const TableCell& cell, const TableColumn& column) {
 Json column_json(const TableColumn& column) {
   const char* direction = column.order == RankOrder::kHigherFirst  ? "higher"
                           : column.order == RankOrder::kLowerFirst ? "lower"
-                                                                  : "none";
+                                                                   : "none";
   return {
       {"id", column.id},
       {"title", column.title},
@@ -96,8 +104,7 @@ std::string shown_text(const TableCell& cell, const TableColumn& column) {
 std::string shown_title(const TableColumn& column) {
   std::string title = column.title;
   if (!column.unit.empty()) title += fmt::format(" ({})", column.unit);
-  if (column.order != RankOrder::kNone)
-    title += fmt::format(" {}", order_arrow(column.order));
+  if (column.order != RankOrder::kNone) title += fmt::format(" {}", order_arrow(column.order));
   return title;
 }
 

@@ -189,8 +189,10 @@ TableCell published_cell(
 }
 
 TableRow build_row(
-    const TableDefinition& definition, const TableRowDefinition& row,
-    const std::vector<TableColumn>& columns, const std::vector<Record>& records
+    const TableDefinition& definition,
+    const TableRowDefinition& row,
+    const std::vector<TableColumn>& columns,
+    const std::vector<Record>& records
 ) {
   TableRow result{row.method, row.title, row.paper_row, {}};
   for (const TableColumn& column : columns) {
@@ -233,11 +235,10 @@ void rank_column(Table& table, std::size_t column) {
 void add_agreement(Table& table, std::size_t measured, const std::string& paper_dataset) {
   const std::string published_id =
       fmt::format("published/{}/{}", paper_dataset, table.columns[measured].paper_column);
-  const auto it = std::find_if(
-      table.columns.begin(), table.columns.end(), [&](const TableColumn& column) {
+  const auto it =
+      std::find_if(table.columns.begin(), table.columns.end(), [&](const TableColumn& column) {
         return column.id == published_id;
-      }
-  );
+      });
   if (it == table.columns.end()) return;
   const auto published = static_cast<std::size_t>(it - table.columns.begin());
   std::vector<double> ours, theirs;
@@ -252,7 +253,9 @@ void add_agreement(Table& table, std::size_t measured, const std::string& paper_
     table.agreement.push_back({table.columns[measured].id, tau, static_cast<int>(ours.size())});
 }
 
-void add_notes(Table& table, const TableDefinition& definition, const std::vector<Record>& records) {
+void add_notes(
+    Table& table, const TableDefinition& definition, const std::vector<Record>& records
+) {
   std::set<std::uint64_t> seeds;
   for (const Record& record : records) seeds.insert(record.cell.seed);
   std::string scenes;

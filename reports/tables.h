@@ -24,8 +24,8 @@ struct TableColumn {
   std::string unit;
   RankOrder order = RankOrder::kNone;
   int decimals = 2;
-  double scale = 1;          // shown = scale x measured
-  bool published = false;    // the paper's numbers on the paper's own data
+  double scale = 1;        // shown = scale x measured
+  bool published = false;  // the paper's numbers on the paper's own data
 };
 
 struct TableRowDefinition {
@@ -36,11 +36,11 @@ struct TableRowDefinition {
 
 struct TableDefinition {
   std::string id, title, caption;
-  std::string dataset, dataset_title;           // "glassroom", "GlassRoom"
-  std::string paper_table;                      // "1"; empty: the paper has no such table
-  std::vector<std::string> paper_datasets;      // published columns, one group each
-  std::vector<std::string> other_methods;       // globs: methods with records, beyond `rows`
-  bool every_dataset = false;                   // a group for each further dataset in the records
+  std::string dataset, dataset_title;       // "glassroom", "GlassRoom"
+  std::string paper_table;                  // "1"; empty: the paper has no such table
+  std::vector<std::string> paper_datasets;  // published columns, one group each
+  std::vector<std::string> other_methods;   // globs: methods with records, beyond `rows`
+  bool every_dataset = false;               // a group for each further dataset in the records
   std::vector<TableRowDefinition> rows;
   std::vector<TableColumn> columns;
 };
@@ -55,12 +55,12 @@ enum class CellStatus {
 
 struct TableCell {
   CellStatus status = CellStatus::kMissing;
-  double value = 0;      // in the column's unit, unrounded
-  double spread = 0;     // over seeds: sample standard deviation (>= 3 seeds) or range (2)
+  double value = 0;   // in the column's unit, unrounded
+  double spread = 0;  // over seeds: sample standard deviation (>= 3 seeds) or range (2)
   int num_scenes = 0, num_seeds = 0;
-  int rank = 0;          // 1, 2, 3; 0: not among them or nothing to rank against
-  std::string text;      // as printed, without marks
-  std::string note;      // why it failed, or what is missing
+  int rank = 0;      // 1, 2, 3; 0: not among them or nothing to rank against
+  std::string text;  // as printed, without marks
+  std::string note;  // why it failed, or what is missing
 };
 
 struct TableRow {
@@ -68,9 +68,9 @@ struct TableRow {
   std::vector<TableCell> cells;  // one a column
 };
 
-struct OrderAgreement {   // of one measured column with its published counterpart
-  std::string column;     // id of the measured column
-  double tau = 0;         // Kendall's tau-b
+struct OrderAgreement {  // of one measured column with its published counterpart
+  std::string column;    // id of the measured column
+  double tau = 0;        // Kendall's tau-b
   int num_methods = 0;
 };
 
@@ -90,7 +90,8 @@ TableDefinition parse_table_definition(std::string_view toml, const std::string&
 // All embedded definitions, in the order of their ids.
 std::vector<TableDefinition> table_definitions();
 
-// Means over views are in the records; here over scenes, then over seeds. Ranks on unrounded values.
+// Means over views are in the records; here over scenes, then over seeds. Ranks on unrounded
+// values.
 Table build_table(const TableDefinition& definition, const std::vector<Record>& records);
 
 std::string_view order_arrow(RankOrder order);  // "↑", "↓", ""

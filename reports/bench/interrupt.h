@@ -15,6 +15,6 @@ struct Interrupted : std::exception {
 
 void install_interrupt_handler();  // SIGINT and SIGTERM
 bool is_interrupted();
-void throw_if_interrupted();       // Interrupted
+void throw_if_interrupted();  // Interrupted
 
 }  // namespace glint

@@ -11,9 +11,9 @@
 namespace glint {
 
 struct Machine {
-  std::string cpu;             // model name
-  int cores = 1;               // logical
-  bool has_avx2 = false;       // and FMA: the tile kernels need both
+  std::string cpu;        // model name
+  int cores = 1;          // logical
+  bool has_avx2 = false;  // and FMA: the tile kernels need both
   std::uint64_t memory_bytes = 0;
 };
 Machine this_machine();

@@ -77,10 +77,14 @@ CellState state_of(
 
 std::string_view state_name(CellState state) {
   switch (state) {
-    case CellState::kDone: return "done";
-    case CellState::kFailed: return "failed";
-    case CellState::kStale: return "stale";
-    case CellState::kPending: return "pending";
+    case CellState::kDone:
+      return "done";
+    case CellState::kFailed:
+      return "failed";
+    case CellState::kStale:
+      return "stale";
+    case CellState::kPending:
+      return "pending";
   }
   return "pending";
 }

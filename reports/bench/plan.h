@@ -25,8 +25,8 @@ struct PlanCell {
   std::string config_hash;  // method, resolved config, iterations, seed and the code's sources
 };
 
-// Cells scene by scene, so that each scene is loaded once. Errors (kUsage): unknown method, a config
-// field that the method does not know, filters that leave nothing.
+// Cells scene by scene, so that each scene is loaded once. Errors (kUsage): unknown method, a
+// config field that the method does not know, filters that leave nothing.
 std::vector<PlanCell> make_plan(
     const Profile& profile, const CellFilter& filter, const std::vector<std::string>& assignments
 );

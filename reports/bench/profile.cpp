@@ -64,9 +64,7 @@ std::vector<SceneSource> Profile::sources() const {
   for (const Json& entry : scenes) {
     SceneSource source{"glassroom"};
     config_from_json(source, defaults, where + " defaults");
-    config_from_json(
-        source, entry.is_string() ? Json{{"scene", entry}} : entry, where + " scenes"
-    );
+    config_from_json(source, entry.is_string() ? Json{{"scene", entry}} : entry, where + " scenes");
     GLINT_CHECK(
         !source.scene.empty() && names.insert(source.scene).second,
         kUsage,

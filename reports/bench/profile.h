@@ -40,13 +40,13 @@ struct SceneSource {
 
 struct Profile {
   std::string name, description;
-  int iterations = 1000;                  // of every method
-  std::vector<std::string> methods;       // ids
+  int iterations = 1000;             // of every method
+  std::vector<std::string> methods;  // ids
   std::vector<std::uint64_t> seeds{0};
   int timing_frames = 50, timing_warmup = 5;
-  Json defaults = Json::object();         // SceneSource fields shared by all scenes
-  Json scenes = Json::array();            // names, or objects with SceneSource fields
-  Json overrides = Json::object();        // method id -> config fields
+  Json defaults = Json::object();   // SceneSource fields shared by all scenes
+  Json scenes = Json::array();      // names, or objects with SceneSource fields
+  Json overrides = Json::object();  // method id -> config fields
 
   template <class V>
   void visit(V&& v) {

@@ -20,7 +20,7 @@ struct RunSpec {
   Json config = Json::object();  // overrides for MethodSpec::create
   RunOptions options;
   fs::path dataset_folder;
-  std::string dataset, scene;    // names
+  std::string dataset, scene;  // names
   double max_pixels = 0;
   std::string config_hash, dataset_hash;
 };
@@ -34,8 +34,8 @@ RunSpec read_run_spec(const fs::path& folder);
 // An empty folder for a new run. Errors (kUsage): it holds something that is not an earlier run.
 void clear_run_folder(const fs::path& folder);
 
-// What training cost. env.json holds it and appears last, so that its presence with equal hashes says
-// "trained"; nothing: not trained, or as something else.
+// What training cost. env.json holds it and appears last, so that its presence with equal hashes
+// says "trained"; nothing: not trained, or as something else.
 struct TrainCost {
   double seconds = 0, peak_memory_mb = 0;
 };

@@ -72,7 +72,10 @@ std::unique_ptr<Method> trained_method(const RunSpec& spec, const Scene& scene, 
 }
 
 void run_stages(
-    const RunSpec& spec, const LoadedScene& loaded, const RunnerOptions& options, Record& record,
+    const RunSpec& spec,
+    const LoadedScene& loaded,
+    const RunnerOptions& options,
+    Record& record,
     StageClock& clock
 ) {
   clock.enter("train");
@@ -215,11 +218,16 @@ std::string failure_kind(const std::exception& error, const std::string& stage) 
   const auto* ours = dynamic_cast<const Error*>(&error);
   if (!ours) return "unknown";
   switch (ours->code()) {
-    case ExitCode::kBadPrediction: return stage == "train" ? "not-finite" : "bad-input";
-    case ExitCode::kBadReference: return "bad-input";
-    case ExitCode::kUsage: return "usage";
-    case ExitCode::kEnvironment: return "environment";
-    default: return "unknown";
+    case ExitCode::kBadPrediction:
+      return stage == "train" ? "not-finite" : "bad-input";
+    case ExitCode::kBadReference:
+      return "bad-input";
+    case ExitCode::kUsage:
+      return "usage";
+    case ExitCode::kEnvironment:
+      return "environment";
+    default:
+      return "unknown";
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs the cells of a profile and appends a record for each. A cell that fails becomes a record too,
-// and the next one starts: an unattended night gives every number that can be had.
+// Runs the cells of a profile and appends a record for each. A cell that fails becomes a record
+// too, and the next one starts: an unattended night gives every number that can be had.
 #pragma once
 
 #include <map>
@@ -24,8 +24,9 @@ struct RunSummary {
   bool interrupted = false;
 };
 
-// Finished cells are reused when configuration, code and data hash alike; a cell that was trained but
-// not scored is scored. Errors: kUsage from the plan, kEnvironment when records cannot be written.
+// Finished cells are reused when configuration, code and data hash alike; a cell that was trained
+// but not scored is scored. Errors: kUsage from the plan, kEnvironment when records cannot be
+// written.
 RunSummary run_profile(const RunnerOptions& options);
 
 // Everything behind training: renders, strip, FPS, metrics; returns the means by id.

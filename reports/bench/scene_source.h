@@ -16,8 +16,8 @@ struct LoadedScene {
   fs::path folder;  // where it lies
 };
 
-// What a scene is without loading it: its generator's options and version for made scenes; empty for
-// folders, whose loader hashes the data.
+// What a scene is without loading it: its generator's options and version for made scenes; empty
+// for folders, whose loader hashes the data.
 std::string scene_hash(const SceneSource& source);
 
 // Makes the scene first when it is missing. Errors (kBadReference, kEnvironment): as make_glassroom

@@ -19,7 +19,9 @@ double seconds_since(Clock::time_point start) {
 }
 
 void write_metrics(
-    const RunSpec& spec, const Scores& means, const std::vector<Scores>& scores,
+    const RunSpec& spec,
+    const Scores& means,
+    const std::vector<Scores>& scores,
     const std::vector<View>& views
 ) {
   Json json = {{"scene", spec.scene}, {"method", spec.method}, {"seed", spec.options.seed}};

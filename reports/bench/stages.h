@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The stages of a run: train -> render -> eval. Each reads what the one before left in the run folder.
+// The stages of a run: train -> render -> eval. Each reads what the one before left in the run
+// folder.
 #pragma once
 
 #include <memory>
@@ -28,10 +29,10 @@ void render_stage(const RunSpec& spec, const Scene& scene, const Method& method)
 // converted inside the clock.
 double measure_fps(const Method& method, const Scene& scene, const TimingOptions& options);
 
-// Scores renders/ against the scene's test views and writes metrics.json (means, per-view values with
-// names, protocols). `cost` joins the means: "fps", "train-minutes", "peak-memory", "num-surfels".
-// Returns the means by id; regions as "psnr@glass". Errors (kBadPrediction): a render is missing,
-// damaged or of another size.
+// Scores renders/ against the scene's test views and writes metrics.json (means, per-view values
+// with names, protocols). `cost` joins the means: "fps", "train-minutes", "peak-memory",
+// "num-surfels". Returns the means by id; regions as "psnr@glass". Errors (kBadPrediction): a
+// render is missing, damaged or of another size.
 std::map<std::string, double> eval_stage(
     const RunSpec& spec, const Scene& scene, const std::map<std::string, double>& cost
 );

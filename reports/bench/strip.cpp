@@ -32,18 +32,17 @@ struct DepthRange {
 DepthRange depth_range(const Image& depth) {
   std::vector<float> values;
   std::copy_if(
-      depth.values().begin(), depth.values().end(), std::back_inserter(values), [](float z) {
-        return std::isfinite(z) && z > 0;
-      }
+      depth.values().begin(),
+      depth.values().end(),
+      std::back_inserter(values),
+      [](float z) { return std::isfinite(z) && z > 0; }
   );
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
   return {values[values.size() / 100], values[values.size() - 1 - values.size() / 100]};
 }
 
-Image read_if_there(const fs::path& path) {
-  return fs::exists(path) ? read_image(path) : Image();
-}
+Image read_if_there(const fs::path& path) { return fs::exists(path) ? read_image(path) : Image(); }
 
 Image depth_panel(const Image& depth, DepthRange range, ImageSize size) {
   return depth.empty() ? grey_panel(size) : colorize_depth(depth, range.low, range.high);

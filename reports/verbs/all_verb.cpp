@@ -61,9 +61,10 @@ int run_all(const CommonOptions& common, bool force) {
 void add_all_verb(CommandLine& line) {
   auto force = std::make_shared<bool>(false);
   CLI::App* verb = line.add_verb(
-      line.app, "all", "run every cell of a profile and print the tables", [&line, force] {
-        return run_all(line.common, *force);
-      }
+      line.app,
+      "all",
+      "run every cell of a profile and print the tables",
+      [&line, force] { return run_all(line.common, *force); }
   );
   verb->add_flag("--force", *force, "run finished cells again");
 }

@@ -34,12 +34,15 @@ void add_common_options(CLI::App& verb, CommonOptions& common) {
       ->group(group);
   verb.add_option("--set", common.set, "config field: name=value or method.name=value")
       ->group(group);
-  verb.add_option("--device", common.device, "auto, cpu or cuda")->capture_default_str()->group(group);
+  verb.add_option("--device", common.device, "auto, cpu or cuda")
+      ->capture_default_str()
+      ->group(group);
   verb.add_option("--threads", common.threads, "0: all cores")
       ->check(CLI::NonNegativeNumber)
       ->group(group);
   verb.add_flag("--json", common.json, "one JSON document on standard output")->group(group);
-  verb.add_flag("--quiet", common.quiet, "no progress and no notes on standard error")->group(group);
+  verb.add_flag("--quiet", common.quiet, "no progress and no notes on standard error")
+      ->group(group);
 }
 
 int report_error(const std::string& message, ExitCode code) {
@@ -61,9 +64,8 @@ int parse_and_run(CommandLine& line, int argc, const char* const* argv) {
 }  // namespace
 
 SceneLoader CommonOptions::scene_loader() const {
-  return [folder = fs::path(data)](const SceneSource& source) {
-    return load_source(source, folder);
-  };
+  return
+      [folder = fs::path(data)](const SceneSource& source) { return load_source(source, folder); };
 }
 
 Profile CommonOptions::resolved_profile() const {
@@ -91,6 +93,7 @@ CommandLine::CommandLine() {
         add_eval_verb,
         add_table_verb,
         add_status_verb,
+        add_perf_verb,
         add_doctor_verb})
     add(*this);
 }
@@ -111,7 +114,9 @@ int run_command_line(int argc, const char* const* argv) {
   } catch (const Error& error) {
     return report_error(error.what(), error.code());
   } catch (const std::bad_alloc&) {
-    return report_error("out of memory; use smaller images or fewer threads", ExitCode::kEnvironment);
+    return report_error(
+        "out of memory; use smaller images or fewer threads", ExitCode::kEnvironment
+    );
   } catch (const std::exception& error) {
     return report_error(error.what(), ExitCode::kEnvironment);
   }

@@ -35,8 +35,7 @@ int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
   Json made = Json::array();
   for (const std::string& scene : options.scenes) {
     options.room.scene = scene;
-    const fs::path folder =
-        folder_for(common, options.room, out_given, options.scenes.size() == 1);
+    const fs::path folder = folder_for(common, options.room, out_given, options.scenes.size() == 1);
     const bool is_new = make_glassroom(options.room, folder);
     made.push_back({{"scene", scene}, {"folder", folder.string()}, {"made", is_new}});
     if (!common.json)
@@ -93,7 +92,10 @@ void add_make(CommandLine& line, CLI::App& dataset) {
   auto options = std::make_shared<MakeOptions>();
   auto verb = std::make_shared<CLI::App*>(nullptr);
   *verb = line.add_verb(
-      dataset, "make", "render GlassRoom scenes (--seed varies the layout)", [&line, options, verb] {
+      dataset,
+      "make",
+      "render GlassRoom scenes (--seed varies the layout)",
+      [&line, options, verb] {
         return run_make(line.common, *options, (*verb)->count("--out") > 0);
       }
   );
@@ -115,7 +117,9 @@ void add_folder_verb(
     CommandLine& line, CLI::App& dataset, const char* name, const char* help, FolderAction action
 ) {
   auto folder = std::make_shared<std::string>();
-  line.add_verb(dataset, name, help, [&line, folder, action] { return action(line.common, *folder); })
+  line.add_verb(
+          dataset, name, help, [&line, folder, action] { return action(line.common, *folder); }
+  )
       ->add_option("folder", *folder, "dataset folder")
       ->required();
 }

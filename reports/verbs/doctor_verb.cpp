@@ -9,7 +9,7 @@ namespace glint {
 namespace {
 
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
-constexpr std::uint64_t kNeededDisk = 2 * kGiB;    // a profile on rooms stays well below
+constexpr std::uint64_t kNeededDisk = 2 * kGiB;  // a profile on rooms stays well below
 constexpr std::uint64_t kNeededMemory = 2 * kGiB;
 
 struct Examined {
@@ -51,7 +51,9 @@ int run_doctor(const CommonOptions& common) {
   for (const Examined& examined : examine(common)) {
     good &= examined.good;
     json[examined.name] = {{"value", examined.value}, {"ok", examined.good}};
-    text += fmt::format("{:<9} {:<5} {}\n", examined.name, examined.good ? "ok" : "BAD", examined.value);
+    text += fmt::format(
+        "{:<9} {:<5} {}\n", examined.name, examined.good ? "ok" : "BAD", examined.value
+    );
     if (!examined.good) text += fmt::format("{:<15} {}\n", "", examined.advice);
   }
   if (common.json)

@@ -42,9 +42,10 @@ int run_eval(const CommonOptions& common, const std::string& folder) {
 void add_eval_verb(CommandLine& line) {
   auto folder = std::make_shared<std::string>();
   line.add_verb(
-          line.app, "eval", "score the renders of a run; writes metrics.json", [&line, folder] {
-            return run_eval(line.common, *folder);
-          }
+          line.app,
+          "eval",
+          "score the renders of a run; writes metrics.json",
+          [&line, folder] { return run_eval(line.common, *folder); }
   )
       ->add_option("--run", *folder, "run folder")
       ->required();

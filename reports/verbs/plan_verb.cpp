@@ -20,9 +20,7 @@ std::vector<PlanRow> plan_rows(const CommonOptions& common) {
   std::vector<PlanRow> rows;
   for (const PlanCell& cell : make_plan(profile, common.filter(), common.set))
     rows.push_back(
-        {cell,
-         state_of(cell, records, scene_hash(cell.source)),
-         estimated_seconds(cell, records)}
+        {cell, state_of(cell, records, scene_hash(cell.source)), estimated_seconds(cell, records)}
     );
   return rows;
 }

@@ -24,9 +24,10 @@ int run_render(const CommonOptions& common, const std::string& folder) {
 void add_render_verb(CommandLine& line) {
   auto folder = std::make_shared<std::string>();
   line.add_verb(
-          line.app, "render", "render the test views of a trained run", [&line, folder] {
-            return run_render(line.common, *folder);
-          }
+          line.app,
+          "render",
+          "render the test views of a trained run",
+          [&line, folder] { return run_render(line.common, *folder); }
   )
       ->add_option("--run", *folder, "run folder")
       ->required();

@@ -10,9 +10,9 @@ namespace {
 bool has_measurement(const Table& table) {
   for (const TableRow& row : table.rows)
     for (std::size_t i = 0; i < row.cells.size(); ++i)
-      if (!table.columns[i].published && (row.cells[i].status == CellStatus::kOk ||
-                                          row.cells[i].status == CellStatus::kPartial ||
-                                          row.cells[i].status == CellStatus::kFailed))
+      if (!table.columns[i].published &&
+          (row.cells[i].status == CellStatus::kOk || row.cells[i].status == CellStatus::kPartial ||
+           row.cells[i].status == CellStatus::kFailed))
         return true;
   return false;
 }

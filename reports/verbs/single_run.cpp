@@ -43,12 +43,11 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
   spec.scene = single.scene.name;
   spec.dataset_hash = single.scene.spec_hash;
   spec.config_hash = config_hash_of(spec);
-  spec.folder = options.run.empty()
-                    ? run_folder(
-                          fs::path(common.out) / "single",
-                          {spec.scene, spec.method, spec.options.seed}
-                      )
-                    : fs::path(options.run);
+  spec.folder = options.run.empty() ? run_folder(
+                                          fs::path(common.out) / "single",
+                                          {spec.scene, spec.method, spec.options.seed}
+                                      )
+                                    : fs::path(options.run);
   return single;
 }
 

@@ -8,9 +8,9 @@
 namespace glint {
 
 struct SingleRunOptions {
-  std::string dataset;         // folder
+  std::string dataset;  // folder
   std::string method = "2dgs";
-  std::string run;             // run folder; empty: OUT/single/runs/SCENE/METHOD/SEED
+  std::string run;  // run folder; empty: OUT/single/runs/SCENE/METHOD/SEED
   double max_pixels = 0;
 };
 

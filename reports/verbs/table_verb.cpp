@@ -40,9 +40,10 @@ int run_table(const CommonOptions& common, const TableVerbOptions& options) {
 void add_table_verb(CommandLine& line) {
   auto options = std::make_shared<TableVerbOptions>();
   CLI::App* verb = line.add_verb(
-      line.app, "table", "print the tables of a profile from its records", [&line, options] {
-        return run_table(line.common, *options);
-      }
+      line.app,
+      "table",
+      "print the tables of a profile from its records",
+      [&line, options] { return run_table(line.common, *options); }
   );
   verb->add_option("tables", options->ids, "ids, e.g. table1_photometric; none: all, and written");
   verb->add_option("--format", options->format, "terminal, md, tex, csv or json")

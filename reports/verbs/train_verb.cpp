@@ -40,11 +40,10 @@ int run_train(const CommonOptions& common, const SingleRunOptions& options) {
 
 void add_train_verb(CommandLine& line) {
   auto options = std::make_shared<SingleRunOptions>();
-  CLI::App* verb = line.add_verb(
-      line.app, "train", "train one method on one dataset folder", [&line, options] {
+  CLI::App* verb =
+      line.add_verb(line.app, "train", "train one method on one dataset folder", [&line, options] {
         return run_train(line.common, *options);
-      }
-  );
+      });
   verb->add_option("--dataset", options->dataset, "dataset folder")->required();
   verb->add_option("--method", options->method, "method id")->capture_default_str();
   verb->add_option("--run", options->run, "run folder; else OUT/single/runs/SCENE/METHOD/SEED");

@@ -47,7 +47,9 @@ struct CommandLine {
 
   CommandLine();
   // A verb with the common options; `run` becomes the action when the verb was chosen.
-  CLI::App* add_verb(CLI::App& parent, const std::string& name, const std::string& help, Action run);
+  CLI::App* add_verb(
+      CLI::App& parent, const std::string& name, const std::string& help, Action run
+  );
 };
 
 void add_all_verb(CommandLine& line);
@@ -58,6 +60,7 @@ void add_train_verb(CommandLine& line);
 void add_render_verb(CommandLine& line);
 void add_eval_verb(CommandLine& line);
 void add_table_verb(CommandLine& line);
+void add_perf_verb(CommandLine& line);
 void add_doctor_verb(CommandLine& line);
 
 // Parses, runs and reports errors on standard error: the whole of main().

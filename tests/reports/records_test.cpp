@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/reports/temporary_folder.h"
+#include "tests/support/temp_folder.h"
 
 using namespace glint;
 
@@ -27,7 +27,7 @@ Record sample_record() {
 }  // namespace
 
 TEST_CASE("a record reads back as it was written, to the last bit of its numbers") {
-  const TemporaryFolder folder;
+  const test::TempFolder folder;
   append_record(folder.path() / "records.jsonl", sample_record());
   const auto records = read_records(folder.path() / "records.jsonl");
   REQUIRE(records.size() == 1);
@@ -36,7 +36,7 @@ TEST_CASE("a record reads back as it was written, to the last bit of its numbers
 }
 
 TEST_CASE("a failure keeps its stage, kind, message and log") {
-  const TemporaryFolder folder;
+  const test::TempFolder folder;
   Record record = sample_record();
   record.metrics.clear();
   record.failure = Failure{"train", "check", "means[7] is not finite", {"{\"iteration\":1}"}};
@@ -50,7 +50,7 @@ TEST_CASE("a failure keeps its stage, kind, message and log") {
 }
 
 TEST_CASE("the last record of a cell wins and keeps the cell's place") {
-  const TemporaryFolder folder;
+  const test::TempFolder folder;
   const fs::path file = folder.path() / "records.jsonl";
   Record first = sample_record(), other = sample_record();
   other.cell.seed = 4;
@@ -65,7 +65,7 @@ TEST_CASE("the last record of a cell wins and keeps the cell's place") {
 }
 
 TEST_CASE("a torn last line is skipped, and appending after it loses nothing") {
-  const TemporaryFolder folder;
+  const test::TempFolder folder;
   const fs::path file = folder.path() / "records.jsonl";
   append_record(file, sample_record());
   write_file(file, read_file(file) + R"({"scene": "room_2", "meth)");
@@ -85,11 +85,13 @@ TEST_CASE("an older record without later fields reads with defaults, unknown fie
 }
 
 TEST_CASE("records that cannot be trusted are errors naming the line") {
-  const TemporaryFolder folder;
+  const test::TempFolder folder;
   const fs::path file = folder.path() / "records.jsonl";
   for (const char* line :
-       {R"({"method":"2dgs"})", R"({"scene":"a","method":"b","schema":99})",
-        R"({"scene":"a","method":"b","seed":"x"})", "[1, 2]"}) {
+       {R"({"method":"2dgs"})",
+        R"({"scene":"a","method":"b","schema":99})",
+        R"({"scene":"a","method":"b","seed":"x"})",
+        "[1, 2]"}) {
     write_file(file, std::string(line) + "\n");
     CHECK_THROWS_WITH(read_records(file), Catch::Contains("records.jsonl:1"));
   }

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "reports/bench/plan.h"
+
+#include <catch2/catch.hpp>
+
+#include "reports/embedded.h"
+#include "tests/reports/fake_method.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+
+namespace {
+
+Profile fake_profile() {
+  register_fake_methods();
+  Profile profile;
+  profile.name = "fake";
+  profile.methods = {"fake", "fake/other"};
+  profile.seeds = {0, 1};
+  profile.scenes = {"room_1", "room_2"};
+  return profile;
+}
+
+std::size_t count(const CellFilter& filter) { return make_plan(fake_profile(), filter, {}).size(); }
+
+}  // namespace
+
+TEST_CASE("a plan is scene x method x seed, scene by scene") {
+  const auto plan = make_plan(fake_profile(), {}, {});
+  REQUIRE(plan.size() == 8);
+  CHECK(plan[0].cell.text() == "room_1/fake/0");
+  CHECK(plan[1].cell.text() == "room_1/fake/1");
+  CHECK(plan[2].cell.text() == "room_1/fake/other/0");
+  CHECK(plan[7].cell.text() == "room_2/fake/other/1");
+}
+
+TEST_CASE("filters match the whole cell or its scene or method") {
+  CHECK(count({{"room_1"}, {}}) == 4);
+  CHECK(count({{"fake"}, {}}) == 4);
+  CHECK(count({{"fake/*"}, {}}) == 4);
+  CHECK(count({{"*/fake/*/1"}, {}}) == 2);
+  CHECK(count({{"room_2/fake/0"}, {}}) == 1);
+  CHECK(
+      count(
+          {{},
+           {"room_?"
+            "/fake/other"}}
+      ) == 4
+  );
+  CHECK(count({{"room_1", "room_2/fake"}, {"*/1"}}) == 3);
+}
+
+TEST_CASE("filters that leave nothing are a usage error") {
+  CHECK_THROWS_WITH(count({{"room_9"}, {}}), Catch::Contains("no cell left"));
+}
+
+TEST_CASE("the hash follows whatever changes a result") {
+  Profile profile = fake_profile();
+  const CellFilter one{{"room_1/fake/0"}, {}};
+  const std::string hash = make_plan(profile, one, {})[0].config_hash;
+  CHECK(make_plan(profile, one, {"grey=0.5"})[0].config_hash == hash);  // the default, spelled out
+  CHECK(make_plan(profile, one, {"grey=0.75"})[0].config_hash != hash);
+  CHECK(make_plan(profile, one, {"fake.grey=0.75"})[0].config_hash != hash);
+  CHECK(make_plan(profile, one, {"fake/other.grey=0.75"})[0].config_hash == hash);
+  profile.overrides["fake"] = {{"grey", 0.75}};
+  CHECK(make_plan(profile, one, {})[0].config_hash != hash);
+  CHECK(make_plan(profile, one, {"grey=0.5"})[0].config_hash == hash);  // --set wins
+  profile = fake_profile();
+  profile.iterations += 1;
+  CHECK(make_plan(profile, one, {})[0].config_hash != hash);
+}
+
+TEST_CASE("unknown methods and fields stop a plan before anything runs") {
+  Profile profile = fake_profile();
+  CHECK_THROWS_WITH(make_plan(profile, {}, {"gray=1"}), Catch::Contains("no field 'gray'"));
+  CHECK_THROWS_WITH(make_plan(profile, {}, {"grey"}), Catch::Contains("name=value"));
+  profile.methods = {"fakee"};
+  CHECK_THROWS_WITH(make_plan(profile, {}, {}), Catch::Contains("'fake'"));
+}
+
+TEST_CASE("a cell is done only with the same configuration and data") {
+  const PlanCell cell = make_plan(fake_profile(), {{"room_1/fake/0"}, {}}, {})[0];
+  Record record;
+  record.cell = cell.cell;
+  record.config_hash = cell.config_hash;
+  record.dataset_hash = "d";
+  CHECK(state_of(cell, {}, "d") == CellState::kPending);
+  CHECK(state_of(cell, {record}, "d") == CellState::kDone);
+  CHECK(state_of(cell, {record}, "other") == CellState::kStale);
+  record.config_hash = "old";
+  CHECK(state_of(cell, {record}, "d") == CellState::kStale);
+  record.config_hash = cell.config_hash;
+  record.failure = Failure{};
+  CHECK(state_of(cell, {record}, "d") == CellState::kFailed);
+}
+
+TEST_CASE("time is estimated from finished cells of the same method, without the dataset's") {
+  const PlanCell cell = make_plan(fake_profile(), {{"room_1/fake/0"}, {}}, {})[0];
+  Record a, b;
+  a.cell = {"room_1", "fake", 1};
+  a.timings = {{"dataset", 100.0}, {"train", 10.0}, {"eval", 2.0}};
+  b.cell = {"room_1", "fake/other", 1};
+  b.timings = {{"train", 1000.0}};
+  CHECK(estimated_seconds(cell, {a, b}) == 12.0);
+  CHECK(estimated_seconds(cell, {b}) == 0.0);
+}
+
+TEST_CASE("every built-in profile is valid") {
+  for (const std::string& name : embedded_names("profiles")) {
+    const Profile profile = load_profile(name);
+    CHECK(profile.name == name);
+    CHECK_FALSE(profile.methods.empty());
+    CHECK_FALSE(profile.description.empty());
+  }
+}
+
+TEST_CASE("a profile file of the user's is read, and its mistakes are named") {
+  const test::TempFolder folder;
+  const fs::path file = folder.path() / "mine.toml";
+  write_file(file, "methods = ['2dgs']\nscenes = [{scene = 'fox', folder = 'fox'}]\n");
+  CHECK(load_profile(file.string()).name == "mine");
+  CHECK(load_profile(file.string()).sources()[0].folder == "fox");
+  write_file(file, "method = ['2dgs']\n");
+  CHECK_THROWS_WITH(load_profile(file.string()), Catch::Contains("no field 'method'"));
+  write_file(file, "scenes = ['a', 'a']\n");
+  CHECK_THROWS_WITH(load_profile(file.string()), Catch::Contains("stands there twice"));
+  write_file(file, "scenes = [\n");
+  CHECK_THROWS_WITH(load_profile(file.string()), Catch::Contains("mine.toml:"));
+  CHECK_THROWS_WITH(load_profile("nope"), Catch::Contains("ci, paper, small, smoke"));
+}

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// A scene and methods that take no time, for tests of what runs them.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "glint/core/error.h"
+#include "glint/method.h"
+#include "reports/bench/scene_source.h"
+
+namespace glint {
+
+struct FakeConfig {
+  float grey = 0.5f;  // of every rendered pixel
+  std::string fails;  // "", "initialize", "step", "loss", "render"
+  template <class V>
+  void visit(V&& v) {
+    v("grey", grey, "colour");
+    v("fails", fails, "where it throws");
+  }
+};
+
+// Renders one grey; `trainings` counts the runs that were really trained.
+class FakeMethod final : public Method {
+ public:
+  inline static int trainings = 0;
+
+  explicit FakeMethod(const Json& config) { config_from_json(config_, config, "fake"); }
+  void initialize(const Scene&, const RunOptions&) override {
+    ++trainings;
+    fail_at("initialize");
+  }
+  StepStats step(int iteration) override {
+    fail_at("step");
+    StepStats stats;
+    stats.iteration = iteration;
+    stats.loss = config_.fails == "loss" ? std::numeric_limits<double>::quiet_NaN() : 0.1;
+    stats.terms["photometric"] = stats.loss;
+    return stats;
+  }
+  RenderOutput render(const Camera& camera) const override {
+    fail_at("render");
+    RenderOutput output;
+    output.rgb = Image(camera.width, camera.height, 3, config_.grey);
+    output.depth = Image(camera.width, camera.height, 1, 2.0f);
+    output.layers["transparency"] = Image(camera.width, camera.height, 1, 0.25f);
+    output.layers["interface"] = output.rgb;
+    return output;
+  }
+  void save(const std::string& folder) const override {
+    write_file(fs::path(folder) / "interface.ply", fmt::format("{}", config_.grey));
+  }
+  void load(const std::string& folder) override {
+    config_.grey = std::stof(read_file(fs::path(folder) / "interface.ply"));
+  }
+  Json config() const override { return config_to_json(config_); }
+  void check_finite() const override {}
+  std::size_t num_surfels() const override { return 7; }
+
+ private:
+  void fail_at(const std::string& place) const {
+    if (config_.fails == place) throw std::runtime_error("fake failure in " + place);
+  }
+  FakeConfig config_;
+};
+
+inline void register_fake_methods() {
+  for (const char* id : {"fake", "fake/other"}) {
+    MethodSpec spec;
+    spec.id = spec.title = id;
+    spec.create = [](const Json& config) { return std::make_unique<FakeMethod>(config); };
+    register_method(spec);
+  }
+}
+
+// Two views to train on and two to test on, 16x12, all of one grey.
+inline Scene fake_scene(const std::string& name, float grey = 0.6f) {
+  Scene scene;
+  scene.name = name;
+  scene.dataset = "glassroom";
+  scene.spec_hash = "fake-data";
+  for (int i = 0; i < 4; ++i) {
+    View view;
+    view.name = fmt::format("{:04}", i);
+    view.camera.width = 16;
+    view.camera.height = 12;
+    view.camera.fx = view.camera.fy = 16;
+    view.rgb = Image(16, 12, 3, grey);
+    view.truth.depth = Image(16, 12, 1, 2.5f);
+    (i < 2 ? scene.train : scene.test).push_back(view);
+  }
+  return scene;
+}
+
+}  // namespace glint

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// glint-bench as a program: exit codes of wrong and right command lines.
+#include <catch2/catch.hpp>
+
+#include <initializer_list>
+#include <vector>
+
+#include "reports/verbs/verb.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+
+namespace {
+
+int run(std::initializer_list<const char*> words) {
+  std::vector<const char*> arguments{"glint-bench"};
+  arguments.insert(arguments.end(), words.begin(), words.end());
+  return run_command_line(static_cast<int>(arguments.size()), arguments.data());
+}
+
+}  // namespace
+
+TEST_CASE("help and version succeed") {
+  CHECK(run({"--help"}) == 0);
+  CHECK(run({"--version"}) == 0);
+  CHECK(run({"all", "--help"}) == 0);
+  CHECK(run({"dataset", "make", "--help"}) == 0);
+}
+
+TEST_CASE("wrong command lines exit with 1") {
+  CHECK(run({}) == 1);
+  CHECK(run({"fly"}) == 1);
+  CHECK(run({"plan", "--no-such-option"}) == 1);
+  CHECK(run({"plan", "--profile", "no-such-profile"}) == 1);
+  CHECK(run({"plan", "--seed", "minus one"}) == 1);
+  CHECK(run({"plan", "--threads", "-1"}) == 1);
+  CHECK(run({"plan", "--set", "nonsense"}) == 1);
+  CHECK(run({"plan", "--only", "room_9"}) == 1);
+  CHECK(run({"plan", "--device", "tpu"}) == 1);
+  CHECK(run({"table", "--format", "docx"}) == 1);
+  CHECK(run({"table", "table9", "--profile", "ci"}) == 1);
+  CHECK(run({"train", "--method", "2dgs"}) == 1);
+  CHECK(run({"train", "--dataset", "nowhere", "--method", "no-such-method"}) == 1);
+  CHECK(run({"dataset"}) == 1);
+  CHECK(run({"dataset", "make", "glasshouse"}) == 1);
+}
+
+TEST_CASE("a predicted run that is none exits with 2, a dataset that is none with 3") {
+  CHECK(run({"render", "--run", "does/not/exist"}) == 2);
+  CHECK(run({"eval", "--run", "does/not/exist"}) == 2);
+  CHECK(run({"train", "--dataset", "does/not/exist"}) == 3);
+  CHECK(run({"dataset", "info", "does/not/exist"}) == 3);
+  CHECK(run({"dataset", "check", "does/not/exist"}) == 3);
+}
+
+TEST_CASE("asking for CUDA in a build without it exits with 6") {
+  CHECK(run({"plan", "--device", "cuda"}) == 6);
+}
+
+TEST_CASE("damaged records exit with 2") {
+  const test::TempFolder folder;
+  write_file(folder.path() / "ci/records.jsonl", "{\"method\": 1}\n");
+  CHECK(run({"table", "--out", folder.path().c_str()}) == 2);
+}
+
+TEST_CASE("plan, status and table work before anything was run") {
+  const test::TempFolder folder;
+  const char* out = folder.path().c_str();
+  CHECK(run({"plan", "--profile", "smoke", "--out", out}) == 0);
+  CHECK(run({"plan", "--profile", "smoke", "--out", out, "--json"}) == 0);
+  CHECK(run({"status", "--profile", "smoke", "--out", out}) == 0);
+  CHECK(run({"table", "--profile", "smoke", "--out", out}) == 0);
+  CHECK(fs::exists(folder.path() / "smoke/tables/table1_photometric.csv"));
+}
+
+TEST_CASE("an output folder that cannot be written exits with 6") {
+  CHECK(run({"table", "--profile", "smoke", "--out", "/proc/nowhere"}) == 6);
+}
