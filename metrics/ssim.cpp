@@ -83,10 +83,12 @@ TapRows rows_around(ImageView image, int y, const float* zeros) {
   return rows;
 }
 
-void average_channels(const std::vector<double>& ssim, int channels, double* map_row) {
-  for (std::size_t i = 0; i < ssim.size(); ++i) {
-    const std::size_t x = i / channels;
-    map_row[x] = (i % channels == 0 ? 0 : map_row[x]) + ssim[i] / channels;
+void average_channels(const std::vector<double>& ssim, int channels, int width, double* map_row) {
+  const double* value = ssim.data();
+  for (int x = 0; x < width; ++x) {
+    double sum = 0;
+    for (int c = 0; c < channels; ++c) sum += *value++;
+    map_row[x] = sum / channels;
   }
 }
 
@@ -102,7 +104,7 @@ void ssim_rows(ImageView prediction, ImageView reference, int begin, int end, Ss
     const TapRows y_rows = rows_around(reference, y, zeros.data());
     vertical_pass(x_rows, y_rows, weights, n, row);
     horizontal_pass(row, weights, channels, n, ssim.data());
-    average_channels(ssim, channels, map.pixel(0, y));
+    average_channels(ssim, channels, reference.width, map.pixel(0, y));
   }
 }
 
