@@ -102,7 +102,7 @@ class Path {
     const Vec3d target = center_ + Vec3d{
                                        0.12 * std::cos(2 * angle + sway_),
                                        0.12 * std::sin(3 * angle + sway_),
-                                       0.16 + 0.06 * std::sin(2 * kPi * 2 * s + sway_)};
+                                       0.05 + 0.06 * std::sin(2 * kPi * 2 * s + sway_)};
     return look_at(eye, target, {0, 0, 1}, options_.size, options_.fov_x_deg);
   }
 

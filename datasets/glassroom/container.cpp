@@ -133,6 +133,14 @@ ContainerObject dumbbell(float size) {
   return object;
 }
 
+// Origin to the middle of the bounds: the start places are found by bounding spheres.
+void center(ContainerObject& object) {
+  const Vec3f middle = bounds_of(object.mesh).center();
+  transform(object.mesh, translated(-middle));
+  for (std::vector<Vec3f>& hull : object.hulls)
+    for (Vec3f& point : hull) point = point - middle;
+}
+
 using Maker = ContainerObject (*)(float);
 constexpr std::array<Maker, 8> kMakers{teapot, ball, cone, ring, vase, block, drum, dumbbell};
 
@@ -171,9 +179,9 @@ Material object_material(TraceScene& scene, const std::string& name, std::size_t
 ContainerShape random_container(Rng& rng) {
   ContainerShape shape;
   shape.size = {
-      0.6f * rng.uniform(1.9f, 2.3f),
-      0.4f * rng.uniform(1.9f, 2.4f),
-      0.6f * rng.uniform(1.7f, 2.1f)};
+      0.6f * rng.uniform(2.0f, 2.4f),
+      0.4f * rng.uniform(2.2f, 2.6f),
+      0.6f * rng.uniform(2.1f, 2.5f)};
   return shape;
 }
 
@@ -226,13 +234,14 @@ std::vector<ContainerObject> random_objects(const ContainerShape& shape, int cou
       count,
       kMakers.size()
   );
-  const float base = 0.38f * std::min({shape.size.x, shape.size.y, shape.size.z});
+  const float base = 0.36f * std::min({shape.size.x, shape.size.y, shape.size.z});
   const std::size_t first = rng.below(kMakers.size());
   std::vector<ContainerObject> objects;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     // The first one is the centrepiece.
     const float size = base * (i == 0 ? rng.uniform(1.5f, 1.7f) : rng.uniform(0.85f, 1.15f));
     objects.push_back(kMakers[(first + i) % kMakers.size()](size));
+    center(objects.back());
     objects.back().mass = rng.uniform(0.6f, 1.4f);
   }
   return objects;

@@ -145,13 +145,13 @@ Vec3f rug(const PatternSpec& s, float u, float v) {
   if (rim < 0.02f) return tufts * s.colors[1];
   if (rim < 0.1f) return tufts * (zigzag > 0.5f ? s.colors[2] : s.colors[1]);
   if (rim < 0.12f) return tufts * s.colors[2];
-  const float x = fract(3 * u) - 0.5f, y = fract(2 * v) - 0.5f;
-  const float radius = std::hypot(x, y) * (1 + 0.18f * std::cos(8 * std::atan2(y, x)));
-  const bool medallion = radius < 0.36f;
-  const bool heart = radius < 0.16f || (radius > 0.26f && radius < 0.31f);
+  // A calm middle, so that what stands on the rug is seen: one large medallion on a faint lattice.
+  const float x = 1.3f * (u - 0.5f), y = v - 0.5f;
+  const float radius = std::hypot(x, y) * (1 + 0.06f * std::cos(8 * std::atan2(y, x)));
+  const bool heart = radius < 0.12f || (radius > 0.24f && radius < 0.28f);
+  if (radius < 0.34f) return tufts * (heart ? mix(s.colors[1], s.colors[2], 0.5f) : s.colors[1]);
   const bool lattice = std::abs(fract(6 * (u + 0.7f * v)) - 0.5f) < 0.06f ||
                        std::abs(fract(6 * (u - 0.7f * v)) - 0.5f) < 0.06f;
-  if (medallion) return tufts * s.colors[heart ? 2 : 1];
   return tufts * (lattice ? mix(s.colors[0], s.colors[2], 0.5f) : s.colors[0]);
 }
 

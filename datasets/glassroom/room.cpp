@@ -5,33 +5,39 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "datasets/glassroom/fixtures.h"
 #include "glint/core/error.h"
-#include "glint/core/progress.h"
 
 namespace glint {
 
 namespace {
 
-constexpr float kWallGap = 0.03f;  // furniture stands off the baseboard
-constexpr float kItemGap = 0.04f;  // between neighbours
+constexpr float kWallGap = 0.03f;    // furniture stands off the baseboard
+constexpr float kItemGap = 0.04f;    // between neighbours
+constexpr float kCornerGap = 0.08f;  // from the corners of the room
 constexpr float kBaseboardHeight = 0.09f, kBaseboardDepth = 0.016f;
-constexpr int kPlacementTries = 400;
+constexpr int kWallTries = 300, kPictureTries = 200;
 
 // Radiance in arbitrary units; the exposure is fitted to the finished room.
 constexpr Vec3f kCeilingLight{10.0f, 9.4f, 8.4f};
 constexpr Vec3f kLampLight{6.0f, 4.4f, 2.6f};
-constexpr std::array<Vec3f, 4> kWindowLight{// rows from the sill up: garden, trees, haze, sky
-                                            Vec3f{0.9f, 1.3f, 0.6f},
-                                            {1.2f, 1.7f, 1.1f},
-                                            {3.2f, 3.5f, 3.7f},
-                                            {3.0f, 3.9f, 5.0f}};
+constexpr std::array<Vec3f, kWindowRows> kWindowLight{
+    {{0.9f, 1.3f, 0.6f}, {1.2f, 1.7f, 1.1f}, {3.2f, 3.5f, 3.7f}, {3.0f, 3.9f, 5.0f}}};
+
+// Something that needs a place at a wall, in the wall's frame.
+struct Piece {
+  std::string kind;
+  Furniture furniture;
+  Bounds local;
+};
 
 class RoomBuilder {
  public:
   RoomBuilder(const RoomProgram& program, std::uint64_t seed)
       : program_(program), rng_(seed, hash_name(program.name)), seed_(seed) {
-    room_.size = {rng_.uniform(4.7f, 5.6f), rng_.uniform(4.6f, 5.4f), rng_.uniform(2.6f, 2.85f)};
+    room_.size = {rng_.uniform(4.9f, 5.6f), rng_.uniform(4.8f, 5.4f), rng_.uniform(2.6f, 2.85f)};
     room_.container_place = {rng_.uniform(-0.15f, 0.15f), rng_.uniform(-0.15f, 0.15f)};
     make_palette();
   }
@@ -41,67 +47,53 @@ class RoomBuilder {
     add_shell();
     add_ceiling_lights();
     add_rug();
-    for (int wall = 0; wall < 4; ++wall) add_openings(wall);
-    for (int wall = 0; wall < 4; ++wall) add_wall_furniture(wall);
+    for (int wall = 0; wall < 4; ++wall) furnish(wall);
     for (int wall = 0; wall < 4; ++wall)
-      for (int i = 0; i < walls(wall).pictures; ++i) add_picture(wall, i);
+      for (int i = 0; i < program(wall).pictures; ++i) hang_picture(wall, i);
     return std::move(room_);
   }
 
  private:
-  const WallProgram& walls(int wall) const {
+  const WallProgram& program(int wall) const {
     return program_.walls[static_cast<std::size_t>(wall)];
   }
   float wall_length(int wall) const { return wall % 2 == 0 ? room_.size.x : room_.size.y; }
 
   // Local frame of a wall (furniture.h) at `along` metres from its middle.
-  Pose wall_pose(int wall, float along) const {
+  Pose wall_pose(int wall, float along, float up = 0) const {
     const float yaw = static_cast<float>(wall) * 0.5f * std::numbers::pi_v<float>;
     const float off = 0.5f * (wall % 2 == 0 ? room_.size.y : room_.size.x);
     const Pose turn = yawed(yaw, {});
-    return {.rotation = turn.rotation, .translation = turn.apply({along, -off, 0})};
+    return {.rotation = turn.rotation, .translation = turn.apply({along, -off, up})};
   }
 
-  std::uint64_t next_seed() {
-    return (seed_ << 20) + hash_name(program_.name) % 65536 + ++counter_;
-  }
-
-  int textured(
-      std::string name,
-      PatternSpec spec,
-      MaterialKind kind = MaterialKind::kDiffuse,
-      float roughness = 0.5f
-  ) {
-    spec.seed = next_seed();
+  int textured(std::string name, PatternSpec spec) {
+    spec.seed = (seed_ << 20) + hash_name(program_.name) % 65536 + ++num_patterns_;
+    const int texture = add_texture(room_.scene, make_pattern(spec));
     return add_material(
-        room_.scene,
-        {.name = std::move(name),
-         .kind = kind,
-         .albedo = {1, 1, 1},
-         .texture = add_texture(room_.scene, make_pattern(spec)),
-         .roughness = roughness}
+        room_.scene, {.name = std::move(name), .albedo = {1, 1, 1}, .texture = texture}
     );
   }
-  int plain(
+  Finish finish(std::string name, const PatternSpec& spec) {
+    return {textured(std::move(name), spec), 1 / spec.period};
+  }
+  Finish plain(
       std::string name,
       Vec3f color,
       MaterialKind kind = MaterialKind::kDiffuse,
-      float roughness = 0.4f
+      float roughness = 0.5f
   ) {
-    return add_material(
-        room_.scene,
-        {.name = std::move(name), .kind = kind, .albedo = color, .roughness = roughness}
-    );
+    return {
+        add_material(
+            room_.scene,
+            {.name = std::move(name), .kind = kind, .albedo = color, .roughness = roughness}
+        ),
+        1};
   }
   int emitter(std::string name, Vec3f radiance) {
     return add_material(
         room_.scene, {.name = std::move(name), .albedo = {0.6f, 0.6f, 0.6f}, .emission = radiance}
     );
-  }
-  Finish finish(
-      std::string name, const PatternSpec& spec, MaterialKind kind = MaterialKind::kDiffuse
-  ) {
-    return {textured(std::move(name), spec, kind), 1 / spec.period};
   }
 
   void make_palette() {
@@ -111,19 +103,26 @@ class RoomBuilder {
     palette_.fabric = finish("fabric", program_.fabric);
     palette_.cushion = finish("cushion", program_.cushion);
     palette_.books = finish("books", program_.books);
-    palette_.paint = {plain("paint", program_.paint), 1};
-    palette_.metal = {plain("steel", {0.6f, 0.6f, 0.62f}, conductor, 0.45f), 1};
-    palette_.brass = {plain("brass", {0.78f, 0.6f, 0.28f}, conductor, 0.35f), 1};
-    palette_.black = {plain("black plastic", {0.015f, 0.015f, 0.017f}, plastic, 0.25f), 1};
-    palette_.ceramic = {plain("ceramic", program_.ceramic, plastic, 0.3f), 1};
-    palette_.leaf = {plain("leaf", srgb_hex(0x4C7A3A), plastic, 0.5f), 1};
-    palette_.pot = {plain("pot", program_.pot), 1};
+    palette_.paint = plain("paint", program_.paint);
+    palette_.metal = plain("steel", {0.6f, 0.6f, 0.62f}, conductor, 0.45f);
+    palette_.brass = plain("brass", {0.78f, 0.6f, 0.28f}, conductor, 0.35f);
+    palette_.black = plain("black plastic", {0.015f, 0.015f, 0.017f}, plastic, 0.25f);
+    palette_.ceramic = plain("ceramic", program_.ceramic, plastic, 0.3f);
+    palette_.leaf = plain("leaf", srgb_hex(0x4C7A3A), plastic, 0.5f);
+    palette_.pot = plain("pot", program_.pot);
     palette_.shade = {emitter("lamp shade", kLampLight), 1};
+    fixtures_.curtain = plain("curtain", program_.curtain);
+    fixtures_.ceiling_light = emitter("ceiling light", kCeilingLight);
+    for (std::size_t i = 0; i < kWindowLight.size(); ++i)
+      fixtures_.window_rows[i] = emitter("window", kWindowLight[i]);
   }
 
-  void add(TraceMesh mesh, const char* name, int material, const Pose& pose = {}) {
+  void add(TraceMesh mesh, const std::string& name, int material, const Pose& pose = {}) {
     transform(mesh, pose);
     add_mesh(room_.scene, std::move(mesh), name, material);
+  }
+  void add(Furniture furniture, const std::string& name, const Pose& pose) {
+    for (FurniturePart& part : furniture) add(std::move(part.mesh), name, part.material, pose);
   }
 
   void add_shell() {
@@ -131,55 +130,40 @@ class RoomBuilder {
     TraceMesh floor = quad_mesh(low, {s.x, 0, 0}, {0, s.y, 0});
     scale_uvs(floor, 1 / program_.floor.period);
     add(std::move(floor), "floor", textured("floor", program_.floor));
-    add(quad_mesh({low.x, -low.y, s.z}, {s.x, 0, 0}, {0, -s.y, 0}),
-        "ceiling",
-        plain("ceiling", srgb_hex(0xEEECE6)));
-    const int trim = palette_.paint.material;
-    for (int wall = 0; wall < 4; ++wall) {
-      const float half = 0.5f * wall_length(wall);
-      TraceMesh side = quad_mesh({half, 0, 0}, {-2 * half, 0, 0}, {0, 0, s.z});
-      scale_uvs(side, 1 / walls(wall).finish.period);
-      add(std::move(side), "wall", textured("wall", walls(wall).finish), wall_pose(wall, 0));
-      add(box_mesh({-half, 0, 0}, {half, kBaseboardDepth, kBaseboardHeight}),
-          "baseboard",
-          trim,
-          wall_pose(wall, 0));
-      add(box_mesh({-half, 0, s.z - 0.07f}, {half, 0.05f, s.z}), "cornice", trim, wall_pose(wall, 0)
-      );
-    }
+    TraceMesh ceiling = quad_mesh({low.x, -low.y, s.z}, {s.x, 0, 0}, {0, -s.y, 0});
+    add(std::move(ceiling), "ceiling", plain("ceiling", srgb_hex(0xEEECE6)).material);
+    for (int wall = 0; wall < 4; ++wall) add_wall(wall, 0.5f * wall_length(wall), s.z);
   }
 
-  // Two by two panels in frames just under the ceiling.
+  void add_wall(int wall, float half, float height) {
+    TraceMesh side = quad_mesh({half, 0, 0}, {-2 * half, 0, 0}, {0, 0, height});
+    scale_uvs(side, 1 / program(wall).finish.period);
+    const Pose pose = wall_pose(wall, 0);
+    const int trim = palette_.paint.material;
+    add(std::move(side), "wall", textured("wall", program(wall).finish), pose);
+    add(box_mesh({-half, 0, 0}, {half, kBaseboardDepth, kBaseboardHeight}), "baseboard", trim, pose
+    );
+    add(box_mesh({-half, 0, height - 0.07f}, {half, 0.05f, height}), "cornice", trim, pose);
+  }
+
   void add_ceiling_lights() {
-    constexpr float kHalf = 0.5f, kFrame = 0.04f;
-    const int light = emitter("ceiling light", kCeilingLight);
-    const float z = room_.size.z;
-    for (const float sx : {-0.25f, 0.25f})
-      for (const float sy : {-0.25f, 0.25f}) {
-        const Pose at = translated({sx * room_.size.x, sy * room_.size.y, 0});
-        add(quad_mesh({-kHalf, kHalf, z - 0.02f}, {2 * kHalf, 0, 0}, {0, -2 * kHalf, 0}),
+    for (const float x : {-0.25f, 0.25f})
+      for (const float y : {-0.25f, 0.25f})
+        add(make_ceiling_light(palette_, fixtures_, 0.5f),
             "ceiling light",
-            light,
-            at);
-        TraceMesh frame;
-        const float o = kHalf + kFrame;
-        append(frame, box_mesh({-o, -o, z - 0.04f}, {o, -kHalf, z}));
-        append(frame, box_mesh({-o, kHalf, z - 0.04f}, {o, o, z}));
-        append(frame, box_mesh({-o, -kHalf, z - 0.04f}, {-kHalf, kHalf, z}));
-        append(frame, box_mesh({kHalf, -kHalf, z - 0.04f}, {o, kHalf, z}));
-        add(std::move(frame), "light frame", palette_.metal.material, at);
-      }
+            translated({x * room_.size.x, y * room_.size.y, room_.size.z}));
   }
 
   void add_rug() {
     constexpr float kThickness = 0.008f;
     const Vec2f half{1.3f, 1.05f};
-    const Vec3f place{room_.container_place.x, room_.container_place.y, 0};
     TraceMesh rug = box_mesh({-half.x, -half.y, 0.0005f}, {half.x, half.y, kThickness});
-    for (std::size_t i = 0; i < rug.uvs.size(); ++i)
-      rug.uvs[i] = {
-          0.5f + 0.499f * rug.vertices[i].x / half.x, 0.5f + 0.499f * rug.vertices[i].y / half.y};
-    add(std::move(rug), "rug", textured("rug", program_.rug), translated(place));
+    for (std::size_t i = 0; i < rug.uvs.size(); ++i) {
+      const Vec3f v = rug.vertices[i];
+      rug.uvs[i] = {0.5f + 0.499f * v.x / half.x, 0.5f + 0.499f * v.y / half.y};
+    }
+    const Vec2f place = room_.container_place;
+    add(std::move(rug), "rug", textured("rug", program_.rug), translated({place.x, place.y, 0}));
     room_.support_height = kThickness;
   }
 
@@ -190,93 +174,11 @@ class RoomBuilder {
     });
   }
 
-  // A free place along the wall for something with these local bounds; nothing when there is none.
-  bool find_place(int wall, const Bounds& local, Pose& pose, Bounds& world) {
-    const float reach = 0.5f * (wall_length(wall) - local.size().x) - kWallGap;
-    if (reach <= 0) return false;
-    for (int attempt = 0; attempt < kPlacementTries; ++attempt) {
-      pose = wall_pose(wall, rng_.uniform(-reach, reach) - local.center().x);
-      world = {};
-      world.include(pose.apply(local.low));
-      world.include(pose.apply(local.high));
-      if (is_free(world)) return true;
-    }
-    return false;
-  }
-
-  void add_openings(int wall) {
-    for (int i = 0; i < walls(wall).windows; ++i) add_window(wall);
-    for (int i = 0; i < walls(wall).doors; ++i) add_door(wall);
-  }
-
-  // Reserves the place of something fixed to the wall; false when the wall is full.
-  bool reserve(int wall, const char* kind, const Bounds& local, Pose& pose) {
+  static Bounds placed(const Bounds& local, const Pose& pose) {
     Bounds world;
-    if (!find_place(wall, local, pose, world)) {
-      log::info(fmt::format("{}: no room for a {} on wall {}", program_.name, kind, wall));
-      return false;
-    }
-    room_.items.push_back({kind, wall, world});
-    return true;
-  }
-
-  // Panes that glow in rows, mullions, a sill, and curtains at both sides.
-  void add_window(int wall) {
-    const float half = rng_.uniform(0.55f, 0.75f), low = rng_.uniform(0.3f, 0.5f), high = 2.25f;
-    constexpr float kCurtain = 0.34f;
-    Pose pose;
-    const Bounds local{
-        .low = {-half - kCurtain, 0.001f, 0.1f}, .high = {half + kCurtain, 0.2f, high + 0.12f}};
-    if (!reserve(wall, "window", local, pose)) return;
-    const float row = (high - low) / static_cast<float>(kWindowLight.size());
-    for (std::size_t i = 0; i < kWindowLight.size(); ++i)
-      add(quad_mesh(
-              {half, 0.01f, low + row * static_cast<float>(i)}, {-2 * half, 0, 0}, {0, 0, row}
-          ),
-          "window pane",
-          emitter("window", kWindowLight[i]),
-          pose);
-    TraceMesh frame;
-    for (const float x : {-half - 0.05f, -0.025f, half})
-      append(frame, box_mesh({x, 0, low}, {x + 0.05f, 0.06f, high}));
-    for (const float z : {low - 0.05f, 0.5f * (low + high), high})
-      append(frame, box_mesh({-half - 0.05f, 0, z}, {half + 0.05f, 0.06f, z + 0.05f}));
-    append(frame, box_mesh({-half - 0.1f, 0, low - 0.08f}, {half + 0.1f, 0.16f, low - 0.05f}));
-    add(std::move(frame), "window frame", palette_.paint.material, pose);
-    const int cloth = plain("curtain", program_.curtain);
-    for (const float side : {-1.0f, 1.0f})
-      add(curtain_mesh(kCurtain, high - 0.02f, 4, 0.07f),
-          "curtain",
-          cloth,
-          compose(pose, translated({side * (half + 0.5f * kCurtain), 0.085f, 0.1f})));
-    add(box_mesh({-half - kCurtain, 0.1f, high + 0.08f}, {half + kCurtain, 0.13f, high + 0.11f}),
-        "curtain rod",
-        palette_.brass.material,
-        pose);
-  }
-
-  void add_door(int wall) {
-    constexpr float kHalf = 0.44f, kHeight = 2.05f;
-    Pose pose;
-    const Bounds local{
-        .low = {-kHalf - 0.08f, 0.001f, 0}, .high = {kHalf + 0.08f, 0.1f, kHeight + 0.08f}};
-    if (!reserve(wall, "door", local, pose)) return;
-    TraceMesh leaf = box_mesh({-kHalf, 0, 0}, {kHalf, 0.025f, kHeight}), frame, panels;
-    for (const float x : {-0.36f, 0.05f})
-      for (const float z : {0.2f, 1.1f})
-        append(panels, box_mesh({x, 0.025f, z}, {x + 0.31f, 0.037f, z + 0.75f}));
-    for (const float x : {-kHalf - 0.08f, kHalf})
-      append(frame, box_mesh({x, 0, 0}, {x + 0.08f, 0.05f, kHeight}));
-    append(frame, box_mesh({-kHalf - 0.08f, 0, kHeight}, {kHalf + 0.08f, 0.05f, kHeight + 0.08f}));
-    scale_uvs(leaf, palette_.wood.periods_per_metre);
-    scale_uvs(panels, palette_.wood.periods_per_metre);
-    add(std::move(leaf), "door", palette_.wood.material, pose);
-    add(std::move(panels), "door panels", palette_.dark_wood.material, pose);
-    add(std::move(frame), "door frame", palette_.paint.material, pose);
-    add(sphere_mesh(0.03f, 16),
-        "door knob",
-        palette_.brass.material,
-        compose(pose, translated({0.37f, 0.06f, 1.0f})));
+    world.include(pose.apply(local.low));
+    world.include(pose.apply(local.high));
+    return world;
   }
 
   Furniture furniture_of(FurnitureKind kind) {
@@ -286,61 +188,98 @@ class RoomBuilder {
     return asset != assets_.end() ? asset->furniture : make_furniture(kind, palette_, rng_);
   }
 
-  void add_wall_furniture(int wall) {
-    for (const FurnitureKind kind : walls(wall).furniture) {
-      Furniture furniture = furniture_of(kind);
-      Bounds local = bounds_of(furniture);
-      // The back stands off the wall: moved so that its rearmost point is at kWallGap.
-      const Vec3f stand_off{0, kWallGap - local.low.y, 0};
-      local.low += stand_off;
-      local.high += stand_off;
-      Pose pose;
-      if (!reserve(wall, furniture_name(kind).data(), local, pose)) continue;
-      for (FurniturePart& part : furniture)
-        add(std::move(part.mesh),
-            furniture_name(kind).data(),
-            part.material,
-            compose(pose, translated(stand_off)));
+  // Moved along y so that its rearmost point is `gap` off the wall.
+  static Piece make_piece(std::string kind, Furniture furniture, float gap) {
+    const Vec3f shift{0, gap - bounds_of(furniture).low.y, 0};
+    for (FurniturePart& part : furniture) transform(part.mesh, translated(shift));
+    const Bounds local = bounds_of(furniture);
+    return {std::move(kind), std::move(furniture), local};
+  }
+
+  std::vector<Piece> wall_pieces(int wall) {
+    std::vector<Piece> pieces;
+    for (int i = 0; i < program(wall).windows; ++i)
+      pieces.push_back(make_piece("window", make_window(palette_, fixtures_, rng_), 0.001f));
+    for (int i = 0; i < program(wall).doors; ++i)
+      pieces.push_back(make_piece("door", make_door(palette_), 0.001f));
+    for (const FurnitureKind kind : program(wall).furniture)
+      pieces.push_back(make_piece(std::string(furniture_name(kind)), furniture_of(kind), kWallGap));
+    return pieces;
+  }
+
+  // All pieces side by side in random order with random gaps; retried until the corners are free.
+  void furnish(int wall) {
+    std::vector<Piece> pieces = wall_pieces(wall);
+    float spare = wall_length(wall) - 2 * kCornerGap;
+    for (const Piece& piece : pieces) spare -= piece.local.size().x + 2 * kItemGap;
+    GLINT_CHECK(spare >= 0, kEnvironment, "{}: wall {} is too short", program_.name, wall);
+    const std::size_t before = room_.items.size();
+    for (int attempt = 0; attempt < kWallTries; ++attempt) {
+      if (arrange(wall, pieces, spare)) return;
+      room_.items.resize(before);
+    }
+    GLINT_CHECK(
+        false, kEnvironment, "{}: the furniture of wall {} does not fit", program_.name, wall
+    );
+  }
+
+  bool arrange(int wall, std::vector<Piece>& pieces, float spare) {
+    for (std::size_t i = pieces.size(); i > 1; --i)
+      std::swap(pieces[i - 1], pieces[rng_.below(static_cast<std::uint32_t>(i))]);
+    // Sorted random cuts share the spare length among the gaps.
+    std::vector<float> cuts(pieces.size());
+    for (float& cut : cuts) cut = rng_.uniform(0, spare);
+    std::sort(cuts.begin(), cuts.end());
+    std::vector<Pose> poses;
+    float along = kCornerGap - 0.5f * wall_length(wall);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const Bounds& local = pieces[i].local;
+      poses.push_back(wall_pose(wall, along + cuts[i] + kItemGap - local.low.x));
+      const Bounds world = placed(local, poses.back());
+      if (!is_free(world)) return false;
+      room_.items.push_back({pieces[i].kind, wall, world});
+      along += local.size().x + 2 * kItemGap;
+    }
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      add(std::move(pieces[i].furniture), pieces[i].kind, poses[i]);
+    return true;
+  }
+
+  // On a free stretch of wall; left out where there is none.
+  void hang_picture(int wall, int index) {
+    const float half_width = rng_.uniform(0.25f, 0.5f), half_height = rng_.uniform(0.22f, 0.38f);
+    const float reach = 0.5f * wall_length(wall) - half_width - kCornerGap;
+    for (int attempt = 0; attempt < kPictureTries; ++attempt) {
+      const Pose pose = wall_pose(wall, rng_.uniform(-reach, reach), rng_.uniform(1.4f, 1.75f));
+      const Bounds local{
+          .low = {-half_width - 0.03f, 0.001f, -half_height},
+          .high = {half_width + 0.03f, 0.035f, half_height}};
+      const Bounds world = placed(local, pose);
+      if (!is_free(world)) continue;
+      room_.items.push_back({"picture", wall, world});
+      const int canvas = textured("picture", painting(wall + index));
+      return add(make_picture(palette_, canvas, half_width, half_height), "picture", pose);
     }
   }
 
-  void add_picture(int wall, int index) {
+  PatternSpec painting(int index) {
     constexpr std::array kKinds{
         PatternKind::kLandscape, PatternKind::kCircles, PatternKind::kBlocks, PatternKind::kWaves};
     constexpr std::array<std::uint32_t, 9> kInks{
         0xC8553D, 0x2D5D7B, 0xE0B23C, 0x588B4E, 0x8E4162, 0x1B3A4B, 0xD98E4A, 0x6C9A8B, 0x5A3E85};
-    const float half_width = rng_.uniform(0.25f, 0.5f), half_height = rng_.uniform(0.22f, 0.38f);
-    const float z = rng_.uniform(1.4f, 1.75f), x = half_width;
-    Pose pose;
-    const Bounds local{
-        .low = {-x - 0.03f, 0.001f, z - half_height}, .high = {x + 0.03f, 0.035f, z + half_height}};
-    if (!reserve(wall, "picture", local, pose)) return;
-    PatternSpec spec{.kind = kKinds[static_cast<std::size_t>(wall + index) % kKinds.size()]};
+    PatternSpec spec{.kind = kKinds[static_cast<std::size_t>(index) % kKinds.size()]};
     const std::uint32_t first = rng_.below(kInks.size());
     for (std::uint32_t i = 0; i < 3; ++i)
       spec.colors[i] = srgb_hex(kInks[(first + 2 * i) % kInks.size()]);
-    // Seen from the room, the picture's u grows to the right, that is towards -x of the wall's
-    // frame.
-    TraceMesh canvas = quad_mesh(
-        {x, 0.03f, z - half_height + 0.03f}, {-2 * x, 0, 0}, {0, 0, 2 * half_height - 0.06f}
-    );
-    canvas.uvs = {{0.01f, 0.01f}, {0.99f, 0.01f}, {0.99f, 0.99f}, {0.01f, 0.99f}};
-    add(std::move(canvas), "picture", textured("picture", spec), pose);
-    TraceMesh frame;
-    for (const float side : {-x - 0.03f, x})
-      append(
-          frame, box_mesh({side, 0.001f, z - half_height}, {side + 0.03f, 0.035f, z + half_height})
-      );
-    for (const float side : {z - half_height, z + half_height - 0.03f})
-      append(frame, box_mesh({-x, 0.001f, side}, {x, 0.035f, side + 0.03f}));
-    add(std::move(frame), "picture frame", palette_.dark_wood.material, pose);
+    return spec;
   }
 
   const RoomProgram& program_;
   Rng rng_;
-  std::uint64_t seed_, counter_ = 0;
+  std::uint64_t seed_, num_patterns_ = 0;
   RoomModel room_;
   Palette palette_;
+  FixturePalette fixtures_;
   std::vector<FurnitureAsset> assets_;
 };
 

@@ -39,7 +39,8 @@ struct FurnitureAsset {
 // Adds textures and materials to the scene and returns the pieces made of them.
 using AssetSource = std::function<std::vector<FurnitureAsset>(TraceScene&)>;
 
-// Deterministic in (program, seed). `assets` may be empty.
+// Deterministic in (program, seed). `assets` may be empty. Errors (kEnvironment): the furniture
+// does not fit along a wall.
 RoomModel build_room(
     const RoomProgram& program, std::uint64_t seed, const AssetSource& assets = {}
 );

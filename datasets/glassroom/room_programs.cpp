@@ -88,11 +88,11 @@ RoomProgram loft() {
       .curtain = srgb_hex(0x5C7F92),
       .walls = {
           WallProgram{.finish = brick, .furniture = {kSofa, kFloorLamp}, .pictures = 3},
-          {.finish = brick, .furniture = {kPlant, kStool}, .windows = 2},
+          {.finish = brick, .furniture = {kPlant, kDesk}, .windows = 1},
           {.finish = pattern(PatternKind::kPlain, 2.0f, 0xD9A441, 0xC28E2E),
            .furniture = {kMediaUnit, kPlant},
            .pictures = 2},
-          {.finish = brick, .furniture = {kBookshelf, kDesk}, .doors = 1, .pictures = 2}}};
+          {.finish = brick, .furniture = {kBookshelf}, .windows = 1, .doors = 1, .pictures = 1}}};
 }
 
 RoomProgram gallery() {
@@ -137,7 +137,7 @@ RoomProgram lounge() {
       .walls = {
           WallProgram{.finish = paper, .furniture = {kMediaUnit, kFloorLamp}, .pictures = 3},
           {.finish = paper, .furniture = {kSofa, kPlant}, .pictures = 2},
-          {.finish = paper, .furniture = {kArmchair}, .windows = 1, .doors = 1, .pictures = 1},
+          {.finish = paper, .furniture = {kStool}, .windows = 1, .doors = 1, .pictures = 1},
           {.finish = pattern(PatternKind::kPlanks, 1.6f, 0x8A5F3B, 0x5F3E25, 0x24160C),
            .furniture = {kWardrobe, kSideboard},
            .windows = 1,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "glint/core/error.h"
 #include "glint/scene/camera.h"
@@ -174,23 +175,30 @@ bool find_start(
   return found;
 }
 
+// The largest are placed first.
 std::vector<Pose> start_poses(
     const ContainerShape& shape, const std::vector<ContainerObject>& objects, Rng& rng
 ) {
-  std::vector<Pose> poses;
+  std::vector<std::size_t> order(objects.size());
+  std::vector<float> radii;
+  for (const ContainerObject& object : objects) radii.push_back(bounding_radius(object));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return radii[a] > radii[b];
+  });
+  std::vector<Pose> poses(objects.size());
   std::vector<Vec4f> placed;  // centre and radius (w)
-  for (const ContainerObject& object : objects) {
-    const float radius = bounding_radius(object);
+  for (const std::size_t i : order) {
     Vec3f place{};
     GLINT_CHECK(
-        find_start(shape, placed, radius, rng, place),
+        find_start(shape, placed, radii[i], rng, place),
         kEnvironment,
         "settle: no space in the container for the {} after {} objects",
-        object.name,
+        objects[i].name,
         placed.size()
     );
-    placed.push_back({radius, place.x, place.y, place.z});
-    poses.push_back({.rotation = random_upright(rng), .translation = place});
+    placed.push_back({radii[i], place.x, place.y, place.z});
+    poses[i] = {.rotation = random_upright(rng), .translation = place};
   }
   return poses;
 }

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// What is fixed to walls and ceiling: windows that glow, doors, pictures, lights. Local frame of a
+// wall as in furniture.h: the wall is the plane y = 0, y points into the room, the floor is z = 0.
+#pragma once
+
+#include <array>
+
+#include "datasets/glassroom/furniture.h"
+
+namespace glint {
+
+inline constexpr int kWindowRows = 4;
+
+// Materials that only fixtures use.
+struct FixturePalette {
+  std::array<int, kWindowRows> window_rows{};  // emitters from the sill up
+  Finish curtain;
+  int ceiling_light = 0;  // emitter
+};
+
+// Glowing panes in rows (garden, trees, haze, sky), mullions, a sill, curtains at both sides.
+Furniture make_window(const Palette& palette, const FixturePalette& fixtures, Rng& rng);
+Furniture make_door(const Palette& palette);
+// Canvas with texture coordinates over [0, 1]^2, v up, u to the right as seen from the room.
+Furniture make_picture(const Palette& palette, int canvas, float half_width, float half_height);
+// Panel of the given half size that shines down from just under the ceiling, in a frame; centred at
+// the origin of the ceiling plane z = 0.
+Furniture make_ceiling_light(const Palette& palette, const FixturePalette& fixtures, float half);
+
+}  // namespace glint

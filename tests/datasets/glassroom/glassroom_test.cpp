@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/glassroom/glassroom.h"
+
+#include <unistd.h>
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <set>
+
+#include "datasets/dataset.h"
+#include "datasets/glassroom/write_scene.h"
+#include "glint/core/error.h"
+#include "glint/core/progress.h"
+#include "glint/scene/image_files.h"
+#include "glint/scene/ply.h"
+
+using namespace glint;
+
+namespace {
+
+const GlassRoomOptions kTiny{.scene = "room_2", .width = 32, .height = 18, .views = 8, .spp = 2};
+
+// A folder of this process, removed at the end.
+struct TemporaryFolder {
+  fs::path path = fs::temp_directory_path() / ("glassroom_test_" + std::to_string(::getpid()));
+  TemporaryFolder() {
+    set_quiet(true);
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  ~TemporaryFolder() { fs::remove_all(path); }
+};
+
+std::size_t num_entries(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
+}
+
+}  // namespace
+
+TEST_CASE("The same options give the same bytes, and a finished scene is not made again") {
+  const TemporaryFolder temporary;
+  const fs::path a = temporary.path / "a", b = temporary.path / "b";
+  REQUIRE(make_glassroom(kTiny, a));
+  REQUIRE(make_glassroom(kTiny, b));
+  CHECK(file_hashes(a) == file_hashes(b));
+  const auto written = fs::last_write_time(a / "scene.json");
+  CHECK_FALSE(make_glassroom(kTiny, a));
+  CHECK(fs::last_write_time(a / "scene.json") == written);
+  CHECK(num_entries(temporary.path) == 2);  // nothing temporary is left
+
+  GlassRoomOptions other = kTiny;
+  other.seed = 1;
+  CHECK(make_glassroom(other, a));
+  CHECK(file_hashes(a) != file_hashes(b));
+  CHECK(num_entries(temporary.path) == 2);
+}
+
+TEST_CASE("A scene folder loads, and its maps agree with each other") {
+  const TemporaryFolder temporary;
+  const fs::path folder = temporary.path / "room_2";
+  make_glassroom(kTiny, folder);
+  const Scene scene = load_scene(folder, {});
+  CHECK(scene.simulated_priors);
+  CHECK(scene.dataset == "glassroom");
+  CHECK(scene.train.size() == 7);
+  CHECK(scene.test.size() == 1);
+  CHECK(scene.points.positions.size() > 1000);
+  CHECK(check_dataset(folder).empty());
+  const View& view = scene.train.front();
+  const Image rgb = read_image(folder / "gt" / "rgb" / (view.name + ".exr"), 3);
+  for (int y = 0; y < rgb.height(); ++y)
+    for (int x = 0; x < rgb.width(); ++x)
+      for (int c = 0; c < 3; ++c) {
+        const float shown = std::clamp(srgb_encode(rgb.at(x, y, c)), 0.0f, 1.0f);
+        REQUIRE(view.rgb.at(x, y, c) == Approx(shown).margin(0.51 / 255));
+        if (view.truth.glass.at(x, y) == 0) continue;
+        const float sum = view.truth.transmitted.at(x, y, c) + view.truth.reflected.at(x, y, c);
+        REQUIRE(sum == Approx(rgb.at(x, y, c)).epsilon(1e-4).margin(1e-6));
+      }
+}
+
+TEST_CASE("OpenCV reads the camera files, and both rotations are the same") {
+  const TemporaryFolder temporary;
+  const Camera camera = look_at({1.2, -2, 1.5}, {0.1, 0.2, 0.6}, {0, 0, 1}, {64, 36}, 80);
+  write_cameras(temporary.path, {camera, camera});
+  cv::FileStorage intri((temporary.path / "intri.yml").string(), cv::FileStorage::READ);
+  cv::FileStorage extri((temporary.path / "extri.yml").string(), cv::FileStorage::READ);
+  std::vector<std::string> names;
+  intri["names"] >> names;
+  CHECK(names == std::vector<std::string>{"0000", "0001"});
+  cv::Mat k, rotation, rodrigues, translation;
+  intri["K_0001"] >> k;
+  CHECK(k.at<double>(0, 0) == camera.fx);
+  CHECK(k.at<double>(1, 2) == 18);
+  CHECK(static_cast<int>(intri["W_0001"]) == 64);
+  extri["Rot_0001"] >> rotation;
+  extri["R_0001"] >> rodrigues;
+  extri["T_0001"] >> translation;
+  const Vec3d axis{rodrigues.at<double>(0), rodrigues.at<double>(1), rodrigues.at<double>(2)};
+  const double angle = length(axis);
+  const Vec3d v{0.3, -0.4, 0.7}, unit = (1 / angle) * axis;
+  // Rodrigues' rotation formula.
+  const Vec3d turned = std::cos(angle) * v + std::sin(angle) * cross(unit, v) +
+                       (1 - std::cos(angle)) * dot(unit, v) * unit;
+  const Vec3d expected = camera.rotation_cam_from_world * v;
+  for (int i = 0; i < 3; ++i) {
+    CHECK(turned[i] == Approx(expected[i]).margin(1e-12));
+    CHECK(rotation.at<double>(i, 2) == camera.rotation_cam_from_world.rows[i].z);
+    CHECK(translation.at<double>(i) == camera.translation_cam_from_world[i]);
+  }
+}
+
+TEST_CASE("The ground-truth mesh has short edges and the scene's area") {
+  TraceScene scene;
+  scene.materials.push_back({.name = "white"});
+  TraceMesh quad{
+      .name = "quad",
+      .vertices = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}},
+      .faces = {{0, 1, 2}, {0, 2, 3}}};
+  scene.meshes.push_back(quad);
+  const TriangleMesh mesh = truth_mesh(scene, 0.25f);
+  double area = 0;
+  std::set<std::pair<int, int>> once;  // directed edges: a conforming mesh has each at most once
+  for (const auto& f : mesh.faces) {
+    const auto p = [&](int k) {
+      return mesh.vertices[static_cast<std::size_t>(f[static_cast<std::size_t>(k)])];
+    };
+    area += 0.5 * static_cast<double>(length(cross(p(1) - p(0), p(2) - p(0))));
+    for (int k = 0; k < 3; ++k) {
+      CHECK(length(p(k) - p((k + 1) % 3)) <= 0.2501f);
+      CHECK(once.insert({f[static_cast<std::size_t>(k)], f[static_cast<std::size_t>((k + 1) % 3)]})
+                .second);
+    }
+  }
+  CHECK(area == Approx(2));
+}
+
+TEST_CASE("An error leaves no folder behind, and foreign folders are not touched") {
+  const TemporaryFolder temporary;
+  GlassRoomOptions bad = kTiny;
+  bad.scene = "room_7";
+  CHECK_THROWS_AS(make_glassroom(bad, temporary.path / "x"), Error);
+  CHECK(num_entries(temporary.path) == 0);
+
+  const fs::path foreign = temporary.path / "holiday";
+  write_file(foreign / "photo.txt", "mine");
+  CHECK_THROWS_WITH(make_glassroom(kTiny, foreign), Catch::Contains("not a GlassRoom scene"));
+  CHECK(read_file(foreign / "photo.txt") == "mine");
+}
+
+TEST_CASE("The cache key follows the options and the assets' content") {
+  const TemporaryFolder temporary;
+  GlassRoomOptions options = kTiny;
+  const std::string plain = glassroom_hash(options);
+  options.spp = 3;
+  CHECK(glassroom_hash(options) != plain);
+  options.spp = kTiny.spp;
+  CHECK(glassroom_hash(options) == plain);
+  options.assets = (temporary.path / "assets").string();
+  CHECK_THROWS_AS(glassroom_hash(options), Error);
+  write_file(temporary.path / "assets" / "sofa.gltf", "{}");
+  const std::string first = glassroom_hash(options);
+  write_file(temporary.path / "assets" / "sofa.gltf", "{ }");
+  CHECK(glassroom_hash(options) != first);
+}
+
+TEST_CASE("glTF furniture replaces the procedural pieces") {
+  const fs::path assets = fs::path("../shared/data/furniture_cc0/assets");
+  if (!fs::exists(assets)) {
+    WARN("sample furniture is absent: not tested");
+    return;
+  }
+  const TemporaryFolder temporary;
+  GlassRoomOptions options = kTiny;
+  options.scene = "room_1";
+  options.assets = assets.string();
+  REQUIRE(make_glassroom(options, temporary.path / "room"));
+  const Json json = Json::parse(read_file(temporary.path / "room" / "scene.json"));
+  std::set<std::string> materials;
+  for (const Json& material : json["materials"]) materials.insert(material["name"]);
+  CHECK(materials.count("sofa_03_1k") == 1);
+}

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// The simulated priors do what their model says.
+#include "datasets/glassroom/priors.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <vector>
+
+#include "glint/scene/image_files.h"
+
+using namespace glint;
+
+namespace {
+
+constexpr int kWidth = 240, kHeight = 135;
+
+// A slanted wall; the middle half of the image is glass 1 m in front of it. Depth falls off to
+// nothing in the top row.
+struct Fake {
+  PathTracerOutput truth;
+  Image behind_albedo{kWidth, kHeight, 3, 0.4f};
+
+  Fake() {
+    const Image rgb(kWidth, kHeight, 3, 0.0f), map(kWidth, kHeight, 1, 0.0f);
+    truth.normal = truth.behind_normal = truth.albedo = truth.basecolor = rgb;
+    truth.depth = truth.behind_depth = map;
+    truth.glass = MaskImage(kWidth, kHeight, 1);
+    for (int y = 1; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) set_pixel(x, y, x > kWidth / 4 && x < 3 * kWidth / 4);
+  }
+  void set_pixel(int x, int y, bool glass) {
+    const float z = 3 + 0.01f * static_cast<float>(x);
+    truth.behind_depth.at(x, y) = z;
+    truth.depth.at(x, y) = glass ? z - 1 : z;
+    truth.glass.at(x, y) = glass ? 255 : 0;
+    truth.normal.at(x, y, 2) = -1;
+    truth.behind_normal.at(x, y, 0) = -1;
+    for (int c = 0; c < 3; ++c) {
+      truth.albedo.at(x, y, c) = glass ? 0.0f : 0.4f;
+      truth.basecolor.at(x, y, c) = glass ? 0.98f : 0.4f;
+    }
+  }
+  Priors priors(std::uint64_t view, const PriorModel& model = {}) const {
+    return simulate_priors(truth, behind_albedo, model, 7, view);
+  }
+};
+
+double angle_deg(const Image& a, const Image& b, int x, int y) {
+  double d = 0;
+  for (int c = 0; c < 3; ++c)
+    d += static_cast<double>(a.at(x, y, c)) * static_cast<double>(b.at(x, y, c));
+  return std::acos(std::clamp(d, -1.0, 1.0)) * 57.29577951;
+}
+
+}  // namespace
+
+TEST_CASE("Normal priors are unit vectors with the stated angular error") {
+  const Fake fake;
+  double sum2 = 0;
+  int count = 0;
+  for (std::uint64_t view = 0; view < 24; ++view) {
+    const Image normal = fake.priors(view).normal;
+    for (int y = 8; y < kHeight; y += 7)
+      for (int x = 4; x < kWidth / 5; x += 7, ++count) {
+        sum2 += std::pow(angle_deg(normal, fake.truth.normal, x, y), 2);
+        const float* n = normal.pixel(x, y);
+        REQUIRE(std::hypot(n[0], n[1], n[2]) == Approx(1.0f).margin(1e-4));
+      }
+  }
+  CHECK(std::sqrt(sum2 / count) == Approx(5).epsilon(0.15));
+}
+
+TEST_CASE("Priors see through glass at the stated rate, all maps in the same patches") {
+  const Fake fake;
+  int failures = 0, agree = 0, total = 0;
+  for (std::uint64_t view = 0; view < 60; ++view) {
+    const Priors priors = fake.priors(view);
+    for (int y = 10; y < kHeight - 10; y += 5)
+      for (int x = kWidth / 4 + 8; x < 3 * kWidth / 4 - 8; x += 5, ++total) {
+        const bool normal_fails = priors.normal.at(x, y, 0) < -0.7f;
+        const bool albedo_fails = priors.albedo.at(x, y) > 0.35f;
+        failures += normal_fails;
+        agree += normal_fails == albedo_fails;
+      }
+  }
+  CHECK(static_cast<double>(failures) / total == Approx(0.1).margin(0.03));
+  CHECK(static_cast<double>(agree) / total > 0.97);  // they differ at blurred rims of patches
+}
+
+TEST_CASE("Glass is nearly black in the albedo prior and bright in the base colour prior") {
+  const Fake fake;
+  PriorModel model;
+  model.failure_rate = 1e-9f;
+  const Priors priors = fake.priors(3, model);
+  for (int y = 10; y < kHeight - 10; ++y)
+    for (int x = kWidth / 4 + 6; x < 3 * kWidth / 4 - 6; ++x)
+      for (int c = 0; c < 3; ++c) {
+        REQUIRE(priors.albedo.at(x, y, c) < 0.05f);
+        REQUIRE(priors.basecolor.at(x, y, c) > 0.6f);
+      }
+}
+
+TEST_CASE("Opaque albedo priors are the sRGB encoding of the truth within the noise") {
+  const Fake fake;
+  const Image albedo = fake.priors(1).albedo;
+  const float expected = srgb_encode(0.4f);
+  double sum2 = 0;
+  int count = 0;
+  for (int y = 4; y < kHeight; ++y)
+    for (int x = 0; x < kWidth / 5; ++x, ++count)
+      sum2 += std::pow(static_cast<double>(albedo.at(x, y) / expected - 1), 2);
+  CHECK(std::sqrt(sum2 / count) < 0.2);
+  CHECK(std::sqrt(sum2 / count) > 0.01);
+}
+
+TEST_CASE("Depth priors are nearly affine in the true depth, larger is farther, 0 is invalid") {
+  const Fake fake;
+  for (std::uint64_t view = 0; view < 6; ++view) {
+    const Image depth = fake.priors(view).depth;
+    double sz = 0, sp = 0, szz = 0, spp = 0, szp = 0, n = 0;
+    for (int y = 4; y < kHeight; ++y)
+      for (int x = 0; x < kWidth / 5; ++x) {
+        const double z = static_cast<double>(fake.truth.depth.at(x, y)),
+                     p = static_cast<double>(depth.at(x, y));
+        sz += z, sp += p, szz += z * z, spp += p * p, szp += z * p, n += 1;
+      }
+    const double correlation =
+        (n * szp - sz * sp) / std::sqrt((n * szz - sz * sz) * (n * spp - sp * sp));
+    CHECK(correlation > 0.8);
+    CHECK(depth.at(10, 0) == 0.0f);
+    for (int x = 0; x < kWidth; ++x) {
+      REQUIRE(depth.at(x, 20) >= 0.049f);
+      REQUIRE(depth.at(x, 20) <= 0.951f);
+    }
+  }
+}
+
+TEST_CASE("Encoded depth keeps sixteen bits through an eight-bit file") {
+  Image depth(256, 1, 1);
+  for (int x = 0; x < 256; ++x) depth.at(x, 0) = static_cast<float>(x) / 255.5f + 0.0007f;
+  const Image encoded = encode_depth(depth);
+  for (int x = 0; x < 256; ++x) {
+    const auto stored = [&](int c) {
+      return std::nearbyint(255.0 * static_cast<double>(encoded.at(x, 0, c))) / 255;
+    };
+    const double value = stored(0) + stored(1) / 256 + stored(2) / 65536;
+    CHECK(value == Approx(static_cast<double>(std::min(1.0f, depth.at(x, 0)))).margin(1.2 / 65536));
+  }
+}
+
+TEST_CASE("Priors are a function of seed and view") {
+  const Fake fake;
+  const Image a = fake.priors(2).normal, b = fake.priors(2).normal, c = fake.priors(3).normal;
+  CHECK(std::equal(a.values().begin(), a.values().end(), b.values().begin()));
+  CHECK_FALSE(std::equal(a.values().begin(), a.values().end(), c.values().begin()));
+}
