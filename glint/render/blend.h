@@ -54,10 +54,13 @@ GLINT_HD T blend_alpha_vjp(T transmittance, T alpha, T value, T remaining) {
   return transmittance * value - remaining / (T(1) - alpha);
 }
 
-// Depth mapped to [0, 1] for the distortion loss [Huang24 Eq. 13]: m = f/(f-n) (1 - n/z).
+// Depth mapped to [0, 1] for the distortion loss [Huang24 Eq. 13], m = f/(f-n) (1 - n/z), less the
+// m of a reference depth, one for all hits of a ray. The distortion sees differences only; moments
+// of the differences keep the digits that moments of m, near 1, lose where layers lie centimetres
+// apart.
 template <class T>
-GLINT_HD T distortion_depth(T z, T near, T far) {
-  return far / (far - near) * (T(1) - near / z);
+GLINT_HD T distortion_depth(T z, T reference, T near, T far) {
+  return far * near / (far - near) * ((z - reference) / (z * reference));
 }
 template <class T>
 GLINT_HD T distortion_depth_vjp(T z, T near, T far, T dL_dm) {

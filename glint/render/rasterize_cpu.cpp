@@ -10,8 +10,9 @@ namespace glint {
 
 struct RasterSaved {
   TileLists lists;
-  Image median_position;   // [H][W][1] place in the tile's list of the median hit, -1: none
-  Image moment1, moment2;  // [H][W][1] sum w m, sum w m^2 of the distortion loss
+  Image median_position;  // [H][W][1] place in the tile's list of the median hit, -1: none
+  // Of the distortion loss, [H][W][1]: depth of the first hit; sum w m, sum w m^2 relative to it.
+  Image first_depth, moment1, moment2;
   std::vector<float> pair_visibility;  // [pairs]
   std::vector<float> pair_gradients;   // [pairs][slot_width]
 };
@@ -30,6 +31,7 @@ struct ForwardVisitor {
   T features[kChannels > 0 ? kChannels : kMaxChannels][kGroupsPerTile<T>] = {};
   T depth[kGroupsPerTile<T>] = {}, normal[3][kGroupsPerTile<T>] = {};
   T median[kGroupsPerTile<T>] = {}, median_position[kGroupsPerTile<T>];
+  T first_depth[kGroupsPerTile<T>];
   T moment1[kGroupsPerTile<T>] = {}, moment2[kGroupsPerTile<T>] = {};
   T visibility, position;
   const float* feature;
@@ -41,6 +43,7 @@ struct ForwardVisitor {
         pair_visibility(pair_visibility),
         channels(tile.input.channels) {
     std::fill_n(median_position, kGroupsPerTile<T>, T(-1));
+    std::fill_n(first_depth, kGroupsPerTile<T>, T(1));
   }
   int num_channels() const { return kChannels > 0 ? kChannels : channels; }
 
@@ -64,7 +67,9 @@ struct ForwardVisitor {
   }
   void add_moments(int g, const TileHit<T>& hit) {
     const T z = select(hit.valid, hit.depth, T(1));
-    const T m = distortion_depth(z, T(settings.distortion_near), T(settings.distortion_far));
+    first_depth[g] = select(hit.valid & (hit.transmittance >= T(1)), z, first_depth[g]);
+    const T near(settings.distortion_near), far(settings.distortion_far);
+    const T m = distortion_depth(z, first_depth[g], near, far);
     moment1[g] = fma_of(hit.weight, m, moment1[g]);
     moment2[g] = fma_of(hit.weight, m * m, moment2[g]);
   }
@@ -83,6 +88,7 @@ struct ForwardVisitor {
       store_pixels(tile, out.depth_median, g, 0, median[g]);
       store_pixels(tile, saved.median_position, g, 0, median_position[g]);
       if (!settings.with_distortion) continue;
+      store_pixels(tile, saved.first_depth, g, 0, first_depth[g]);
       store_pixels(tile, saved.moment1, g, 0, moment1[g]);
       store_pixels(tile, saved.moment2, g, 0, moment2[g]);
       store_pixels(tile, out.distortion, g, 0, distortion(alpha, moment1[g], moment2[g]));
@@ -130,7 +136,8 @@ struct BackwardVisitor {
   T g_features[kChannels > 0 ? kChannels : kMaxChannels][kGroupsPerTile<T>];
   T g_alpha[kGroupsPerTile<T>], g_depth[kGroupsPerTile<T>], g_median[kGroupsPerTile<T>];
   T g_normal[3][kGroupsPerTile<T>], g_distortion[kGroupsPerTile<T>];
-  T alpha[kGroupsPerTile<T>], moment1[kGroupsPerTile<T>], moment2[kGroupsPerTile<T>];
+  T alpha[kGroupsPerTile<T>];
+  T first_depth[kGroupsPerTile<T>], moment1[kGroupsPerTile<T>], moment2[kGroupsPerTile<T>];
   T median_position[kGroupsPerTile<T>];
   T remaining[kGroupsPerTile<T>];  // S minus the prefix so far, see blend_alpha_vjp
   // Of the current surfel.
@@ -173,6 +180,7 @@ struct BackwardVisitor {
     }
     g_distortion[i] = with_distortion() ? load(g.distortion, i, 0) : T(0);
     if (!with_distortion()) return;
+    first_depth[i] = load_pixels<T>(tile, saved.first_depth, i, 0, 1.0f);
     moment1[i] = load(saved.moment1, i, 0);
     moment2[i] = load(saved.moment2, i, 0);
     // sum w dL/dw of the distortion is twice the distortion itself: it is quadratic in w.
@@ -207,7 +215,7 @@ struct BackwardVisitor {
   void add_distortion(int g, const TileHit<T>& hit, T& value, T& dL_dz) const {
     const T z = select(hit.valid, hit.depth, T(1));
     const T near(settings.distortion_near), far(settings.distortion_far);
-    const T m = distortion_depth(z, near, far);
+    const T m = distortion_depth(z, first_depth[g], near, far);
     value += g_distortion[g] * distortion_dweight(m, alpha[g], moment1[g], moment2[g]);
     const T dL_dm = g_distortion[g] * distortion_dm(hit.weight, m, alpha[g], moment1[g]);
     dL_dz += distortion_depth_vjp(z, near, far, dL_dm);
@@ -325,6 +333,18 @@ ProjectedSurfel<T> projected_gradient(const float* sums, int width) {
   return g;
 }
 
+// Surfels without pairs get exact zeros, whatever their parameters (they may not be finite).
+template <class T>
+void zero_unseen(Mask<T> seen, SurfelGeometry<T>& g, Vec3<T>& dL_dm) {
+  const T zero(0);
+  const Vec3<T> zero3{zero, zero, zero};
+  g.mean = select<T>(seen, g.mean, zero3);
+  dL_dm = select<T>(seen, dL_dm, zero3);
+  for (T* value :
+       {&g.scale.x, &g.scale.y, &g.rotation.w, &g.rotation.x, &g.rotation.y, &g.rotation.z})
+    *value = select(seen, *value, zero);
+}
+
 template <class T>
 void store3(std::vector<float>& array, std::size_t i, Vec3<T> v) {
   for (int k = 0; k < 3; ++k) store_strided(&array[3 * i + k], 3, v[k]);
@@ -351,20 +371,22 @@ void surfel_vjp_lanes(
 ) {
   const int width = slot_width(input.channels);
   alignas(32) float sums[8 * kMaxSums];
-  float z[8];
+  float z[8], num_pairs[8];
   for (int i = 0; i < kLanesOf<T>; ++i) {
     sum_pairs(saved.lists, first + i, saved.pair_gradients.data(), width, sums + i * width);
     std::copy_n(
         sums + i * width + kSumFeatures, input.channels, &out.features[(first + i) * input.channels]
     );
     out.opacities[first + i] = sums[i * width + kSumOpacity];
-    z[i] = saved.lists.splats[first + i].z_center;
+    num_pairs[i] = static_cast<float>(saved.lists.boxes[first + i].num_tiles());
+    z[i] = num_pairs[i] > 0 ? saved.lists.splats[first + i].z_center : 1.0f;
   }
   const CameraOf<T> c = broadcast_camera<T>(camera);
   const SurfelGeometry<T> surfel = load_geometry<T>(input, first);
   SurfelGeometry<T> g{};
   Vec3<T> dL_dm;
   project_surfel_vjp(surfel, c, projected_gradient<T>(sums, width), g, dL_dm);
+  zero_unseen<T>(load_lanes<T>(num_pairs) > T(0), g, dL_dm);
   store3(out.means, first, g.mean);
   store_strided(&out.scales[2 * first], 2, g.scale.x);
   store_strided(&out.scales[2 * first + 1], 2, g.scale.y);
@@ -433,7 +455,8 @@ void fit_outputs(
   out.visibility.resize(input.count);
   out.in_view.resize(input.count);
   if (settings.with_distortion)
-    for (Image* image : {&out.distortion, &saved.moment1, &saved.moment2}) fit(*image, size, 1);
+    for (Image* image : {&out.distortion, &saved.first_depth, &saved.moment1, &saved.moment2})
+      fit(*image, size, 1);
   else
     out.distortion = Image();
 }

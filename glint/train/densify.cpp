@@ -46,9 +46,11 @@ void Densifier::observe(const RasterOutput& output, const RasterGradient& gradie
   const std::size_t count = output.in_view.size();
   gradient_sum_.resize(count, 0.0f);
   views_.resize(count, 0);
+  const float scale =
+      static_cast<float>(output.alpha.height()) / static_cast<float>(config_.reference_rows);
   for (std::size_t i = 0; i < count; ++i) {
     if (output.in_view[i] == 0) continue;
-    gradient_sum_[i] += std::hypot(gradient.screen[2 * i], gradient.screen[2 * i + 1]);
+    gradient_sum_[i] += scale * std::hypot(gradient.screen[2 * i], gradient.screen[2 * i + 1]);
     ++views_[i];
   }
 }

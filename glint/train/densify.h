@@ -16,8 +16,9 @@ namespace glint {
 struct DensifyConfig {
   int from = 500, until = 15000, interval = 100;  // steps; `until` is exclusive
   int reset_interval = 3000;                      // steps
-  float gradient_threshold = 2e-4f;               // mean norm of the NDC gradient
-  float clone_scale = 0.01f;                      // x extent: larger surfels are split, not cloned
+  float gradient_threshold = 2e-4f;  // mean norm of the NDC gradient, at reference_rows
+  int reference_rows = 540;          // image height that the published threshold is for
+  float clone_scale = 0.01f;         // x extent: larger surfels are split, not cloned
   float min_opacity = 0.05f;
   float max_scale = 0.1f;  // x extent: larger surfels go, after the first reset
   float reset_opacity = 0.01f;
@@ -30,6 +31,7 @@ struct DensifyConfig {
     v("densify_interval", interval, "steps between densifications");
     v("opacity_reset_interval", reset_interval, "steps between opacity resets");
     v("densify_gradient", gradient_threshold, "mean NDC gradient that asks for more surfels");
+    v("densify_reference_rows", reference_rows, "image height the threshold is meant for");
     v("clone_scale", clone_scale, "of the extent: larger surfels are split, smaller ones cloned");
     v("min_opacity", min_opacity, "surfels below are pruned");
     v("max_scale", max_scale, "of the extent: larger surfels are pruned");
@@ -45,7 +47,10 @@ class Densifier {
  public:
   Densifier(DensifyConfig config, float extent, std::uint64_t seed);
 
-  // Adds one view's statistics; call after every backward pass.
+  // Adds one view's statistics; call after every backward pass. Deviation: the NDC gradient of a
+  // surfel of a given size in pixels grows with 1/rows (the loss is a mean over pixels), so it is
+  // brought to the image height that the published threshold is for; otherwise small images would
+  // densify without end.
   void observe(const RasterOutput& output, const RasterGradient& gradient);
   // Densifies and resets when this step is due. `step` counts from 1, after the optimiser's step.
   DensifyCounts update(int step, SurfelCloud& cloud, SurfelAdam& adam);

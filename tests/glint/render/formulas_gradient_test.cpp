@@ -151,7 +151,7 @@ TEST_CASE("distortion is the pairwise sum, and its derivatives match central dif
 TEST_CASE("distortion_depth_vjp and expected_depth_vjp match central differences") {
   check_vjp(
       {2.5},
-      [](const Vector& x) { return Vector{distortion_depth(x[0], 0.2, 100.0)}; },
+      [](const Vector& x) { return Vector{distortion_depth(x[0], 3.0, 0.2, 100.0)}; },
       [](const Vector& x, const Vector& g) {
         return Vector{distortion_depth_vjp(x[0], 0.2, 100.0, g[0])};
       }

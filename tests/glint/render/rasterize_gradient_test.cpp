@@ -7,6 +7,9 @@
 // width and add terms of both signs, which costs one to two digits.
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <limits>
+
 #include "glint/render/rasterize.h"
 #include "tests/support/golden_surfel.h"
 #include "tests/support/gradcheck.h"
@@ -307,4 +310,18 @@ TEST_CASE("Without output gradients every gradient is zero and has its input's s
   CHECK(gradient.opacities == std::vector<float>(c.surfels.opacities.size(), 0.0f));
   CHECK(gradient.features == std::vector<float>(c.surfels.features.size(), 0.0f));
   CHECK(gradient.screen == std::vector<float>(2 * c.surfels.count(), 0.0f));
+}
+
+TEST_CASE("A surfel that reaches no tile has exactly zero gradient, even when it is not finite") {
+  Case c = random_case(smooth_surfels(), Map::kAll, 3);
+  c.surfels.means[0] = std::numeric_limits<float>::quiet_NaN();
+  Rasterizer rasterizer;
+  RasterOutput output;
+  RasterGradient gradient;
+  rasterizer.forward(c.input(), c.camera, c.settings, output);
+  rasterizer.backward(c.input(), c.camera, c.settings, output, c.dL_doutput, gradient);
+  REQUIRE(output.in_view[0] == 0);
+  for (int k = 0; k < 3; ++k) CHECK(gradient.means[k] == 0.0f);
+  for (int k = 0; k < 4; ++k) CHECK(gradient.rotations[k] == 0.0f);
+  for (const float value : gradient.screen) CHECK(std::isfinite(value));
 }

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# From nothing to the tables: set-up, build, `glint-bench all --profile ci`. Arguments go to glint-bench,
+# for example: scripts/bench.sh --profile small
+set -euo pipefail
+cd "$(dirname "$0")/.."
+scripts/setup.sh
+scripts/build.sh release glint-bench
+if [ $# -eq 0 ]; then
+  set -- --profile ci
+fi
+exec build/release/bin/glint-bench all "$@"

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/normal_consistency.h"
+
+#include "tests/support/check_vjp.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+Camera test_camera(int width, int height) {
+  Camera camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = 12, camera.fy = 11, camera.cx = 0.4 * width, camera.cy = 0.6 * height;
+  return camera;
+}
+
+// Depth of the plane n.p = d seen through the pixel centres.
+Image plane_depth(const Camera& camera, Vec3d n, double d) {
+  Image depth(camera.width, camera.height, 1);
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x)
+      depth.at(x, y) = static_cast<float>(d / dot(n, camera.ray_in_cam(x + 0.5, y + 0.5)));
+  return depth;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "The normal of a slanted plane's depth is the plane's, off-centre principal point included"
+) {
+  const Camera camera = test_camera(15, 11);
+  const Vec3d n = normalize(Vec3d{0.3, -0.2, -1});
+  const Image normals = NormalConsistencyLoss::depth_normals(camera, plane_depth(camera, n, -4));
+  for (int y = 1; y < 10; ++y)
+    for (int x = 1; x < 14; ++x)
+      for (int c = 0; c < 3; ++c)
+        CHECK(static_cast<double>(normals.at(x, y, c)) == Approx(n[c]).margin(2e-5));
+  CHECK(normals.at(0, 5, 2) == 0.0f);
+}
+
+TEST_CASE("The loss is zero inside for agreeing normals, and borders and holes count as one") {
+  const Camera camera = test_camera(12, 10);
+  const Vec3d n = normalize(Vec3d{0.1, 0.2, -1});
+  Image depth = plane_depth(camera, n, -4), normal(12, 10, 3), alpha(12, 10, 1, 1.0f);
+  for (std::size_t i = 0; i < normal.num_pixels(); ++i)
+    for (int c = 0; c < 3; ++c) normal.data()[3 * i + c] = static_cast<float>(n[c]);
+  Image dL_dn(12, 10, 3), dL_dz(12, 10, 1);
+  const double border = (120.0 - 10 * 8) / 120;
+  CHECK(
+      NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 1, dL_dn, dL_dz) ==
+      Approx(border).margin(1e-6)
+  );
+  depth.at(5, 5) = 0;  // the four neighbours lose their normal, the pixel itself keeps its own
+  CHECK(
+      NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 1, dL_dn, dL_dz) ==
+      Approx(border + 4.0 / 120).margin(1e-6)
+  );
+}
+
+TEST_CASE("The gradients of normal consistency match central differences") {
+  const Camera camera = test_camera(9, 8);
+  Rng rng(3);
+  Image depth(9, 8, 1), normal(9, 8, 3), alpha(9, 8, 1);
+  for (float& z : depth.values()) z = rng.uniform(3, 3.5f);
+  for (float& v : normal.values()) v = rng.uniform(-1, 1);
+  for (float& a : alpha.values()) a = rng.uniform(0.5f, 1);
+  Image dL_dn(9, 8, 3), dL_dz(9, 8, 1);
+  NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 0.5f, dL_dn, dL_dz);
+  const auto loss = [&] {
+    Image a(9, 8, 3), b(9, 8, 1);
+    return 0.5 * NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 0.5f, a, b);
+  };
+  const auto slope_at = [&](float& x, float h) {
+    const float at = x;
+    x = at + h;
+    const double up = static_cast<double>(x), above = loss();
+    x = at - h;
+    const double slope = (above - loss()) / (up - static_cast<double>(x));
+    x = at;
+    return slope;
+  };
+  // Depth steps of 1/256: the value's float rounding (1e-7 x 72 pixels) stays below the tolerance.
+  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
+    CHECK(
+        static_cast<double>(dL_dz.data()[i]) ==
+        Approx(slope_at(depth.data()[i], 1.0f / 256)).epsilon(0.02).margin(2e-4)
+    );
+  for (std::size_t i = 0; i < normal.values().size(); ++i)
+    CHECK(
+        static_cast<double>(dL_dn.data()[i]) ==
+        Approx(slope_at(normal.data()[i], 1.0f / 16)).epsilon(1e-3).margin(1e-6)
+    );
+}

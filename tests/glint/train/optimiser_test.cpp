@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// Adam and densification.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "glint/render/activations.h"
+#include "glint/train/densify.h"
+
+using namespace glint;
+
+namespace {
+
+SurfelCloud cloud_of(std::size_t count) {
+  SurfelCloud cloud;
+  cloud.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    cloud.rotations[4 * i] = 1;
+    cloud.means[3 * i] = static_cast<float>(i);
+    cloud.opacity_logits[i] = 1;
+    cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(0.001f);
+  }
+  return cloud;
+}
+
+// One view that saw every surfel with the given screen gradients.
+void observe(Densifier& densifier, const std::vector<float>& norms) {
+  RasterOutput output;
+  output.in_view.assign(norms.size(), 1);
+  output.alpha = Image(960, 540, 1);  // the size that the threshold is for
+  RasterGradient gradient;
+  for (const float norm : norms)
+    gradient.screen.insert(gradient.screen.end(), {0.6f * norm, 0.8f * norm});
+  densifier.observe(output, gradient);
+}
+
+DensifyConfig every_step() {
+  DensifyConfig config;
+  config.from = 0;
+  config.interval = 1;
+  config.until = 1000;
+  config.reset_interval = 1000;
+  return config;
+}
+
+}  // namespace
+
+TEST_CASE("Adam follows its recurrence in double and clears the gradient") {
+  SurfelCloud cloud = cloud_of(3), gradient = cloud_of(3);
+  SurfelAdam adam;
+  SurfelRates rates;
+  double m = 0, v = 0, x = static_cast<double>(cloud.opacity_logits[1]);
+  for (int t = 1; t <= 5; ++t) {
+    gradient.opacity_logits = {0, 0.3f * static_cast<float>(t), 0};
+    adam.step(cloud, gradient, rates, 1);
+    const double g = 0.3 * t;
+    m = 0.9 * m + 0.1 * g;
+    v = 0.999 * v + 0.001 * g * g;
+    x -= 0.05 * (m / (1 - std::pow(0.9, t))) / std::sqrt(v / (1 - std::pow(0.999, t)));
+    CHECK(static_cast<double>(cloud.opacity_logits[1]) == Approx(x).epsilon(1e-5));
+    CHECK(gradient.opacity_logits[1] == 0.0f);
+    CHECK(cloud.opacity_logits[0] == 1.0f);  // no gradient, no moment, no step
+  }
+}
+
+TEST_CASE("The position rate falls log-linearly to its final value") {
+  SurfelRates rates;
+  rates.means_steps = 100;
+  CHECK(position_rate(rates, 0) == Approx(1.6e-4));
+  CHECK(position_rate(rates, 50) == Approx(1.6e-5));
+  CHECK(position_rate(rates, 100) == Approx(1.6e-6));
+  CHECK(position_rate(rates, 500) == Approx(1.6e-6));
+}
+
+TEST_CASE("A small surfel with a large gradient is cloned, a large one split, others stay") {
+  SurfelCloud cloud = cloud_of(3);
+  cloud.log_scales[4] = cloud.log_scales[5] = std::log(0.05f);
+  SurfelAdam adam;
+  SurfelCloud gradient;
+  gradient.resize(3);
+  adam.step(cloud, gradient, {}, 1);
+  Densifier densifier(every_step(), 1, 0);
+  observe(densifier, {0, 1, 1});
+  const DensifyCounts counts = densifier.update(1, cloud, adam);
+  CHECK(counts.cloned == 1);
+  CHECK(counts.split == 1);
+  REQUIRE(cloud.size() == 5);  // 0, 1, clone of 1, two children of 2
+  CHECK(cloud.means[3 * 2] == cloud.means[3 * 1]);
+  for (std::size_t child : {std::size_t{3}, std::size_t{4}})
+    CHECK(std::exp(cloud.log_scales[2 * child]) == Approx(0.05f / 1.6f));
+  // Children lie in the parent's plane (its normal is z).
+  CHECK(cloud.means[3 * 3 + 2] == Approx(cloud.means[2]).margin(1e-6));
+  CHECK(cloud.means[3 * 3] != cloud.means[3 * 4]);
+  CHECK(adam.first().size() == 5);
+}
+
+TEST_CASE("Faint surfels are pruned and moments keep to their rows") {
+  SurfelCloud cloud = cloud_of(4);
+  cloud.opacity_logits[1] = logit(0.01f);
+  SurfelAdam adam;
+  SurfelCloud gradient = cloud_of(4);
+  for (std::size_t i = 0; i < 4; ++i) gradient.means[3 * i] = static_cast<float>(i + 1);
+  adam.step(cloud, gradient, {}, 1);
+  Densifier densifier(every_step(), 1, 0);
+  observe(densifier, {0, 0, 0, 0});
+  CHECK(densifier.update(1, cloud, adam).pruned == 1);
+  REQUIRE(cloud.size() == 3);
+  CHECK(adam.first().means[3] == Approx(0.3f));  // surfel 2 moved to row 1
+}
+
+TEST_CASE("Large surfels are pruned only after the first opacity reset; resets lower opacities") {
+  DensifyConfig config = every_step();
+  config.reset_interval = 2;
+  SurfelCloud cloud = cloud_of(2);
+  cloud.log_scales[0] = std::log(0.5f);
+  SurfelAdam adam;
+  SurfelCloud gradient = cloud_of(2);
+  adam.step(cloud, gradient, {}, 1);
+  Densifier densifier(config, 1, 0);
+  observe(densifier, {0, 0});
+  densifier.update(1, cloud, adam);
+  CHECK(cloud.size() == 2);
+  observe(densifier, {0, 0});
+  densifier.update(2, cloud, adam);
+  CHECK(sigmoid(cloud.opacity_logits[1]) == Approx(0.01f));
+  cloud.opacity_logits = {1, 1};
+  observe(densifier, {0, 0});
+  CHECK(densifier.update(3, cloud, adam).pruned == 1);
+}
+
+TEST_CASE(
+    "The gradient statistic does not depend on the image size for surfels of equal size in pixels"
+) {
+  // Half the rows: every surfel's NDC gradient doubles, and so may the one that just stays below.
+  SurfelCloud cloud = cloud_of(2), gradient = cloud_of(2);
+  SurfelAdam adam;
+  adam.step(cloud, gradient, {}, 1);
+  Densifier densifier(every_step(), 1, 0);
+  RasterOutput output;
+  output.in_view = {1, 1};
+  output.alpha = Image(480, 270, 1);
+  RasterGradient statistic;
+  statistic.screen = {3.8e-4f, 0, 4.2e-4f, 0};
+  densifier.observe(output, statistic);
+  CHECK(densifier.update(1, cloud, adam).cloned == 1);
+}
+
+TEST_CASE("Growth stops at the cap") {
+  DensifyConfig config = every_step();
+  config.max_surfels = 12;
+  SurfelCloud cloud = cloud_of(10);
+  SurfelAdam adam;
+  SurfelCloud gradient = cloud_of(10);
+  adam.step(cloud, gradient, {}, 1);
+  Densifier densifier(config, 1, 0);
+  observe(densifier, std::vector<float>(10, 1.0f));
+  densifier.update(1, cloud, adam);
+  CHECK(cloud.size() == 12);
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/photometric.h"
+
+#include "glint/core/parallel.h"
+#include "metrics/ssim.h"
+#include "tests/support/check_vjp.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+Image random_image(int width, int height, std::uint64_t seed) {
+  Image image(width, height, 3);
+  Rng rng(seed);
+  for (float& value : image.values()) value = rng.uniform(0.1f, 0.9f);
+  return image;
+}
+
+// The loss in double, straight from its definition: no separable filter, no tricks.
+double loss_by_definition(const Image& x, const Image& y, PhotometricWeights weights) {
+  const std::array<double, kSsimTaps> w = ssim_window<double>();
+  double l1 = 0, ssim = 0;
+  for (int c = 0; c < 3; ++c)
+    for (int row = 0; row < x.height(); ++row)
+      for (int col = 0; col < x.width(); ++col) {
+        double m[5] = {};
+        for (int j = -kSsimRadius; j <= kSsimRadius; ++j)
+          for (int i = -kSsimRadius; i <= kSsimRadius; ++i) {
+            if (col + i < 0 || row + j < 0 || col + i >= x.width() || row + j >= x.height())
+              continue;
+            const double weight = w[i + kSsimRadius] * w[j + kSsimRadius];
+            const double a = static_cast<double>(x.at(col + i, row + j, c));
+            const double b = static_cast<double>(y.at(col + i, row + j, c));
+            const double terms[5] = {a, b, a * a, b * b, a * b};
+            for (int k = 0; k < 5; ++k) m[k] += weight * terms[k];
+          }
+        ssim += ssim_from_moments(m[0], m[1], m[2], m[3], m[4]);
+        l1 += std::abs(
+            static_cast<double>(x.at(col, row, c)) - static_cast<double>(y.at(col, row, c))
+        );
+      }
+  const double count = 3.0 * static_cast<double>(x.num_pixels());
+  return static_cast<double>(weights.l1) * l1 / count +
+         static_cast<double>(weights.ssim) * (1 - ssim / count);
+}
+
+}  // namespace
+
+TEST_CASE("The photometric loss equals its definition at sizes around the window and the lanes") {
+  for (const ImageSize size : {ImageSize{3, 2}, {8, 11}, {19, 13}, {33, 7}}) {
+    const Image x = random_image(size.width, size.height, 1),
+                y = random_image(size.width, size.height, 2);
+    Image gradient(size.width, size.height, 3);
+    const PhotometricWeights weights{0.8f, 0.2f};
+    const PhotometricTerms terms = PhotometricLoss().evaluate(x, y, weights, gradient);
+    CHECK(terms.weighted(weights) == Approx(loss_by_definition(x, y, weights)).margin(2e-6));
+  }
+}
+
+TEST_CASE("The gradient of the photometric loss matches central differences of the definition") {
+  Image x = random_image(17, 12, 1);
+  const Image y = random_image(17, 12, 2);
+  Image gradient(17, 12, 3);
+  const PhotometricWeights weights{0.8f, 0.2f};
+  PhotometricLoss().evaluate(x, y, weights, gradient);
+  Rng rng(4);
+  for (int k = 0; k < 60; ++k) {
+    const std::size_t i = rng.below(static_cast<std::uint32_t>(x.values().size()));
+    const float at = x.values()[i], h = 1.0f / 1024;
+    x.values()[i] = at + h;
+    const double above = loss_by_definition(x, y, weights);
+    x.values()[i] = at - h;
+    const double slope = (above - loss_by_definition(x, y, weights)) / (2 * static_cast<double>(h));
+    x.values()[i] = at;
+    CHECK(static_cast<double>(gradient.values()[i]) == Approx(slope).epsilon(2e-3).margin(2e-6));
+  }
+}
+
+TEST_CASE("Identical images have no loss, and the gradient is added, not assigned") {
+  const Image x = random_image(20, 20, 1);
+  Image gradient(20, 20, 3, 5.0f);
+  const PhotometricTerms terms = PhotometricLoss().evaluate(x, x, {}, gradient);
+  CHECK(terms.l1 == 0.0);
+  CHECK(terms.mse == 0.0);
+  CHECK(terms.ssim_loss == Approx(0.0).margin(1e-6));
+  for (const float value : gradient.values()) CHECK(value == Approx(5.0f).margin(1e-6));
+}
+
+TEST_CASE("The photometric loss has the same bytes with one and two threads") {
+  const Image x = random_image(50, 41, 1), y = random_image(50, 41, 2);
+  Image one(50, 41, 3), two(50, 41, 3);
+  set_num_threads(1);
+  const PhotometricTerms first = PhotometricLoss().evaluate(x, y, {}, one);
+  set_num_threads(2);
+  const PhotometricTerms second = PhotometricLoss().evaluate(x, y, {}, two);
+  set_num_threads(0);
+  CHECK(first.ssim_loss == second.ssim_loss);
+  CHECK(std::equal(one.values().begin(), one.values().end(), two.values().begin()));
+}
+
+TEST_CASE("Images of different size are refused") {
+  Image gradient(4, 4, 3);
+  CHECK_THROWS_AS(PhotometricLoss().evaluate(Image(4, 4, 3), Image(5, 4, 3), {}, gradient), Error);
+}

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/trainer.h"
+
+#include <catch2/catch.hpp>
+
+#include <limits>
+#include <set>
+
+#include "glint/core/progress.h"
+
+using namespace glint;
+
+namespace {
+
+// A method whose loss stops being finite at a given iteration.
+class Exploding final : public Method {
+ public:
+  explicit Exploding(int at) : at_(at) {}
+  void initialize(const Scene&, const RunOptions&) override {}
+  StepStats step(int iteration) override {
+    StepStats stats;
+    stats.iteration = iteration;
+    stats.loss = iteration == at_ ? std::numeric_limits<double>::quiet_NaN() : 1.0;
+    stats.terms["sharpness"] = stats.loss;
+    return stats;
+  }
+  RenderOutput render(const Camera&) const override { return {}; }
+  void save(const std::string& folder) const override {
+    write_file(fs::path(folder) / "state", "good");
+  }
+  void load(const std::string&) override {}
+  Json config() const override { return Json::object(); }
+  void check_finite() const override {}
+  std::size_t num_surfels() const override { return 1; }
+
+ private:
+  int at_;
+};
+
+Scene one_view() {
+  Scene scene;
+  scene.name = "one";
+  scene.train.emplace_back();
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "A loss that stops being finite ends training, names the term and keeps the last good state"
+) {
+  set_quiet(true);
+  const fs::path folder = fs::temp_directory_path() / "glint_trainer_test";
+  fs::remove_all(folder);
+  Exploding method(25);
+  TrainOptions options;
+  options.run.iterations = 100;
+  options.folder = folder;
+  options.save_interval = 10;
+  try {
+    train(method, one_view(), options);
+    FAIL("training went on");
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::kBadPrediction);
+    CHECK(std::string(error.what()).find("iteration 25") != std::string::npos);
+    CHECK(std::string(error.what()).find("sharpness") != std::string::npos);
+  }
+  CHECK(read_file(folder / "checkpoint" / "state") == "good");
+  fs::remove_all(folder);
+}
+
+TEST_CASE("Training without views is refused") {
+  Exploding method(-1);
+  CHECK_THROWS_AS(train(method, Scene(), TrainOptions()), Error);
+}
+
+TEST_CASE("The view sampler sees every view once an epoch, in an order set by the seed") {
+  ViewSampler a(7, 1), b(7, 1), c(7, 2);
+  bool differs = false;
+  for (int epoch = 0; epoch < 3; ++epoch) {
+    std::set<std::size_t> seen;
+    for (int i = 0; i < 7; ++i) {
+      const std::size_t view = a.next();
+      CHECK(view == b.next());
+      differs |= view != c.next();
+      seen.insert(view);
+    }
+    CHECK(seen.size() == 7);
+  }
+  CHECK(differs);
+}
+
+TEST_CASE("Published schedules scale with the run's iterations") {
+  CHECK(scaled_step(7000, 30000) == 7000);
+  CHECK(scaled_step(7000, 3000) == 700);
+  CHECK(scaled_step(100, 3000, 50) == 50);
+}
