@@ -31,6 +31,7 @@ struct ColumnKeys {
     v("decimals", column.decimals, "digits behind the point");
     v("scale", column.scale, "shown = scale x measured");
     v("paper_column", column.paper_column, "column in the paper's table");
+    v("paper_title", column.paper_title, "its title; empty: the same");
   }
 };
 

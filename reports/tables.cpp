@@ -26,7 +26,9 @@ TableColumn published_column(
   column.group = dataset;
   column.dataset = dataset;
   column.metric.clear();
-  column.unit = sample.unit == "1" ? "" : sample.unit;
+  if (!measured.paper_title.empty()) column.title = measured.paper_title;
+  // Times are printed as the paper has them, with their unit in the cell.
+  column.unit = sample.unit == "1" || sample.unit == "min" ? "" : sample.unit;
   column.decimals = sample.decimals;
   column.published = true;
   return column;
@@ -115,15 +117,18 @@ std::string format_value(double value, const TableColumn& column) {
   return fmt::format("{:.{}f}", value, column.decimals);
 }
 
+// Failed only where every run did: a finished one without the value says that it is not measured.
 TableCell cell_without_values(const RecordPointers& records) {
   TableCell cell;
-  for (const Record* record : records)
-    if (!record->ok()) {
-      cell.status = CellStatus::kFailed;
-      cell.note = failure_note(*record);
-      return cell;
-    }
-  cell.note = records.empty() ? "not built or not run" : "not measured";
+  const bool finished = std::any_of(records.begin(), records.end(), [](const Record* record) {
+    return record->ok();
+  });
+  if (!records.empty() && !finished) {
+    cell.status = CellStatus::kFailed;
+    cell.note = failure_note(*records.front());
+  } else {
+    cell.note = finished ? "not measured" : "not built or not run";
+  }
   return cell;
 }
 

@@ -21,6 +21,7 @@ struct TableColumn {
   std::string field;         // text columns: "device" or "resolution"
   std::string dataset;       // records that count
   std::string paper_column;  // of the published counterpart; empty: the paper has none
+  std::string paper_title;   // what that one is called; empty: the same title
   std::string unit;
   RankOrder order = RankOrder::kNone;
   int decimals = 2;
