@@ -184,10 +184,23 @@ GLINT_HD PlaneMap<T> pixel_plane_map_vjp(
       g.det};
 }
 
-// Screen box of everything that can contribute: the ellipse and the low-pass disc at the radius
-// where alpha falls below 1/255, at most 3 sigma. Empty when the surfel cannot contribute.
+// Interval of X / Z over X in [x_low, x_high], Z in [z_low, z_high], z_low > 0.
+template <class T>
+struct RatioInterval {
+  T low, high;
+};
+template <class T>
+GLINT_HD RatioInterval<T> ratio_interval(T x_low, T x_high, T z_low, T z_high) {
+  const T near = T(1) / z_low, far = T(1) / max_of(z_low, z_high);
+  return {min_of(x_low * near, x_low * far), max_of(x_high * near, x_high * far)};
+}
+
+// Screen box of everything that can contribute. Where the 3-sigma ellipse stays clear of the camera
+// plane: the exact box at the radius where alpha falls below 1/255, and the low-pass disc.
+// Otherwise: bounds of the part in front of the near plane, from the ellipse's box in camera space.
 template <class T>
 GLINT_HD void screen_box(
+    const SurfelInCam<T>& s,
     const ScreenRows<T>& rows,
     const CameraOf<T>& camera,
     T max_rho,
@@ -199,16 +212,20 @@ GLINT_HD void screen_box(
   const ScreenInterval<T> y = screen_interval(rows.y, rows.z, max_rho, d);
   const T low_pass = sqrt_of(T(0.5f) * max_rho);  // sigma = sqrt(2)/2 pixel
   const T margin(0.01f);                          // pixels; rounding of float positions
-  p.box_min_x =
-      select(boxed, p.x_ref + min_of(x.center - x.half, p.center_x - low_pass) - margin, T(0));
-  p.box_max_x = select(
-      boxed, p.x_ref + max_of(x.center + x.half, p.center_x + low_pass) + margin, camera.width
-  );
-  p.box_min_y =
-      select(boxed, p.y_ref + min_of(y.center - y.half, p.center_y - low_pass) - margin, T(0));
-  p.box_max_y = select(
-      boxed, p.y_ref + max_of(y.center + y.half, p.center_y + low_pass) + margin, camera.height
-  );
+  const auto reach = [&](int axis) {
+    return T(3) * sqrt_of(fma_of(s.h0[axis], s.h0[axis], s.h1[axis] * s.h1[axis]));
+  };
+  const T z_high = s.m.z + reach(2);
+  const auto cut_x = ratio_interval(s.m.x - reach(0), s.m.x + reach(0), camera.near_plane, z_high);
+  const auto cut_y = ratio_interval(s.m.y - reach(1), s.m.y + reach(1), camera.near_plane, z_high);
+  const T x_min = p.x_ref + min_of(x.center - x.half, p.center_x - low_pass);
+  const T x_max = p.x_ref + max_of(x.center + x.half, p.center_x + low_pass);
+  const T y_min = p.y_ref + min_of(y.center - y.half, p.center_y - low_pass);
+  const T y_max = p.y_ref + max_of(y.center + y.half, p.center_y + low_pass);
+  p.box_min_x = select(boxed, x_min, fma_of(camera.fx, cut_x.low, camera.cx)) - margin;
+  p.box_max_x = select(boxed, x_max, fma_of(camera.fx, cut_x.high, camera.cx)) + margin;
+  p.box_min_y = select(boxed, y_min, fma_of(camera.fy, cut_y.low, camera.cy)) - margin;
+  p.box_max_y = select(boxed, y_max, fma_of(camera.fy, cut_y.high, camera.cy)) + margin;
 }
 
 // max_rho: squared radius in sigma beyond which alpha < 1/255, at most kMaxRho (see max_rho_of).
@@ -237,7 +254,7 @@ GLINT_HD ProjectedSurfel<T> project_surfel(
       select(projects, screen_interval(rows.y, rows.z, T(kMaxRho), d).center, T(kNoLowPass));
   p.z_center = s.m.z;
   p.normal = s.normal;
-  screen_box(rows, camera, max_rho, projects, p);
+  screen_box(s, rows, camera, max_rho, projects, p);
   p.box_min_x = select(in_front & (max_rho > T(0)), p.box_min_x, T(1e30f));
   return p;
 }

@@ -89,7 +89,9 @@ class Rasterizer {
       RasterGradient& gradient,
       bool scalar = false
   );
-  std::size_t num_pairs() const;  // (surfel, tile) pairs of the last forward call
+  // Of the last forward call: (surfel, tile) pairs, and pixels inside the surfels' screen boxes.
+  std::size_t num_pairs() const;
+  std::size_t num_pixel_pairs() const;
 
  private:
   std::unique_ptr<RasterSaved> saved_;

@@ -470,6 +470,14 @@ Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
 
 std::size_t Rasterizer::num_pairs() const { return saved_->lists.num_pairs(); }
 
+std::size_t Rasterizer::num_pixel_pairs() const {
+  std::size_t sum = 0;
+  for (const PixelBox& box : saved_->lists.boxes)
+    if (!box.empty())
+      sum += static_cast<std::size_t>(box.x_max - box.x_min) * (box.y_max - box.y_min);
+  return sum;
+}
+
 void Rasterizer::forward(
     const RasterInput& input,
     const Camera& camera,

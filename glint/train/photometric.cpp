@@ -17,10 +17,14 @@ namespace {
 constexpr std::size_t kRowGrain = 4;
 constexpr int kPad = 8;  // floats before and after a row: the window's radius, rounded to a vector
 
-const std::array<float, kSsimTaps>& window() {
-  static const std::array<float, kSsimTaps> weights = ssim_window<float>();
-  return weights;
-}
+// The window's weights, one vector each.
+struct Window {
+  Float8 weights[kSsimTaps];
+  Window() {
+    const std::array<float, kSsimTaps> taps = ssim_window<float>();
+    for (int k = 0; k < kSsimTaps; ++k) weights[k] = Float8(taps[k]);
+  }
+};
 
 // One image row, planar, with zeros on both sides.
 struct PaddedRow {
@@ -36,18 +40,28 @@ void load_channel(const Image& image, int y, int channel, PaddedRow& row) {
 }
 
 // out[x .. x+8) = sum_k w_k in[x + k - radius].
-Float8 blur8(const float* in, std::size_t x) {
+Float8 blur8(const Window& window, const float* in, std::size_t x) {
   Float8 sum(0.0f);
   for (int k = 0; k < kSsimTaps; ++k)
-    sum = fma_of(Float8(window()[k]), Float8::load(in + x + k - kSsimRadius), sum);
+    sum = fma_of(window.weights[k], Float8::load(in + x + k - kSsimRadius), sum);
   return sum;
 }
 
-// Rows of the window that lie inside the image for output row y: k in [first, last).
-struct TapRange {
-  int first, last;
-  TapRange(int y, int height)
-      : first(std::max(0, kSsimRadius - y)), last(std::min(kSsimTaps, height + kSsimRadius - y)) {}
+// The vertical window over a plane's rows y - 5 .. y + 5; rows outside the image count as zero.
+struct ColumnBlur {
+  const float* rows[kSsimTaps];
+  int first, last;  // taps inside the image
+  ColumnBlur(const float* plane, std::size_t stride, int y, int height)
+      : first(std::max(0, kSsimRadius - y)), last(std::min(kSsimTaps, height + kSsimRadius - y)) {
+    for (int k = first; k < last; ++k)
+      rows[k] = plane + static_cast<std::size_t>(y + k - kSsimRadius) * stride;
+  }
+  Float8 at(const Window& window, std::size_t x) const {
+    Float8 sum(0.0f);
+    for (int k = first; k < last; ++k)
+      sum = fma_of(window.weights[k], Float8::load(rows[k] + x), sum);
+    return sum;
+  }
 };
 
 double mean_of(const std::vector<double>& rows, double count) {
@@ -60,20 +74,10 @@ float* PhotometricLoss::plane_row(std::vector<float>& planes, int plane, int y) 
   return planes.data() + (static_cast<std::size_t>(plane) * height_ + y) * stride_;
 }
 
-// Vertical window over rows y - 5 .. y + 5 of a plane at columns [x, x + 8).
-Float8 PhotometricLoss::blur_columns(std::vector<float>& planes, int plane, int y, std::size_t x) {
-  const TapRange taps(y, height_);
-  Float8 sum(0.0f);
-  for (int k = taps.first; k < taps.last; ++k)
-    sum = fma_of(
-        Float8(window()[k]), Float8::load(plane_row(planes, plane, y + k - kSsimRadius) + x), sum
-    );
-  return sum;
-}
-
 // Horizontal pass of the five moments.
 void PhotometricLoss::blur_rows(const Image& rendered, const Image& target, int channel) {
   parallel_for_blocks(height_, kRowGrain, [&](std::size_t begin, std::size_t end) {
+    const Window window;
     PaddedRow x(stride_), y(stride_), xx(stride_), yy(stride_), xy(stride_);
     const PaddedRow* rows[5] = {&x, &y, &xx, &yy, &xy};
     for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
@@ -87,7 +91,7 @@ void PhotometricLoss::blur_rows(const Image& rendered, const Image& target, int 
       }
       for (int plane = 0; plane < 5; ++plane)
         for (std::size_t i = 0; i < stride_; i += 8)
-          blur8(rows[plane]->data(), i).store(plane_row(moments_, plane, row) + i);
+          blur8(window, rows[plane]->data(), i).store(plane_row(moments_, plane, row) + i);
     }
   });
 }
@@ -96,10 +100,15 @@ void PhotometricLoss::blur_rows(const Image& rendered, const Image& target, int 
 void PhotometricLoss::ssim_rows() {
   parallel_for(height_, kRowGrain, [&](std::size_t row) {
     const int y = static_cast<int>(row);
+    const Window window;
+    const auto column = [&](int plane) {
+      return ColumnBlur(plane_row(moments_, plane, 0), stride_, y, height_);
+    };
+    const ColumnBlur columns[5] = {column(0), column(1), column(2), column(3), column(4)};
     Float8 total(0.0f);
     for (std::size_t i = 0; i < stride_; i += 8) {
       Float8 m[5];
-      for (int plane = 0; plane < 5; ++plane) m[plane] = blur_columns(moments_, plane, y, i);
+      for (int plane = 0; plane < 5; ++plane) m[plane] = columns[plane].at(window, i);
       const auto inside = Float8(static_cast<float>(i)) + lane_indices<Float8>() <
                           Float8(static_cast<float>(width_));
       const Float8 one = select(inside, Float8(1.0f), Float8(0.0f));
@@ -125,19 +134,23 @@ void PhotometricLoss::gradient_rows(
   const float per_value = 1.0f / static_cast<float>(3 * rendered.num_pixels());
   const float l1_scale = weights.l1 * per_value, ssim_scale = -weights.ssim * per_value;
   parallel_for_blocks(height_, kRowGrain, [&](std::size_t begin, std::size_t end) {
+    const Window window;
     PaddedRow g0(stride_), g1(stride_), g2(stride_), x(stride_), y(stride_), out(stride_);
     PaddedRow* rows[3] = {&g0, &g1, &g2};
     for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
-      for (int plane = 0; plane < 3; ++plane)
+      for (int plane = 0; plane < 3; ++plane) {
+        const ColumnBlur column(plane_row(moment_gradients_, plane, 0), stride_, row, height_);
         for (std::size_t i = 0; i < stride_; i += 8)
-          blur_columns(moment_gradients_, plane, row, i).store(rows[plane]->data() + i);
+          column.at(window, i).store(rows[plane]->data() + i);
+      }
       load_channel(rendered, row, channel, x);
       load_channel(target, row, channel, y);
       Float8 l1(0.0f), mse(0.0f);
       for (std::size_t i = 0; i < stride_; i += 8) {
         const Float8 a = Float8::load(x.data() + i), b = Float8::load(y.data() + i);
-        const Float8 ssim =
-            blur8(g0.data(), i) + Float8(2.0f) * a * blur8(g1.data(), i) + b * blur8(g2.data(), i);
+        const Float8 ssim = blur8(window, g0.data(), i) +
+                            Float8(2.0f) * a * blur8(window, g1.data(), i) +
+                            b * blur8(window, g2.data(), i);
         const Float8 difference = a - b;
         const Float8 sign = select(difference > Float8(0.0f), Float8(1.0f), Float8(0.0f)) -
                             select(difference < Float8(0.0f), Float8(1.0f), Float8(0.0f));

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "glint/core/image.h"
-#include "glint/core/simd.h"
 
 namespace glint {
 
@@ -41,7 +40,6 @@ class PhotometricLoss {
       PhotometricWeights weights,
       Image& gradient
   );
-  Float8 blur_columns(std::vector<float>& planes, int plane, int y, std::size_t x);
   float* plane_row(std::vector<float>& planes, int plane, int y);
 
   int width_ = 0, height_ = 0;

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "reports/perf/perf.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "glint/core/files.h"
+#include "glint/core/parallel.h"
+#include "glint/core/progress.h"
+#include "reports/bench/machine.h"
+
+namespace glint {
+
+namespace {
+
+double milliseconds(const std::function<void()>& body) {
+  const auto start = std::chrono::steady_clock::now();
+  body();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+PerfRow measure(const PerfCase& c, int threads, int runs) {
+  set_num_threads(threads);
+  std::vector<double> times, ratios;
+  c.run();
+  if (c.run_scalar) c.run_scalar();
+  for (int i = 0; i < runs; ++i) {
+    times.push_back(milliseconds(c.run));
+    if (c.run_scalar) ratios.push_back(milliseconds(c.run_scalar) / times.back());
+  }
+  PerfRow row{c.name, c.unit, threads, median(times), 0, 0, 0};
+  row.per_second = c.work() / (row.ms / 1000);
+  if (!ratios.empty()) row.scalar_ratio = median(ratios);
+  return row;
+}
+
+std::string rate(double per_second, const std::string& unit) {
+  for (const auto& [scale, prefix] : {std::pair{1e9, "G"}, {1e6, "M"}, {1e3, "k"}})
+    if (per_second >= scale) return fmt::format("{:.2f} {}{}/s", per_second / scale, prefix, unit);
+  return fmt::format("{:.1f} {}/s", per_second, unit);
+}
+
+std::string ratio(double value) { return value > 0 ? fmt::format("{:.2f}x", value) : "-"; }
+
+}  // namespace
+
+std::vector<PerfRow> run_perf(const PerfOptions& options) {
+  std::vector<PerfCase> cases = raster_cases(options);
+  for (PerfCase& c : training_cases(options)) cases.push_back(std::move(c));
+  std::vector<PerfRow> rows;
+  const int max_threads = std::thread::hardware_concurrency() > 1 ? 2 : 1;
+  Progress progress("perf", cases.size() * static_cast<std::size_t>(max_threads));
+  for (const PerfCase& c : cases) {
+    if (!glob_match(options.only, c.name)) continue;
+    for (int threads = 1; threads <= max_threads; ++threads) {
+      rows.push_back(measure(c, threads, options.runs));
+      if (threads > 1) rows.back().thread_ratio = rows[rows.size() - 2].ms / rows.back().ms;
+      progress.advance(1, c.name);
+    }
+  }
+  set_num_threads(0);
+  return rows;
+}
+
+Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) {
+  Json json = {
+      {"cpu", this_machine().cpu},
+      {"width", options.width},
+      {"height", options.height},
+      {"surfels", options.surfels},
+      {"runs", options.runs},
+      {"rows", Json::array()}};
+  for (const PerfRow& row : rows)
+    json["rows"].push_back(
+        {{"op", row.name},
+         {"threads", row.threads},
+         {"ms", row.ms},
+         {"unit", row.unit},
+         {"per_second", row.per_second},
+         {"scalar_ratio", row.scalar_ratio},
+         {"thread_ratio", row.thread_ratio}}
+    );
+  return json;
+}
+
+std::string perf_to_text(const PerfOptions& options, const std::vector<PerfRow>& rows) {
+  std::string text = fmt::format(
+      "{}x{}, {} surfels, medians of {} runs, {}\n{:<34} {:>7} {:>10} {:>16} {:>10} {:>10}\n",
+      options.width,
+      options.height,
+      options.surfels,
+      options.runs,
+      this_machine().cpu,
+      "op",
+      "threads",
+      "ms",
+      "rate",
+      "vs scalar",
+      "vs 1 thr."
+  );
+  for (const PerfRow& row : rows)
+    text += fmt::format(
+        "{:<34} {:>7} {:>10.3f} {:>16} {:>10} {:>10}\n",
+        row.name,
+        row.threads,
+        row.ms,
+        rate(row.per_second, row.unit),
+        ratio(row.scalar_ratio),
+        ratio(row.thread_ratio)
+    );
+  return text;
+}
+
+}  // namespace glint

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Timings of the ops, side by side in one run: SIMD against the scalar instantiation of the same
+// text, one thread against two. A file perf/<name>_cases.cpp adds cases.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "glint/core/config.h"
+
+namespace glint {
+
+struct PerfCase {
+  std::string name;
+  std::string unit;                  // what `work` counts: "pairs", "surfels", "pixels", "steps"
+  std::function<double()> work;      // units of one run; called once after a run
+  std::function<void()> run;         // one run
+  std::function<void()> run_scalar;  // the same without SIMD; empty: no such instantiation
+};
+
+struct PerfRow {
+  std::string name, unit;
+  int threads = 1;
+  double ms = 0;            // median of the runs
+  double per_second = 0;    // units per second
+  double scalar_ratio = 0;  // scalar time / SIMD time, median of pairs; 0: none
+  double thread_ratio = 0;  // one thread's time / this; 0 for one thread
+};
+
+struct PerfOptions {
+  int width = 240, height = 135;  // pixels
+  std::size_t surfels = 20000;
+  int runs = 15;           // of each case, after one warm-up
+  std::string only = "*";  // glob over case names
+};
+
+std::vector<PerfCase> raster_cases(const PerfOptions& options);
+std::vector<PerfCase> training_cases(const PerfOptions& options);
+
+// Every case at 1 and 2 threads (1 only where the machine has one). Runs of SIMD and scalar
+// alternate, so a machine that slows down slows both.
+std::vector<PerfRow> run_perf(const PerfOptions& options);
+
+Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows);
+std::string perf_to_text(const PerfOptions& options, const std::vector<PerfRow>& rows);
+
+}  // namespace glint

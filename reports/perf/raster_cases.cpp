@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+
+#include "glint/render/shade.h"
+#include "reports/perf/perf_scene.h"
+
+namespace glint {
+
+namespace {
+
+struct RasterState {
+  SurfelCloud cloud;
+  View view;
+  ActivatedSurfels activated;
+  RasterInput input;
+  Rasterizer rasterizer;
+  RasterOutput output;
+  RasterOutputGradient dL_doutput;
+  RasterGradient gradient;
+  SurfelCloud dL_dcloud;
+
+  explicit RasterState(const PerfOptions& options)
+      : cloud(perf_cloud(options)), view(perf_scene(options).train.front()) {
+    dL_dcloud.resize(cloud.size());
+    shade();
+    input = raster_input(cloud, activated);
+    const float g = 1.0f / static_cast<float>(view.camera.size().num_pixels());
+    dL_doutput.features = Image(options.width, options.height, 3, g);
+    dL_doutput.alpha = Image(options.width, options.height, 1, g);
+    dL_doutput.depth_sum = Image(options.width, options.height, 1, g);
+    dL_doutput.normal = Image(options.width, options.height, 3, g);
+  }
+  void shade() { activate(cloud, cast<float>(view.camera.center()), 3, activated); }
+  void shade_vjp() {
+    activate_vjp(cloud, cast<float>(view.camera.center()), 3, activated, gradient, dL_dcloud);
+  }
+  void forward(bool scalar) { rasterizer.forward(input, view.camera, {}, output, scalar); }
+  void backward(bool scalar) {
+    rasterizer.backward(input, view.camera, {}, output, dL_doutput, gradient, scalar);
+  }
+  // Surfel-pixel pairs: pixels inside the surfels' exact screen boxes.
+  double pairs() const { return static_cast<double>(rasterizer.num_pixel_pairs()); }
+};
+
+}  // namespace
+
+std::vector<PerfCase> raster_cases(const PerfOptions& options) {
+  const auto s = std::make_shared<RasterState>(options);
+  s->forward(false);
+  s->backward(false);
+  const auto pairs = [s] { return s->pairs(); };
+  const auto surfels = [s] { return static_cast<double>(s->cloud.size()); };
+  return {
+      {"rasterize forward", "pairs", pairs, [s] { s->forward(false); }, [s] { s->forward(true); }},
+      {"rasterize forward + backward",
+       "pairs",
+       pairs,
+       [s] { s->forward(false), s->backward(false); },
+       [s] { s->forward(true), s->backward(true); }},
+      {"activate + SH degree 3", "surfels", surfels, [s] { s->shade(); }, {}},
+      {"activate + SH degree 3, backward", "surfels", surfels, [s] { s->shade_vjp(); }, {}}};
+}
+
+}  // namespace glint

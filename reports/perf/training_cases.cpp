@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include <unistd.h>
+
+#include <memory>
+
+#include "glint/method.h"
+#include "glint/scene/ply.h"
+#include "glint/train/adam.h"
+#include "glint/train/normal_consistency.h"
+#include "glint/train/photometric.h"
+#include "metrics/ssim.h"
+#include "reports/perf/perf_scene.h"
+
+namespace glint {
+
+namespace {
+
+PerfCase photometric_case(const PerfOptions& options) {
+  struct State {
+    Image x, y, gradient;
+    PhotometricLoss loss;
+  };
+  const auto s = std::make_shared<State>();
+  s->y = perf_scene(options).train.front().rgb;
+  s->x = Image(options.width, options.height, 3, 0.4f);
+  s->gradient = Image(options.width, options.height, 3);
+  return {
+      "L1 + SSIM with gradient",
+      "pixels",
+      [s] { return static_cast<double>(s->x.num_pixels()); },
+      [s] { s->loss.evaluate(s->x, s->y, {}, s->gradient); },
+      {}};
+}
+
+PerfCase normal_case(const PerfOptions& options) {
+  struct State {
+    Camera camera;
+    Image normal, depth, alpha, dL_dn, dL_dz;
+    NormalConsistencyLoss loss;
+  };
+  const auto s = std::make_shared<State>();
+  s->camera = perf_scene(options).train.front().camera;
+  s->normal = s->dL_dn = Image(options.width, options.height, 3, -0.5f);
+  s->depth = s->alpha = s->dL_dz = Image(options.width, options.height, 1, 1.0f);
+  return {
+      "normal consistency with gradient",
+      "pixels",
+      [s] { return static_cast<double>(s->depth.num_pixels()); },
+      [s] {
+        s->loss.evaluate(s->camera, s->normal, s->depth, s->alpha, 0.05f, s->dL_dn, s->dL_dz);
+      },
+      {}};
+}
+
+PerfCase adam_case(const PerfOptions& options) {
+  struct State {
+    SurfelCloud cloud, gradient;
+    SurfelAdam adam;
+  };
+  const auto s = std::make_shared<State>();
+  s->cloud = s->gradient = perf_cloud(options);
+  return {
+      "Adam, 58 values a surfel",
+      "surfels",
+      [s] { return static_cast<double>(s->cloud.size()); },
+      [s] { s->adam.step(s->cloud, s->gradient, {}, 1); },
+      {}};
+}
+
+// Whole steps of a method late in training (all losses, SH degree 3), without densification, on the
+// same surfels as the ops.
+PerfCase step_case(const MethodSpec& spec, const PerfOptions& options) {
+  struct State {
+    Scene scene;
+    std::unique_ptr<Method> method;
+    int iteration = 20000;
+  };
+  const auto s = std::make_shared<State>();
+  s->scene = perf_scene(options);
+  s->method = spec.create(Json{{"densify_until", 0}});
+  s->method->initialize(s->scene, {30000, 0});
+  const fs::path folder = fs::temp_directory_path() / fmt::format("glint_perf_{}", ::getpid());
+  write_surfel_ply(folder / "interface.ply", perf_cloud(options));
+  s->method->load(folder.string());
+  fs::remove_all(folder);
+  return {
+      spec.id + " training step",
+      "steps",
+      [] { return 1.0; },
+      [s] { s->method->step(s->iteration++); },
+      {}};
+}
+
+PerfCase ssim_metric_case() {
+  const auto image = std::make_shared<Image>(960, 540, 3, 0.4f);
+  return {
+      "metric ssim-3dgs, 960x540",
+      "pixels",
+      [image] { return static_cast<double>(image->num_pixels()); },
+      [image] { ssim_3dgs(*image, *image); },
+      {}};
+}
+
+}  // namespace
+
+std::vector<PerfCase> training_cases(const PerfOptions& options) {
+  std::vector<PerfCase> cases = {
+      photometric_case(options), normal_case(options), adam_case(options), ssim_metric_case()};
+  for (const auto& [id, spec] : method_registry())
+    if (spec.overrides.empty()) cases.push_back(step_case(spec, options));
+  return cases;
+}
+
+}  // namespace glint
