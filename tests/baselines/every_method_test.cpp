@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// Every registered method is tested by existing: it trains on a small glass room, its loss falls,
+// it renders what its contract says, it saves and loads, it is deterministic, it refuses bad
+// config.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "datasets/dataset.h"
+#include "datasets/glassroom/glassroom.h"
+#include "glint/core/parallel.h"
+#include "glint/core/progress.h"
+#include "glint/method.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+// A room of 64x36 pixels, made once.
+const Scene& small_room() {
+  static const TempFolder folder;
+  static const Scene scene = [] {
+    set_quiet(true);
+    GlassRoomOptions options;
+    options.width = 64;
+    options.height = 36;
+    options.views = 16;
+    options.spp = 8;
+    make_glassroom(options, folder.path() / "room_1");
+    return load_scene(folder.path() / "room_1", {});
+  }();
+  return scene;
+}
+
+std::unique_ptr<Method> trained(
+    const MethodSpec& spec, int iterations, std::vector<double>* losses
+) {
+  auto method = spec.create(spec.overrides);
+  RunOptions options;
+  options.iterations = iterations;
+  method->initialize(small_room(), options);
+  for (int i = 0; i < iterations; ++i) {
+    const StepStats stats = method->step(i);
+    if (losses != nullptr) losses->push_back(stats.loss);
+  }
+  return method;
+}
+
+double mean(const std::vector<double>& values, std::size_t begin, std::size_t end) {
+  double sum = 0;
+  for (std::size_t i = begin; i < end; ++i) sum += values[i];
+  return sum / static_cast<double>(end - begin);
+}
+
+bool same_bytes(const Image& a, const Image& b) {
+  return a.size() == b.size() &&
+         std::equal(a.values().begin(), a.values().end(), b.values().begin());
+}
+
+}  // namespace
+
+TEST_CASE("Every method's loss falls and its parameters stay finite") {
+  for (const auto& [id, spec] : method_registry()) {
+    INFO(id);
+    std::vector<double> losses;
+    const auto method = trained(spec, 150, &losses);
+    CHECK(mean(losses, 120, 150) < 0.8 * mean(losses, 0, 15));
+    CHECK_NOTHROW(method->check_finite());
+    CHECK(method->num_surfels() > 0);
+  }
+}
+
+TEST_CASE("Every method renders colour, depth and unit normals that face the camera") {
+  for (const auto& [id, spec] : method_registry()) {
+    INFO(id);
+    const auto method = trained(spec, 60, nullptr);
+    const View& view = small_room().test.front();
+    const RenderOutput out = method->render(view.camera);
+    REQUIRE(out.rgb.size() == view.camera.size());
+    REQUIRE(out.rgb.channels() == 3);
+    REQUIRE(out.depth.size() == view.camera.size());
+    REQUIRE(out.normal.size() == view.camera.size());
+    std::size_t hits = 0;
+    for (int y = 0; y < view.camera.height; ++y)
+      for (int x = 0; x < view.camera.width; ++x) {
+        const float z = out.depth.at(x, y);
+        REQUIRE(std::isfinite(z));
+        const float* n = out.normal.pixel(x, y);
+        const float norm = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        CHECK((norm == 0.0f || std::abs(norm - 1) < 1e-4f));
+        hits += z > 0 && norm > 0;
+      }
+    CHECK(hits > out.depth.num_pixels() / 2);
+  }
+}
+
+TEST_CASE("Every method renders the same bytes after saving and loading") {
+  for (const auto& [id, spec] : method_registry()) {
+    INFO(id);
+    const TempFolder folder;
+    const auto method = trained(spec, 60, nullptr);
+    method->save(folder.path().string());
+    const auto loaded = spec.create(spec.overrides);
+    loaded->load(folder.path().string());
+    const Camera& camera = small_room().test.front().camera;
+    const RenderOutput a = method->render(camera), b = loaded->render(camera);
+    CHECK(same_bytes(a.rgb, b.rgb));
+    CHECK(same_bytes(a.depth, b.depth));
+    CHECK(loaded->num_surfels() == method->num_surfels());
+  }
+}
+
+TEST_CASE("Every method trains to the same bytes with one and two threads") {
+  for (const auto& [id, spec] : method_registry()) {
+    INFO(id);
+    const Camera& camera = small_room().test.front().camera;
+    set_num_threads(1);
+    const RenderOutput one = trained(spec, 120, nullptr)->render(camera);
+    set_num_threads(2);
+    const RenderOutput two = trained(spec, 120, nullptr)->render(camera);
+    set_num_threads(0);
+    CHECK(same_bytes(one.rgb, two.rgb));
+    CHECK(same_bytes(one.depth, two.depth));
+  }
+}
+
+TEST_CASE("Every method names an unknown config field and lists the known ones") {
+  for (const auto& [id, spec] : method_registry()) {
+    INFO(id);
+    try {
+      spec.create(Json{{"lambda_typo", 1}});
+      FAIL("accepted an unknown field");
+    } catch (const Error& error) {
+      CHECK(error.code() == ExitCode::kUsage);
+      CHECK(std::string(error.what()).find("lambda_typo") != std::string::npos);
+      CHECK(std::string(error.what()).find("known fields") != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("An unknown method is refused with the nearest name") {
+  try {
+    find_method("2dsg");
+    FAIL("found a method that does not exist");
+  } catch (const Error& error) {
+    CHECK(std::string(error.what()).find("'2dgs'") != std::string::npos);
+  }
+}
