@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Checks what `glint-bench all` wrote: scripts/check_outputs.sh OUT/PROFILE. Exit 4 names what is missing.
+set -euo pipefail
+out=$1
+fail() { echo "check_outputs: $*" >&2; exit 4; }
+
+[ -s "$out/records.jsonl" ] || fail "$out/records.jsonl is missing or empty"
+if grep -q '"status":"failed"' "$out/records.jsonl"; then fail "a cell failed: see $out/records.jsonl"; fi
+for table in table1_photometric table2_geometry table3_ablation tableB_cost; do
+  for format in md tex csv json; do
+    [ -s "$out/tables/$table.$format" ] || fail "$out/tables/$table.$format is missing or empty"
+  done
+done
+grep -q '^2DGS\|^2dgs' "$out/tables/table1_photometric.csv" || fail "no row for 2dgs in table1_photometric.csv"
+runs=0
+for run in "$out"/runs/*/*/*/; do
+  for file in config.json env.json metrics.json log.jsonl interface.ply; do
+    [ -s "$run$file" ] || fail "$run$file is missing or empty"
+  done
+  compgen -G "$run/renders/*/rgb.exr" >/dev/null || fail "$run has no renders"
+  runs=$((runs + 1))
+done
+[ "$runs" -gt 0 ] || fail "no run folders in $out/runs"
+echo "check_outputs: $runs runs, four tables in four formats" >&2
