@@ -110,7 +110,7 @@ TEST_CASE("the release's protocol skips holes and depths from 20 m on") {
 }
 
 TEST_CASE("depth errors agree with NumPy under every alignment") {
-  for (const Json& golden : golden::load()["depth"]) {
+  for (const Json& golden : golden::load("depth")) {
     const int w = golden["width"], h = golden["height"];
     const Image prediction = golden::predicted_depth_map(w, h),
                 reference = golden::true_depth_map(w, h);

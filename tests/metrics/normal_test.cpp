@@ -83,7 +83,7 @@ TEST_CASE("the angle does not depend on which map is the reference") {
 }
 
 TEST_CASE("normal errors agree with NumPy") {
-  for (const Json& golden : golden::load()["normal"]) {
+  for (const Json& golden : golden::load("normal")) {
     const int w = golden["width"], h = golden["height"];
     const auto errors =
         normal_errors(golden::predicted_normal_map(w, h), golden::true_normal_map(w, h));

@@ -93,7 +93,7 @@ TEST_CASE("a masked PSNR is the mean over the masked pixels, not over all") {
 }
 
 TEST_CASE("PSNR agrees with scikit-image") {
-  for (const Json& golden : golden::load()["images"]) {
+  for (const Json& golden : golden::load("images")) {
     const int w = golden["width"], h = golden["height"], c = golden["channels"];
     const Image reference = golden::reference_image(w, h, c);
     const Image prediction = golden::prediction_image(w, h, c);

@@ -44,7 +44,7 @@ TEST_CASE("SSIM is symmetric") {
 }
 
 TEST_CASE("SSIM agrees with scikit-image, and with zero padding by NumPy") {
-  for (const Json& golden : golden::load()["images"]) {
+  for (const Json& golden : golden::load("images")) {
     const int w = golden["width"], h = golden["height"], c = golden["channels"];
     const Image reference = golden::reference_image(w, h, c);
     const Image prediction = golden::prediction_image(w, h, c);
