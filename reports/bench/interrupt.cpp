@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/interrupt.h"
 
+#include <unistd.h>
+
 #include <csignal>
 
 namespace glint {
 
 namespace {
 volatile std::sig_atomic_t interrupt_seen = 0;
-void note_interrupt(int) { interrupt_seen = 1; }
+
+void note_interrupt(int) {
+  interrupt_seen = 1;
+  // Only write() may be called in a handler; nothing can be done about a failure.
+  static constexpr char kMessage[] = "\nstopping after this step; once more to stop at once\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
+}
 }  // namespace
 
 void install_interrupt_handler() {
