@@ -16,10 +16,10 @@ namespace glint {
 struct CameraPathOptions {
   ImageSize size{160, 90};
   int views = 64;
-  double fov_x_deg = 80;
+  double fov_x_deg = 85;
   double low_height = 1.2, high_height = 1.65;  // metres, of the two laps
-  double min_radius = 1.4, max_radius = 2.3;     // metres from the container's axis
-  double clearance = 0.35;                       // to anything, metres
+  double min_radius = 1.4, max_radius = 2.3;    // metres from the container's axis
+  double clearance = 0.35;                      // to anything, metres
   double min_visible = 0.7;  // share of probe points in the container that must be seen
 };
 

@@ -144,7 +144,9 @@ void center(ContainerObject& object) {
 using Maker = ContainerObject (*)(float);
 constexpr std::array<Maker, 8> kMakers{teapot, ball, cone, ring, vase, block, drum, dumbbell};
 
-Material object_material(TraceScene& scene, const std::string& name, std::size_t index, Rng& rng) {
+Material object_material(
+    TraceScene& scene, const std::string& name, std::size_t index, std::size_t first_color, Rng& rng
+) {
   constexpr std::array<std::uint32_t, 8> kColors{
       0xD6452F, 0x2F6FB5, 0xE3B02F, 0x3C9A5F, 0x8E4FA8, 0xE07FA0, 0x2FA8A0, 0xE8E0D0};
   constexpr std::array kKinds{
@@ -153,9 +155,9 @@ Material object_material(TraceScene& scene, const std::string& name, std::size_t
       PatternKind::kMarble,
       PatternKind::kTiles,
       PatternKind::kWaves};
-  const std::size_t first = rng.below(kColors.size());
+  // Steps of three visit all eight main colours before one comes again.
   const auto color = [&](std::size_t k) {
-    return srgb_hex(kColors[(first + k + index) % kColors.size()]);
+    return srgb_hex(kColors[(first_color + 3 * index + k) % kColors.size()]);
   };
   Material material{.name = name, .roughness = rng.uniform(0.25f, 0.5f)};
   if (index == 3) {  // one thing of metal
@@ -283,11 +285,13 @@ void add_objects(
     const std::vector<Pose>& poses,
     Rng& rng
 ) {
+  const std::size_t first_color = rng.next_u32() % 64;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     ContainerObject& object = objects[i];
     scale_uvs(object.mesh, 2.5f);
     transform(object.mesh, poses[i]);
-    const int material = add_material(scene, object_material(scene, object.name, i, rng));
+    const int material =
+        add_material(scene, object_material(scene, object.name, i, first_color, rng));
     add_mesh(scene, std::move(object.mesh), object.name, material);
   }
 }

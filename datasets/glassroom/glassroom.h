@@ -6,20 +6,20 @@
 #include <cstdint>
 #include <string>
 
-#include "glint/core/files.h"
 #include "glint/core/config.h"
+#include "glint/core/files.h"
 
 namespace glint {
 
 struct GlassRoomOptions {
-  std::string scene = "room_1";   // "room_1" ... "room_5"; the name seeds the layout
-  int width = 160, height = 90;   // pixels
-  int views = 64;                 // along the camera path; every 8th is a test view
+  std::string scene = "room_1";  // "room_1" ... "room_5"; the name seeds the layout
+  int width = 160, height = 90;  // pixels
+  int views = 64;                // along the camera path; every 8th is a test view
   // Samples a pixel of a training view. Test views get four times as many: noise in training views
   // averages out, in a test view it bounds the score.
   int spp = 64;
-  std::uint64_t seed = 0;         // varies the layout of the same recipe
-  std::string assets;             // optional folder with glTF furniture; empty: procedural only
+  std::uint64_t seed = 0;  // varies the layout of the same recipe
+  std::string assets;      // optional folder with glTF furniture; empty: procedural only
 
   template <class V>
   void visit(V&& v) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An empty-handed room: shell, windows, door, ceiling lights, furniture and pictures; no container
-// yet. The floor is the rectangle |x| <= size.x / 2, |y| <= size.y / 2 at z = 0.
+// A furnished room: shell, windows, door, ceiling lights, furniture and pictures; the container
+// comes later. The floor is the rectangle |x| <= size.x / 2, |y| <= size.y / 2 at z = 0.
 #pragma once
 
 #include <cstdint>
