@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The contract of a method, and the registry. One file in baselines/ per method; it registers itself
-// and is then trained, rendered, scored, tabulated and tested without another line anywhere.
+// The contract of a method, and the registry. One file in baselines/ per method; it registers
+// itself and is then trained, rendered, scored, tabulated and tested without another line anywhere.
 #pragma once
 
 #include <functional>
@@ -17,31 +17,32 @@ namespace glint {
 struct StepStats {
   int iteration = 0;
   double loss = 0;
-  double psnr = 0;               // of the training view of this step
+  double psnr = 0;  // of the training view of this step
   std::size_t num_surfels = 0;
   std::map<std::string, double> terms;  // each loss term, weighted
 };
 
 // Maps of one view, all of the camera's size. Empty images: the method does not produce them.
 struct RenderOutput {
-  Image rgb;           // [H][W][3] as displayed, not clamped
-  Image depth;         // [H][W][1] planar z in metres; 0: nothing hit
-  Image normal;        // [H][W][3] unit, camera space, facing the camera; zero: nothing hit
-  Image alpha;         // [H][W][1]
-  std::map<std::string, Image> layers;  // "transparency", "interface", "transmission", "reflection", ...
+  Image rgb;     // [H][W][3] as displayed, not clamped
+  Image depth;   // [H][W][1] planar z in metres; 0: nothing hit
+  Image normal;  // [H][W][3] unit, camera space, facing the camera; zero: nothing hit
+  Image alpha;   // [H][W][1]
+  std::map<std::string, Image>
+      layers;  // "transparency", "interface", "transmission", "reflection", ...
 };
 
 // Options of one run that every method gets.
 struct RunOptions {
-  int iterations = 30000;     // schedules scale with it
+  int iterations = 30000;  // schedules scale with it
   std::uint64_t seed = 0;
 };
 
 class Method {
  public:
   virtual ~Method() = default;
-  // Called once before step(). `scene` outlives the method; only scene.train and scene.points may be
-  // looked at. Errors: kUsage (config), kBadReference (scene lacks what the method needs).
+  // Called once before step(). `scene` outlives the method; only scene.train and scene.points may
+  // be looked at. Errors: kUsage (config), kBadReference (scene lacks what the method needs).
   virtual void initialize(const Scene& scene, const RunOptions& options) = 0;
   virtual StepStats step(int iteration) = 0;  // iteration counts from 0
   virtual RenderOutput render(const Camera& camera) const = 0;
@@ -56,11 +57,11 @@ class Method {
 };
 
 struct MethodSpec {
-  std::string id;            // "2dgs"; ablations and controls: "glint/no-trans", "2dgs/prior"
-  std::string title;         // as printed in tables
-  std::string citation;      // BibTeX key
-  std::string paper_row;     // row of reports/paper/glint.json, empty when the paper has none
-  std::string description;   // one line
+  std::string id;           // "2dgs"; ablations and controls: "glint/no-trans", "2dgs/prior"
+  std::string title;        // as printed in tables
+  std::string citation;     // BibTeX key
+  std::string paper_row;    // row of reports/paper/glint.json, empty when the paper has none
+  std::string description;  // one line
   Json overrides = Json::object();  // config fields that make this variant
   std::function<std::unique_ptr<Method>(const Json& config)> create;  // config: overrides + user's
 };
@@ -76,8 +77,8 @@ bool register_method(MethodSpec spec);
 #define GLINT_REGISTER_CONCAT2(a, b) a##b
 #define GLINT_REGISTER_CONCAT(a, b) GLINT_REGISTER_CONCAT2(a, b)
 // Registers a MethodSpec at program start. Object libraries only: static ones drop it.
-#define GLINT_REGISTER(...)                                                          \
-  namespace {                                                                        \
-  [[maybe_unused]] const bool GLINT_REGISTER_CONCAT(registered_, __LINE__) =         \
-      ::glint::register_method(__VA_ARGS__);                                         \
+#define GLINT_REGISTER(...)                                                  \
+  namespace {                                                                \
+  [[maybe_unused]] const bool GLINT_REGISTER_CONCAT(registered_, __LINE__) = \
+      ::glint::register_method(__VA_ARGS__);                                 \
   }

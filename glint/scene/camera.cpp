@@ -39,14 +39,14 @@ Mat3d rotation_from_quaternion(Vec4<double> q) {
   return {
       {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
        {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-       {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}
-  };
+       {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
 }
 
 Vec4<double> quaternion_from_rotation(const Mat3d& m) {
   // Shepperd: divide by the largest of the four squared components.
   const double xx = m.rows[0].x, yy = m.rows[1].y, zz = m.rows[2].z;
-  const double squares[4] = {1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz};
+  const double squares[4] = {
+      1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz};
   int largest = 0;
   for (int i = 1; i < 4; ++i)
     if (squares[i] > squares[largest]) largest = i;
@@ -56,10 +56,14 @@ Vec4<double> quaternion_from_rotation(const Mat3d& m) {
                c = (m.rows[1].x - m.rows[0].y) * s, d = (m.rows[1].x + m.rows[0].y) * s,
                e = (m.rows[2].x + m.rows[0].z) * s, f = (m.rows[2].y + m.rows[1].z) * s;
   switch (largest) {
-    case 0: return {0.5 * p, a, b, c};
-    case 1: return {a, 0.5 * p, d, e};
-    case 2: return {b, d, 0.5 * p, f};
-    default: return {c, e, f, 0.5 * p};
+    case 0:
+      return {0.5 * p, a, b, c};
+    case 1:
+      return {a, 0.5 * p, d, e};
+    case 2:
+      return {b, d, 0.5 * p, f};
+    default:
+      return {c, e, f, 0.5 * p};
   }
 }
 

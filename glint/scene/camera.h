@@ -8,14 +8,16 @@
 namespace glint {
 
 struct Camera {
-  int width = 0, height = 0;           // pixels
-  double fx = 0, fy = 0;               // pixels
-  double cx = 0, cy = 0;               // pixels; (width/2, height/2) when centred
+  int width = 0, height = 0;  // pixels
+  double fx = 0, fy = 0;      // pixels
+  double cx = 0, cy = 0;      // pixels; (width/2, height/2) when centred
   Mat3d rotation_cam_from_world{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3d translation_cam_from_world{};  // x_cam = R x_world + t
 
   ImageSize size() const { return {width, height}; }
-  Vec3d to_cam(Vec3d world) const { return rotation_cam_from_world * world + translation_cam_from_world; }
+  Vec3d to_cam(Vec3d world) const {
+    return rotation_cam_from_world * world + translation_cam_from_world;
+  }
   Vec3d to_world(Vec3d cam) const {
     return transpose_times(rotation_cam_from_world, cam - translation_cam_from_world);
   }

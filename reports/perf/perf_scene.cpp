@@ -12,7 +12,7 @@ namespace glint {
 namespace {
 
 constexpr Vec3f kHalfRoom{2.5f, 1.5f, 2.5f};  // metres
-constexpr float kOverlap = 1.5f;  // sigma over half the mean distance of neighbours
+constexpr float kOverlap = 1.5f;              // sigma over half the mean distance of neighbours
 
 struct SurfacePoint {
   Vec3f position;
