@@ -12,7 +12,6 @@ namespace glint {
 namespace {
 
 constexpr std::size_t kGrain = 1024;  // surfels a block
-constexpr int kBands = 8;             // bands of tile rows listed in parallel
 
 // Squared radius where alpha falls below 1/255, at most 3 sigma; not positive: never visible.
 float max_rho_of(float opacity) {
@@ -100,38 +99,58 @@ void sort_by_depth(TileLists& lists) {
   radix_sort(lists.order, lists.scratch);
 }
 
-// Calls f(tile, surfel) for every pair whose tile row lies in [row_begin, row_end), front to back.
-template <class F>
-void for_each_pair(const TileLists& lists, int row_begin, int row_end, F&& f) {
+// Surfels per tile: every box adds its corners' signs, sums along rows and columns fill it in.
+std::vector<std::uint32_t> count_tiles(const TileLists& lists) {
+  const int stride = lists.tiles_x + 1;
+  std::vector<std::uint32_t> corners(static_cast<std::size_t>(stride) * (lists.tiles_y + 1));
+  for (const PixelBox& box : lists.boxes) {
+    if (box.empty()) continue;
+    const int x0 = box.tile_x_min(), x1 = box.tile_x_max();
+    const int y0 = box.tile_y_min() * stride, y1 = box.tile_y_max() * stride;
+    ++corners[y0 + x0];
+    --corners[y0 + x1];
+    --corners[y1 + x0];
+    ++corners[y1 + x1];
+  }
+  std::vector<std::uint32_t> counts(lists.num_tiles()), column(lists.tiles_x);
+  for (int y = 0; y < lists.tiles_y; ++y) {
+    std::uint32_t row = 0;
+    for (int x = 0; x < lists.tiles_x; ++x) {
+      row += corners[y * stride + x];
+      column[x] += row;
+      counts[y * lists.tiles_x + x] = column[x];
+    }
+  }
+  return counts;
+}
+
+// Lists the surfels of the tile rows [row_begin, row_end), front to back. next: where each tile's
+// next entry goes.
+void list_rows(TileLists& lists, int row_begin, int row_end, std::vector<std::uint32_t>& next) {
   for (const KeyedIndex& item : lists.order) {
     const PixelBox& box = lists.boxes[item.index];
-    const int y1 = std::min(row_end, box.tile_y_max()), x1 = box.tile_x_max();
-    for (int y = std::max(row_begin, box.tile_y_min()); y < y1; ++y)
-      for (int x = box.tile_x_min(); x < x1; ++x) f(y * lists.tiles_x + x, item.index);
+    const int x0 = box.tile_x_min(), x1 = box.tile_x_max();
+    const int y0 = std::max(row_begin, box.tile_y_min()), y1 = std::min(row_end, box.tile_y_max());
+    std::uint32_t pair = lists.pair_begin[item.index] + (y0 - box.tile_y_min()) * (x1 - x0);
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x)
+        lists.entries[next[y * lists.tiles_x + x]++] = {item.index, pair++};
   }
 }
 
+// Every band of tile rows walks all surfels: one band a thread. The lists do not depend on bands.
 void list_tiles(TileLists& lists) {
-  const auto for_bands = [&](auto&& body) {
-    parallel_for(kBands, 1, [&](std::size_t band) {
-      const int b = static_cast<int>(band);
-      body(b * lists.tiles_y / kBands, (b + 1) * lists.tiles_y / kBands);
-    });
-  };
-  lists.tile_begin.assign(lists.num_tiles() + 1, 0);
-  for_bands([&](int begin, int end) {
-    for_each_pair(lists, begin, end, [&](int tile, std::uint32_t) {
-      ++lists.tile_begin[tile + 1];
-    });
-  });
-  for (std::size_t i = 0; i < lists.num_tiles(); ++i)
-    lists.tile_begin[i + 1] += lists.tile_begin[i];
-  lists.surfel_ids.resize(lists.tile_begin.back());
-  std::vector<std::uint32_t> next(lists.tile_begin.begin(), lists.tile_begin.end() - 1);
-  for_bands([&](int begin, int end) {
-    for_each_pair(lists, begin, end, [&](int tile, std::uint32_t surfel) {
-      lists.surfel_ids[next[tile]++] = surfel;
-    });
+  std::vector<std::uint32_t> next = count_tiles(lists);
+  lists.tile_begin.assign(1, 0);
+  for (std::uint32_t& n : next) {
+    lists.tile_begin.push_back(lists.tile_begin.back() + n);
+    n = lists.tile_begin.end()[-2];
+  }
+  lists.entries.resize(lists.tile_begin.back());
+  const int bands = num_threads();
+  parallel_for(static_cast<std::size_t>(bands), 1, [&](std::size_t band) {
+    const int b = static_cast<int>(band);
+    list_rows(lists, b * lists.tiles_y / bands, (b + 1) * lists.tiles_y / bands, next);
   });
 }
 

@@ -11,7 +11,7 @@
 
 namespace glint {
 
-inline constexpr int kTileSize = 8;  // pixels; one Float8 is one row of a tile
+inline constexpr int kTileSize = 8;  // pixels
 
 // One projected surfel as the tile loops read it.
 struct Splat {
@@ -33,23 +33,22 @@ struct PixelBox {
   int num_tiles() const { return empty() ? 0 : tiles_across() * (tile_y_max() - tile_y_min()); }
 };
 
+// A surfel in a tile's list. Pairs are numbered surfel by surfel, so that a surfel's sums run over
+// neighbours in memory.
+struct TileEntry {
+  std::uint32_t surfel, pair;
+};
+
 struct TileLists {
   int tiles_x = 0, tiles_y = 0;
   std::vector<Splat> splats;              // [N]
   std::vector<PixelBox> boxes;            // [N]
   std::vector<std::uint32_t> pair_begin;  // [N + 1] first pair of each surfel
-  std::vector<std::uint32_t> tile_begin;  // [tiles + 1] into `surfel_ids`
-  std::vector<std::uint32_t> surfel_ids;  // surfels of each tile, front to back
+  std::vector<std::uint32_t> tile_begin;  // [tiles + 1] into `entries`
+  std::vector<TileEntry> entries;         // surfels of each tile, front to back
 
   std::size_t num_tiles() const { return static_cast<std::size_t>(tiles_x) * tiles_y; }
-  std::size_t num_pairs() const { return surfel_ids.size(); }
-  // Pairs are numbered surfel by surfel, so that a surfel's sums run over neighbours in memory.
-  std::size_t pair_of(std::uint32_t surfel, int tile_x, int tile_y) const {
-    const PixelBox& box = boxes[surfel];
-    return pair_begin[surfel] +
-           static_cast<std::size_t>(tile_y - box.tile_y_min()) * box.tiles_across() +
-           (tile_x - box.tile_x_min());
-  }
+  std::size_t num_pairs() const { return entries.size(); }
 
   std::vector<KeyedIndex> order, scratch;  // reused between calls
 };

@@ -47,11 +47,11 @@ struct ForwardVisitor {
   }
   int num_channels() const { return kChannels > 0 ? kChannels : channels; }
 
-  void begin(std::uint32_t list_position, std::uint32_t surfel) {
+  void begin(std::uint32_t list_position, TileEntry entry) {
     visibility = T(0);
     position = T(static_cast<float>(list_position));
-    feature = &tile.input.features[static_cast<std::size_t>(surfel) * channels];
-    splat = &tile.lists.splats[surfel];
+    feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
+    splat = &tile.lists.splats[entry.surfel];
   }
   void hit(int g, const TileHit<T>& hit) {
     const T w = hit.weight;
@@ -73,13 +73,11 @@ struct ForwardVisitor {
     moment1[g] = fma_of(hit.weight, m, moment1[g]);
     moment2[g] = fma_of(hit.weight, m * m, moment2[g]);
   }
-  void end(std::uint32_t surfel) {
-    pair_visibility[tile.lists.pair_of(surfel, tile.tile_x, tile.tile_y)] = lane_sum(visibility);
-  }
+  void end(TileEntry entry) { pair_visibility[entry.pair] = lane_sum(visibility); }
 
-  void store(const TileTransmittance<T>& t, RasterOutput& out, RasterSaved& saved) const {
+  void store(const TilePixels<T>& pixels, RasterOutput& out, RasterSaved& saved) const {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) {
-      const T alpha = T(1) - t.final_value(g);
+      const T alpha = T(1) - pixels.final_value(g);
       for (int c = 0; c < num_channels(); ++c)
         store_pixels(tile, out.features, g, c, features[c][g]);
       for (int c = 0; c < 3; ++c) store_pixels(tile, out.normal, g, c, normal[c][g]);
@@ -100,10 +98,10 @@ template <class T, int kChannels>
 void forward_tile(
     const TileContext& tile, const RasterSettings& settings, RasterSaved& saved, RasterOutput& out
 ) {
-  TileTransmittance<T> transmittance(tile);
+  TilePixels<T> pixels(tile);
   ForwardVisitor<T, kChannels> visitor(tile, settings, saved.pair_visibility.data());
-  for_each_hit(tile, transmittance, visitor);
-  visitor.store(transmittance, out, saved);
+  for_each_hit(tile, pixels, visitor);
+  visitor.store(pixels, out, saved);
 }
 
 // ---- backward ----------------------------------------------------------------------------------
@@ -145,7 +143,6 @@ struct BackwardVisitor {
   T position;
   const float* feature;
   const Splat* splat;
-  bool touched;
 
   BackwardVisitor(
       const TileContext& tile,
@@ -187,15 +184,13 @@ struct BackwardVisitor {
     remaining[i] += T(2) * g_distortion[i] * (alpha[i] * moment2[i] - moment1[i] * moment1[i]);
   }
 
-  void begin(std::uint32_t list_position, std::uint32_t surfel) {
-    touched = false;
+  void begin(std::uint32_t list_position, TileEntry entry) {
+    std::fill_n(sums, slot_width(channels), T(0));
     position = T(static_cast<float>(list_position));
-    feature = &tile.input.features[static_cast<std::size_t>(surfel) * channels];
-    splat = &tile.lists.splats[surfel];
+    feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
+    splat = &tile.lists.splats[entry.surfel];
   }
   void hit(int g, const TileHit<T>& hit) {
-    if (!touched) std::fill_n(sums, kSums, T(0));
-    touched = true;
     T value = fma_of(g_depth[g], hit.depth, g_alpha[g]);
     for (int c = 0; c < num_channels(); ++c) {
       value = fma_of(g_features[c][g], T(feature[c]), value);
@@ -257,18 +252,13 @@ struct BackwardVisitor {
     sums[kSumCenterX] += -dL_ddx;
     sums[kSumCenterY] += -dL_ddy;
   }
-  void end(std::uint32_t surfel) {
+  void end(TileEntry entry) {
     const int width = slot_width(channels);
-    float* slot = &saved.pair_gradients
-                       [tile.lists.pair_of(surfel, tile.tile_x, tile.tile_y) *
-                        static_cast<std::size_t>(width)];
-    if (!touched) {
-      std::fill_n(slot, width, 0.0f);
-    } else if constexpr (kLanesOf<T> == 8) {
+    float* slot = &saved.pair_gradients[entry.pair * static_cast<std::size_t>(width)];
+    if constexpr (kLanesOf<T> == 8)
       for (int i = 0; i < width; i += 8) lane_sums(&sums[i]).store(slot + i);
-    } else {
+    else
       for (int i = 0; i < width; ++i) slot[i] = sums[i];
-    }
   }
 };
 
@@ -280,9 +270,9 @@ void backward_tile(
     const RasterOutput& out,
     const RasterOutputGradient& g
 ) {
-  TileTransmittance<T> transmittance(tile);
+  TilePixels<T> pixels(tile);
   BackwardVisitor<T, kChannels> visitor(tile, settings, saved, out, g);
-  for_each_hit(tile, transmittance, visitor);
+  for_each_hit(tile, pixels, visitor);
 }
 
 // Calls body<T, kChannels> for the lane type and channel count of this call.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // CPU rasterisation, second half: the loop over one tile's hits. Forward and backward run the same
-// traversal with different visitors, so they cannot drift. T: Float8 (a row of a tile) or float.
+// traversal with different visitors, so they cannot drift. T: Float8 (a block of a tile) or float.
 #pragma once
+
+#include <bit>
 
 #include "glint/core/simd.h"
 #include "glint/render/raster_tiles.h"
@@ -10,11 +12,35 @@ namespace glint {
 
 inline constexpr int kMaxChannels = 16;
 
-// A tile's pixels as kTileSize rows of kGroups vectors.
+// A tile's pixels in blocks of 4x2 that are culled together: squarer than a row of eight, so small
+// splats fill more lanes. A group is what one T holds: a block's eight lanes, or one pixel of it.
+inline constexpr int kBlockWidth = 4, kBlockHeight = 2;
+inline constexpr int kBlocksAcross = kTileSize / kBlockWidth;
 template <class T>
-inline constexpr int kGroups = kTileSize / kLanesOf<T>;
+inline constexpr int kGroupsPerBlock = kBlockWidth* kBlockHeight / kLanesOf<T>;
 template <class T>
-inline constexpr int kGroupsPerTile = kTileSize* kGroups<T>;
+inline constexpr int kGroupsPerTile = kTileSize* kTileSize / kLanesOf<T>;
+
+struct PixelOffset {
+  int x, y;
+};
+// Place of a lane of a group within its tile.
+template <class T>
+constexpr PixelOffset pixel_of(int group, int lane) {
+  const int block = group / kGroupsPerBlock<T>;
+  const int pixel = group % kGroupsPerBlock<T> * kLanesOf<T> + lane;
+  return {
+      block % kBlocksAcross * kBlockWidth + pixel % kBlockWidth,
+      block / kBlocksAcross * kBlockHeight + pixel / kBlockWidth};
+}
+// Offsets of a group's lanes from its first.
+template <class T>
+Vec2<T> lane_offsets() {
+  if constexpr (kLanesOf<T> == 1)
+    return {T(0), T(0)};
+  else
+    return {Float8::Lanes{0, 1, 2, 3, 0, 1, 2, 3}, Float8::Lanes{0, 0, 0, 0, 1, 1, 1, 1}};
+}
 
 struct TileContext {
   const RasterInput& input;
@@ -29,57 +55,60 @@ struct TileContext {
   std::uint32_t list_end() const { return lists.tile_begin[tile_y * lists.tiles_x + tile_x + 1]; }
 };
 
-// Pixels of one tile, gathered from and scattered to image rows; lanes outside the image get
+// Pixels of one group, gathered from and scattered to image rows; lanes outside the image get
 // `fill`.
 template <class T>
 T load_pixels(const TileContext& tile, const ImageView& image, int group, int channel, float fill) {
   alignas(32) float lanes[kLanesOf<T>];
-  const int y = tile.y0() + group / kGroups<T>, x = tile.x0() + group % kGroups<T> * kLanesOf<T>;
-  for (int i = 0; i < kLanesOf<T>; ++i)
-    lanes[i] = x + i < image.width && y < image.height ? image.at(x + i, y, channel) : fill;
+  for (int i = 0; i < kLanesOf<T>; ++i) {
+    const PixelOffset p = pixel_of<T>(group, i);
+    const int x = tile.x0() + p.x, y = tile.y0() + p.y;
+    lanes[i] = x < image.width && y < image.height ? image.at(x, y, channel) : fill;
+  }
   return load_lanes<T>(lanes);
 }
 template <class T>
 void store_pixels(const TileContext& tile, Image& image, int group, int channel, T value) {
   alignas(32) float lanes[kLanesOf<T>];
   store_lanes(lanes, value);
-  const int y = tile.y0() + group / kGroups<T>, x = tile.x0() + group % kGroups<T> * kLanesOf<T>;
-  for (int i = 0; i < kLanesOf<T> && x + i < image.width() && y < image.height(); ++i)
-    image.at(x + i, y, channel) = lanes[i];
+  for (int i = 0; i < kLanesOf<T>; ++i) {
+    const PixelOffset p = pixel_of<T>(group, i);
+    const int x = tile.x0() + p.x, y = tile.y0() + p.y;
+    if (x < image.width() && y < image.height()) image.at(x, y, channel) = lanes[i];
+  }
 }
 
-// Transmittance of the pixels while the tile is traversed. A pixel that stops gets working
-// transmittance 0, which makes every later weight 0, and keeps its last value aside.
+// State of a tile's pixels while it is traversed. A pixel that stops gets working transmittance 0,
+// which makes every later weight 0, and keeps its last value aside.
 template <class T>
-struct TileTransmittance {
+struct TilePixels {
+  T x[kGroupsPerTile<T>], y[kGroupsPerTile<T>];  // pixel centres
   T working[kGroupsPerTile<T>];
   T stopped[kGroupsPerTile<T>];
   T nearest[kGroupsPerTile<T>];  // only hits behind this depth count
-  bool live[kGroupsPerTile<T>];
-  int num_live = 0;
+  std::uint64_t live = 0;        // bit g: some pixel of group g is inside the image and not stopped
 
-  explicit TileTransmittance(const TileContext& tile) {
+  explicit TilePixels(const TileContext& tile) {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) {
-      const int y = tile.y0() + g / kGroups<T>, x = tile.x0() + g % kGroups<T> * kLanesOf<T>;
-      const T column = T(static_cast<float>(x)) + lane_indices<T>();
-      const auto inside = (column < T(static_cast<float>(tile.size.width))) &
-                          (T(static_cast<float>(y)) < T(static_cast<float>(tile.size.height)));
+      const PixelOffset first = pixel_of<T>(g, 0);
+      const Vec2<T> lane = lane_offsets<T>();
+      x[g] = T(static_cast<float>(tile.x0() + first.x) + 0.5f) + lane.x;
+      y[g] = T(static_cast<float>(tile.y0() + first.y) + 0.5f) + lane.y;
+      const auto inside = (x[g] < T(static_cast<float>(tile.size.width))) &
+                          (y[g] < T(static_cast<float>(tile.size.height)));
       working[g] = select(inside, T(1), T(0));
       stopped[g] = T(1);
       nearest[g] = T(tile.near_plane);
       if (!tile.input.near_limit.empty())
         nearest[g] = max_of(nearest[g], load_pixels<T>(tile, tile.input.near_limit, g, 0, 0.0f));
-      live[g] = any(inside);
-      num_live += live[g];
+      live |= static_cast<std::uint64_t>(any(inside)) << g;
     }
   }
   T final_value(int g) const { return select(working[g] > T(0), working[g], stopped[g]); }
   void stop(int g, Mask<T> stopping) {
     stopped[g] = select(stopping, working[g], stopped[g]);
     working[g] = select(stopping, T(0), working[g]);
-    if (any(working[g] > T(0))) return;
-    live[g] = false;
-    --num_live;
+    if (!any(working[g] > T(0))) live &= ~(std::uint64_t{1} << g);
   }
 };
 
@@ -116,59 +145,68 @@ PixelPlaneMap<T> broadcast_map(const PixelPlaneMap<float>& m) {
   return {lift(m.gx), lift(m.gy), lift(m.g0), T(m.det)};
 }
 
-// The hit of one splat at one group, composited; calls visitor.hit() when any lane counts.
+// Scalars leave at the first test that fails. Lanes do not: most groups have a lane that counts,
+// and a mispredicted branch costs more than computing one that has none.
+template <class T>
+constexpr bool kLeavesEarly = kLanesOf<T> == 1;
+
+// The hit of one splat at one group, composited. Visitors see lanes that do not count with weight,
+// depth and transmittance change 0.
 template <class T, class Visitor>
 void visit_group(
-    const Splat& splat,
-    const PixelPlaneMap<T>& map,
-    int g,
-    TileTransmittance<T>& t,
-    TileHit<T>& hit,
-    Visitor& visitor
+    const Splat& splat, const PixelPlaneMap<T>& map, int g, TilePixels<T>& pixels, Visitor& visitor
 ) {
+  TileHit<T> hit;
+  hit.x = pixels.x[g] - T(splat.x_ref);
+  hit.y = pixels.y[g] - T(splat.y_ref);
   geometry_of_hit(splat, map, hit);
-  hit.valid = (hit.rho <= T(kMaxRho)) & (hit.depth > t.nearest[g]);
-  if (!any(hit.valid)) return;
+  hit.valid = (hit.rho <= T(kMaxRho)) & (hit.depth > pixels.nearest[g]);
+  if (kLeavesEarly<T> && !any(hit.valid)) return;
   hit.alpha = splat_alpha(T(splat.opacity), hit.rho);
-  hit.transmittance = t.working[g];
+  hit.transmittance = pixels.working[g];
   const BlendStep<T> step = blend_step(hit.transmittance, hit.alpha.alpha);
   hit.valid = hit.valid & (hit.alpha.alpha >= T(kMinAlpha)) & (hit.transmittance > T(0));
   const auto enough = step.transmittance >= T(kMinTransmittance);
   const auto stopping = hit.valid & !enough;
-  if (any(stopping)) t.stop(g, stopping);
+  if (any(stopping)) pixels.stop(g, stopping);
   hit.valid = hit.valid & enough;
-  if (!any(hit.valid)) return;
+  if (kLeavesEarly<T> && !any(hit.valid)) return;
   hit.weight = select(hit.valid, step.weight, T(0));
   hit.depth = select(hit.valid, hit.depth, T(0));
   visitor.hit(g, hit);
-  t.working[g] = select(hit.valid, step.transmittance, t.working[g]);
+  pixels.working[g] = select(hit.valid, step.transmittance, pixels.working[g]);
 }
 
-// All hits of a tile, front to back. Visitor: begin(position, surfel), hit(group, hit),
-// end(surfel).
+// Groups of a tile whose blocks a splat's box overlaps, one bit each.
+template <class T>
+std::uint64_t groups_of(const TileContext& tile, const PixelBox& box) {
+  const int x0 = box.x_min - tile.x0(), x1 = box.x_max - tile.x0();
+  const int y0 = std::max(0, box.y_min - tile.y0()) / kBlockHeight;
+  const int y1 = (std::min(kTileSize, box.y_max - tile.y0()) + kBlockHeight - 1) / kBlockHeight;
+  static_assert(kBlocksAcross == 2);
+  const unsigned columns = (x0 < kBlockWidth ? 0x55u : 0u) | (x1 > kBlockWidth ? 0xaau : 0u);
+  const unsigned rows = (1u << (2 * y1)) - (1u << (2 * y0));
+  const std::uint64_t blocks = columns & rows;
+  if constexpr (kGroupsPerBlock<T> == 1) return blocks;
+  std::uint64_t groups = 0;
+  for (int block = 0; block < kTileSize; ++block)
+    groups |= (blocks >> block & 1) * 0xff << (block * kGroupsPerBlock<T>);
+  return groups;
+}
+
+// All hits of a tile, front to back. Visitor: begin(position, entry), hit(group, hit), end(entry).
 template <class T, class Visitor>
-void for_each_hit(const TileContext& tile, TileTransmittance<T>& t, Visitor& visitor) {
+void for_each_hit(const TileContext& tile, TilePixels<T>& pixels, Visitor& visitor) {
   const std::uint32_t begin = tile.list_begin(), end = tile.list_end();
   for (std::uint32_t k = begin; k < end; ++k) {
-    const std::uint32_t surfel = tile.lists.surfel_ids[k];
-    visitor.begin(k - begin, surfel);
-    if (t.num_live > 0) {
-      const Splat& splat = tile.lists.splats[surfel];
-      const PixelBox& box = tile.lists.boxes[surfel];
-      const PixelPlaneMap<T> map = broadcast_map<T>(splat.map);
-      const int row_end = std::min(kTileSize, box.y_max - tile.y0());
-      for (int row = std::max(0, box.y_min - tile.y0()); row < row_end; ++row)
-        for (int i = 0; i < kGroups<T>; ++i) {
-          const int g = row * kGroups<T> + i;
-          if (!t.live[g]) continue;
-          TileHit<T> hit;
-          hit.x = T(static_cast<float>(tile.x0() + i * kLanesOf<T>) + 0.5f - splat.x_ref) +
-                  lane_indices<T>();
-          hit.y = T(static_cast<float>(tile.y0() + row) + 0.5f - splat.y_ref);
-          visit_group(splat, map, g, t, hit, visitor);
-        }
-    }
-    visitor.end(surfel);
+    const TileEntry entry = tile.lists.entries[k];
+    visitor.begin(k - begin, entry);
+    const Splat& splat = tile.lists.splats[entry.surfel];
+    const PixelPlaneMap<T> map = broadcast_map<T>(splat.map);
+    std::uint64_t groups = groups_of<T>(tile, tile.lists.boxes[entry.surfel]) & pixels.live;
+    for (; groups != 0; groups &= groups - 1)
+      visit_group(splat, map, std::countr_zero(groups), pixels, visitor);
+    visitor.end(entry);
   }
 }
 
