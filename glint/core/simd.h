@@ -64,7 +64,10 @@ GLINT_SIMD_INLINE Mask8 operator|(Mask8 a, Mask8 b) { return {a.lanes | b.lanes}
 GLINT_SIMD_INLINE Mask8 operator!(Mask8 a) { return {~a.lanes}; }
 
 GLINT_SIMD_INLINE Float8 select(Mask8 mask, Float8 a, Float8 b) {
-  return mask.lanes ? a.lanes : b.lanes;
+  return __builtin_ia32_blendvps256(b.lanes, a.lanes, reinterpret_cast<Float8::Lanes>(mask.lanes));
+}
+GLINT_SIMD_INLINE Float8 keep(Mask8 mask, Float8 a) {
+  return reinterpret_cast<Float8::Lanes>(reinterpret_cast<Mask8::Lanes>(a.lanes) & mask.lanes);
 }
 GLINT_SIMD_INLINE bool any(Mask8 mask) {
   return __builtin_ia32_movmskps256(reinterpret_cast<Float8::Lanes>(mask.lanes)) != 0;
@@ -79,15 +82,18 @@ GLINT_SIMD_INLINE Float8 min_of(Float8 a, Float8 b) {
 GLINT_SIMD_INLINE Float8 max_of(Float8 a, Float8 b) {
   return __builtin_ia32_maxps256(a.lanes, b.lanes);
 }
-GLINT_SIMD_INLINE Float8 abs_of(Float8 a) { return max_of(a, -a); }
+GLINT_SIMD_INLINE Float8 abs_of(Float8 a) {
+  return reinterpret_cast<Float8::Lanes>(reinterpret_cast<Mask8::Lanes>(a.lanes) & 0x7fffffff);
+}
 GLINT_SIMD_INLINE Float8 sqrt_of(Float8 a) { return __builtin_ia32_sqrtps256(a.lanes); }
 GLINT_SIMD_INLINE Float8 fma_of(Float8 a, Float8 b, Float8 c) {
   return __builtin_ia32_vfmaddps256(a.lanes, b.lanes, c.lanes);
 }
-GLINT_SIMD_INLINE Float8 round_of(Float8 a) { return __builtin_ia32_roundps256(a.lanes, 0); }
-GLINT_SIMD_INLINE Float8 exp2_integer(Float8 k) {
-  const Mask8::Lanes bits = (__builtin_convertvector(k.lanes, Mask8::Lanes) + 127) << 23;
-  return reinterpret_cast<Float8::Lanes>(bits);
+GLINT_SIMD_INLINE Float8 times_exp2(Float8 p, Float8 shifted) {
+  return reinterpret_cast<Float8::Lanes>(
+      reinterpret_cast<Mask8::Lanes>(p.lanes) +
+      (reinterpret_cast<Mask8::Lanes>(shifted.lanes) << 23)
+  );
 }
 
 // Lane sums of eight vectors as one vector: sums[i] = sum of v[i]'s lanes. Seven adds a halving

@@ -12,7 +12,7 @@ inline constexpr float kMinAlpha = 1.0f / 255.0f;  // fainter hits are skipped
 inline constexpr float kMaxAlpha = 0.99f;
 inline constexpr float kMinTransmittance = 1e-4f;  // compositing stops before falling below
 
-// Gaussian falloff at squared radius rho (units of sigma) and the clamped alpha.
+// Gaussian falloff at squared radius rho (units of sigma), 0 to 174, and the clamped alpha.
 template <class T>
 struct SplatAlpha {
   T gaussian;  // exp(-rho / 2)
@@ -20,7 +20,7 @@ struct SplatAlpha {
 };
 template <class T>
 GLINT_HD SplatAlpha<T> splat_alpha(T opacity, T rho) {
-  const T gaussian = exp_fast(T(-0.5f) * rho);
+  const T gaussian = exp_bounded(T(-0.5f) * rho);
   return {gaussian, min_of(opacity * gaussian, T(kMaxAlpha))};
 }
 // Deviation from the official 2DGS kernels, which let gradients through: a clamped alpha is
@@ -34,15 +34,20 @@ GLINT_HD void splat_alpha_vjp(
   dL_drho += T(-0.5f) * value.alpha * free;
 }
 
-// One step of compositing: the hit's weight and the transmittance behind it.
+// One step of compositing. A ray that has stopped keeps its transmittance with a minus sign, so
+// that the two states need one number; its later weights are 0.
 template <class T>
 struct BlendStep {
-  T weight;         // w = alpha T
-  T transmittance;  // T (1 - alpha)
+  T weight;         // w = alpha T; 0 where the hit does not count
+  T transmittance;  // T (1 - alpha) behind the hit
 };
+// alpha: 0 where the hit does not count. Hits that would take T below kMinTransmittance stop the
+// ray and do not count.
 template <class T>
 GLINT_HD BlendStep<T> blend_step(T transmittance, T alpha) {
-  return {alpha * transmittance, transmittance * (T(1) - alpha)};
+  const T next = transmittance * (T(1) - alpha);
+  const auto enough = next >= T(kMinTransmittance);
+  return {keep(enough, alpha * transmittance), select(enough, next, -abs_of(transmittance))};
 }
 
 // dL/dalpha of one hit, all channels at once. With s_k = sum over channels of dL/dF f_k (the hit's

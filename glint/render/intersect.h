@@ -46,25 +46,25 @@ GLINT_HD void plane_map_vjp(
 
 template <class T>
 struct PlaneHit {
-  T u, v;  // in units of sigma
-  T t;     // ray parameter; infinite or NaN for rays in the plane
+  T u, v;     // in units of sigma
+  T t;        // ray parameter; infinite or NaN for rays in the plane
+  T inverse;  // 1 / zeta3
 };
 
 template <class T>
 GLINT_HD PlaneHit<T> intersect(Vec3<T> zeta, T det) {
   const T inverse = T(1) / zeta.z;
-  return {zeta.x * inverse, zeta.y * inverse, det * inverse};
+  return {zeta.x * inverse, zeta.y * inverse, det * inverse, inverse};
 }
+// Adds to the gradients of zeta and det. `hit`: what intersect() returned.
 template <class T>
 GLINT_HD void intersect_vjp(
-    Vec3<T> zeta, T det, T dL_du, T dL_dv, T dL_dt, Vec3<T>& dL_dzeta, T& dL_ddet
+    const PlaneHit<T>& hit, T dL_du, T dL_dv, T dL_dt, Vec3<T>& dL_dzeta, T& dL_ddet
 ) {
-  const T inverse = T(1) / zeta.z;
-  const T u = zeta.x * inverse, v = zeta.y * inverse, t = det * inverse;
-  dL_dzeta.x += dL_du * inverse;
-  dL_dzeta.y += dL_dv * inverse;
-  dL_dzeta.z += -(fma_of(dL_du, u, fma_of(dL_dv, v, dL_dt * t)) * inverse);
-  dL_ddet += dL_dt * inverse;
+  dL_dzeta.x += dL_du * hit.inverse;
+  dL_dzeta.y += dL_dv * hit.inverse;
+  dL_dzeta.z += -(fma_of(dL_du, hit.u, fma_of(dL_dv, hit.v, dL_dt * hit.t)) * hit.inverse);
+  dL_ddet += dL_dt * hit.inverse;
 }
 
 // Screen-space low-pass [Huang24 Eq. 11]: squared distance in units of sigma = sqrt(2)/2 pixel from

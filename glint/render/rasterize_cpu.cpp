@@ -10,7 +10,7 @@ namespace glint {
 
 struct RasterSaved {
   TileLists lists;
-  Image median_position;  // [H][W][1] place in the tile's list of the median hit, -1: none
+  Image final_transmittance;  // [H][W][1]
   // Of the distortion loss, [H][W][1]: depth of the first hit; sum w m, sum w m^2 relative to it.
   Image first_depth, moment1, moment2;
   std::vector<float> pair_visibility;  // [pairs]
@@ -30,10 +30,10 @@ struct ForwardVisitor {
   int channels;
   T features[kChannels > 0 ? kChannels : kMaxChannels][kGroupsPerTile<T>] = {};
   T depth[kGroupsPerTile<T>] = {}, normal[3][kGroupsPerTile<T>] = {};
-  T median[kGroupsPerTile<T>] = {}, median_position[kGroupsPerTile<T>];
+  T median[kGroupsPerTile<T>] = {};
   T first_depth[kGroupsPerTile<T>];
   T moment1[kGroupsPerTile<T>] = {}, moment2[kGroupsPerTile<T>] = {};
-  T visibility, position;
+  T visibility;
   const float* feature;
   const Splat* splat;
 
@@ -42,14 +42,12 @@ struct ForwardVisitor {
         settings(settings),
         pair_visibility(pair_visibility),
         channels(tile.input.channels) {
-    std::fill_n(median_position, kGroupsPerTile<T>, T(-1));
     std::fill_n(first_depth, kGroupsPerTile<T>, T(1));
   }
   int num_channels() const { return kChannels > 0 ? kChannels : channels; }
 
-  void begin(std::uint32_t list_position, TileEntry entry) {
+  void begin(TileEntry entry) {
     visibility = T(0);
-    position = T(static_cast<float>(list_position));
     feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
     splat = &tile.lists.splats[entry.surfel];
   }
@@ -62,7 +60,6 @@ struct ForwardVisitor {
     for (int c = 0; c < 3; ++c) normal[c][g] = fma_of(w, T(splat->normal[c]), normal[c][g]);
     const auto is_median = hit.valid & (hit.transmittance > T(0.5f));
     median[g] = select(is_median, hit.depth, median[g]);
-    median_position[g] = select(is_median, position, median_position[g]);
     if (settings.with_distortion) add_moments(g, hit);
   }
   void add_moments(int g, const TileHit<T>& hit) {
@@ -74,17 +71,18 @@ struct ForwardVisitor {
     moment2[g] = fma_of(hit.weight, m * m, moment2[g]);
   }
   void end(TileEntry entry) { pair_visibility[entry.pair] = lane_sum(visibility); }
+  void skip(TileEntry entry) { pair_visibility[entry.pair] = 0; }
 
   void store(const TilePixels<T>& pixels, RasterOutput& out, RasterSaved& saved) const {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) {
-      const T alpha = T(1) - pixels.final_value(g);
+      const T alpha = T(1) - pixels.final_transmittance(g);
       for (int c = 0; c < num_channels(); ++c)
         store_pixels(tile, out.features, g, c, features[c][g]);
       for (int c = 0; c < 3; ++c) store_pixels(tile, out.normal, g, c, normal[c][g]);
       store_pixels(tile, out.alpha, g, 0, alpha);
       store_pixels(tile, out.depth_sum, g, 0, depth[g]);
       store_pixels(tile, out.depth_median, g, 0, median[g]);
-      store_pixels(tile, saved.median_position, g, 0, median_position[g]);
+      store_pixels(tile, saved.final_transmittance, g, 0, pixels.final_transmittance(g));
       if (!settings.with_distortion) continue;
       store_pixels(tile, saved.first_depth, g, 0, first_depth[g]);
       store_pixels(tile, saved.moment1, g, 0, moment1[g]);
@@ -136,11 +134,10 @@ struct BackwardVisitor {
   T g_normal[3][kGroupsPerTile<T>], g_distortion[kGroupsPerTile<T>];
   T alpha[kGroupsPerTile<T>];
   T first_depth[kGroupsPerTile<T>], moment1[kGroupsPerTile<T>], moment2[kGroupsPerTile<T>];
-  T median_position[kGroupsPerTile<T>];
-  T remaining[kGroupsPerTile<T>];  // S minus the prefix so far, see blend_alpha_vjp
+  T median_behind[kGroupsPerTile<T>];  // the median hit is the first to leave this or less
+  T remaining[kGroupsPerTile<T>];      // S minus the prefix so far, see blend_alpha_vjp
   // Of the current surfel.
   T sums[kSums];
-  T position;
   const float* feature;
   const Splat* splat;
 
@@ -165,7 +162,7 @@ struct BackwardVisitor {
     g_alpha[i] = load(g.alpha, i, 0);
     g_depth[i] = load(g.depth_sum, i, 0);
     g_median[i] = load(g.depth_median, i, 0);
-    median_position[i] = load_pixels<T>(tile, saved.median_position, i, 0, -1.0f);
+    median_behind[i] = max_of(T(0.5f), load(saved.final_transmittance, i, 0));
     remaining[i] = g_alpha[i] * alpha[i] + g_depth[i] * load(out.depth_sum, i, 0);
     for (int c = 0; c < num_channels(); ++c) {
       g_features[c][i] = load(g.features, i, c);
@@ -184,9 +181,8 @@ struct BackwardVisitor {
     remaining[i] += T(2) * g_distortion[i] * (alpha[i] * moment2[i] - moment1[i] * moment1[i]);
   }
 
-  void begin(std::uint32_t list_position, TileEntry entry) {
+  void begin(TileEntry entry) {
     std::fill_n(sums, slot_width(channels), T(0));
-    position = T(static_cast<float>(list_position));
     feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
     splat = &tile.lists.splats[entry.surfel];
   }
@@ -200,12 +196,14 @@ struct BackwardVisitor {
       value = fma_of(g_normal[c][g], T(splat->normal[c]), value);
       sums[kSumNormal + c] = fma_of(hit.weight, g_normal[c][g], sums[kSumNormal + c]);
     }
-    T dL_dz =
-        fma_of(hit.weight, g_depth[g], select(median_position[g] == position, g_median[g], T(0)));
+    // The last hit in front of which more than half of the light is left.
+    const auto is_median =
+        (hit.transmittance > T(0.5f)) & (hit.transmittance_behind <= median_behind[g]);
+    T dL_dz = fma_of(hit.weight, g_depth[g], keep(is_median, g_median[g]));
     if (with_distortion()) add_distortion(g, hit, value, dL_dz);
     remaining[g] = remaining[g] - hit.weight * value;
     const T dL_dalpha = blend_alpha_vjp(hit.transmittance, hit.alpha.alpha, value, remaining[g]);
-    add_geometry(hit, select(hit.valid, dL_dalpha, T(0)), select(hit.valid, dL_dz, T(0)));
+    add_geometry(hit, keep(hit.valid, dL_dalpha), keep(hit.valid, dL_dz));
   }
   void add_distortion(int g, const TileHit<T>& hit, T& value, T& dL_dz) const {
     const T z = select(hit.valid, hit.depth, T(1));
@@ -219,42 +217,40 @@ struct BackwardVisitor {
   void add_geometry(const TileHit<T>& hit, T dL_dalpha, T dL_dz) {
     T dL_drho(0);
     splat_alpha_vjp(T(splat->opacity), hit.alpha, dL_dalpha, sums[kSumOpacity], dL_drho);
-    const auto plane = hit.valid & hit.in_plane;
-    const T zero(0);
-    // Lanes of the low-pass get an arbitrary finite zeta and no gradient.
-    const Vec3<T> zeta = select<T>(plane, hit.zeta, Vec3<T>{zero, zero, T(1)});
-    const T dL_drho3 = select(plane, dL_drho, zero);
-    const T scale = T(2) * dL_drho3 / zeta.z;  // dL/du = 2 u dL/drho
+    const auto in_plane = hit.valid & hit.in_plane;
+    const PlaneHit<T> plane{
+        keep(in_plane, hit.plane.u),
+        keep(in_plane, hit.plane.v),
+        keep(in_plane, hit.plane.t),
+        keep(in_plane, hit.plane.inverse)};
+    const T scale = dL_drho + dL_drho;  // rho = u^2 + v^2
     Vec3<T> dL_dzeta{};
-    intersect_vjp(
-        zeta,
-        T(splat->map.det),
-        scale * zeta.x,
-        scale * zeta.y,
-        select(plane, dL_dz, zero),
-        dL_dzeta,
-        sums[kSumDet]
-    );
+    intersect_vjp(plane, scale * plane.u, scale * plane.v, dL_dz, dL_dzeta, sums[kSumDet]);
     for (int k = 0; k < 3; ++k) {
       sums[kSumGx + k] = fma_of(dL_dzeta[k], hit.x, sums[kSumGx + k]);
       sums[kSumGy + k] = fma_of(dL_dzeta[k], hit.y, sums[kSumGy + k]);
       sums[kSumG0 + k] += dL_dzeta[k];
     }
-    sums[kSumZCenter] += select(plane, zero, dL_dz);
+    const auto low_pass = hit.valid & !hit.in_plane;
+    if (!kLeavesEarly<T> || any(low_pass))
+      add_low_pass(hit, keep(low_pass, dL_drho), keep(low_pass, dL_dz));
+  }
+  void add_low_pass(const TileHit<T>& hit, T dL_drho, T dL_dz) {
     T dL_ddx(0), dL_ddy(0);
     low_pass_rho2_vjp(
-        hit.x - T(splat->center_x),
-        hit.y - T(splat->center_y),
-        select(plane, zero, dL_drho),
-        dL_ddx,
-        dL_ddy
+        hit.x - T(splat->center_x), hit.y - T(splat->center_y), dL_drho, dL_ddx, dL_ddy
     );
     sums[kSumCenterX] += -dL_ddx;
     sums[kSumCenterY] += -dL_ddy;
+    sums[kSumZCenter] += dL_dz;
   }
+  float* slot_of(TileEntry entry) const {
+    return &saved.pair_gradients[entry.pair * static_cast<std::size_t>(slot_width(channels))];
+  }
+  void skip(TileEntry entry) { std::fill_n(slot_of(entry), slot_width(channels), 0.0f); }
   void end(TileEntry entry) {
     const int width = slot_width(channels);
-    float* slot = &saved.pair_gradients[entry.pair * static_cast<std::size_t>(width)];
+    float* slot = slot_of(entry);
     if constexpr (kLanesOf<T> == 8)
       for (int i = 0; i < width; i += 8) lane_sums(&sums[i]).store(slot + i);
     else
@@ -440,7 +436,7 @@ void fit_outputs(
 ) {
   fit(out.features, size, input.channels);
   fit(out.normal, size, 3);
-  for (Image* image : {&out.alpha, &out.depth_sum, &out.depth_median, &saved.median_position})
+  for (Image* image : {&out.alpha, &out.depth_sum, &out.depth_median, &saved.final_transmittance})
     fit(*image, size, 1);
   out.visibility.resize(input.count);
   out.in_view.resize(input.count);

@@ -55,38 +55,40 @@ struct TileContext {
   std::uint32_t list_end() const { return lists.tile_begin[tile_y * lists.tiles_x + tile_x + 1]; }
 };
 
+// Calls f(lane, x, y) for the lanes of a group that lie inside the image.
+template <class T, class F>
+void for_each_lane(const TileContext& tile, int group, F&& f) {
+  const PixelOffset first = pixel_of<T>(group, 0);
+  const int x = tile.x0() + first.x, y = tile.y0() + first.y;
+  constexpr int kAcross = kLanesOf<T> == 1 ? 1 : kBlockWidth;
+  const int across = std::min(kAcross, tile.size.width - x);
+  const int down = std::min(kLanesOf<T> / kAcross, tile.size.height - y);
+  for (int j = 0; j < down; ++j)
+    for (int i = 0; i < across; ++i) f(j * kAcross + i, x + i, y + j);
+}
+
 // Pixels of one group, gathered from and scattered to image rows; lanes outside the image get
 // `fill`.
 template <class T>
 T load_pixels(const TileContext& tile, const ImageView& image, int group, int channel, float fill) {
   alignas(32) float lanes[kLanesOf<T>];
-  for (int i = 0; i < kLanesOf<T>; ++i) {
-    const PixelOffset p = pixel_of<T>(group, i);
-    const int x = tile.x0() + p.x, y = tile.y0() + p.y;
-    lanes[i] = x < image.width && y < image.height ? image.at(x, y, channel) : fill;
-  }
+  std::fill_n(lanes, kLanesOf<T>, fill);
+  for_each_lane<T>(tile, group, [&](int i, int x, int y) { lanes[i] = image.at(x, y, channel); });
   return load_lanes<T>(lanes);
 }
 template <class T>
 void store_pixels(const TileContext& tile, Image& image, int group, int channel, T value) {
   alignas(32) float lanes[kLanesOf<T>];
   store_lanes(lanes, value);
-  for (int i = 0; i < kLanesOf<T>; ++i) {
-    const PixelOffset p = pixel_of<T>(group, i);
-    const int x = tile.x0() + p.x, y = tile.y0() + p.y;
-    if (x < image.width() && y < image.height()) image.at(x, y, channel) = lanes[i];
-  }
+  for_each_lane<T>(tile, group, [&](int i, int x, int y) { image.at(x, y, channel) = lanes[i]; });
 }
 
-// State of a tile's pixels while it is traversed. A pixel that stops gets working transmittance 0,
-// which makes every later weight 0, and keeps its last value aside.
+// State of a tile's pixels while it is traversed.
 template <class T>
 struct TilePixels {
   T x[kGroupsPerTile<T>], y[kGroupsPerTile<T>];  // pixel centres
-  T working[kGroupsPerTile<T>];
-  T stopped[kGroupsPerTile<T>];
-  T nearest[kGroupsPerTile<T>];  // only hits behind this depth count
-  std::uint64_t live = 0;        // bit g: some pixel of group g is inside the image and not stopped
+  T transmittance[kGroupsPerTile<T>];            // negative once stopped; 0 outside the image
+  T nearest[kGroupsPerTile<T>];                  // only hits behind this depth count
 
   explicit TilePixels(const TileContext& tile) {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) {
@@ -96,19 +98,19 @@ struct TilePixels {
       y[g] = T(static_cast<float>(tile.y0() + first.y) + 0.5f) + lane.y;
       const auto inside = (x[g] < T(static_cast<float>(tile.size.width))) &
                           (y[g] < T(static_cast<float>(tile.size.height)));
-      working[g] = select(inside, T(1), T(0));
-      stopped[g] = T(1);
+      transmittance[g] = select(inside, T(1), T(0));
       nearest[g] = T(tile.near_plane);
       if (!tile.input.near_limit.empty())
         nearest[g] = max_of(nearest[g], load_pixels<T>(tile, tile.input.near_limit, g, 0, 0.0f));
-      live |= static_cast<std::uint64_t>(any(inside)) << g;
     }
   }
-  T final_value(int g) const { return select(working[g] > T(0), working[g], stopped[g]); }
-  void stop(int g, Mask<T> stopping) {
-    stopped[g] = select(stopping, working[g], stopped[g]);
-    working[g] = select(stopping, T(0), working[g]);
-    if (!any(working[g] > T(0))) live &= ~(std::uint64_t{1} << g);
+  T final_transmittance(int g) const { return abs_of(transmittance[g]); }
+  // Bit g: some pixel of group g is inside the image and not stopped.
+  std::uint64_t live_groups() const {
+    std::uint64_t live = 0;
+    for (int g = 0; g < kGroupsPerTile<T>; ++g)
+      live |= static_cast<std::uint64_t>(any(transmittance[g] > T(0))) << g;
+    return live;
   }
 };
 
@@ -116,13 +118,14 @@ struct TilePixels {
 template <class T>
 struct TileHit {
   Mask<T> valid;
-  Mask<T> in_plane;  // rho comes from the surfel's plane; otherwise from the low-pass
-  T x, y;            // offsets from the splat's reference point, pixels
-  Vec3<T> zeta;
+  Mask<T> in_plane;   // rho comes from the surfel's plane; otherwise from the low-pass
+  T x, y;             // offsets from the splat's reference point, pixels
+  PlaneHit<T> plane;  // finite where in_plane
   T rho, depth;
   SplatAlpha<T> alpha;
-  T transmittance;  // before the hit
-  T weight;         // 0 outside `valid`
+  T transmittance;         // before the hit
+  T transmittance_behind;  // after it
+  T weight;                // 0 outside `valid`
 };
 
 // rho and depth of a splat at a pixel. In the low-pass branch the ray misses the surfel by more
@@ -130,13 +133,12 @@ struct TileHit {
 // state, as in EnvGS: the plane's depth there can be arbitrarily far from the surfel).
 template <class T>
 void geometry_of_hit(const Splat& s, const PixelPlaneMap<T>& map, TileHit<T>& hit) {
-  hit.zeta = zeta_at(map, hit.x, hit.y);
-  const PlaneHit<T> plane = intersect(hit.zeta, map.det);
-  const T rho3 = fma_of(plane.u, plane.u, plane.v * plane.v);
+  hit.plane = intersect(zeta_at(map, hit.x, hit.y), map.det);
+  const T rho3 = fma_of(hit.plane.u, hit.plane.u, hit.plane.v * hit.plane.v);
   const T rho2 = low_pass_rho2(hit.x - T(s.center_x), hit.y - T(s.center_y));
   hit.in_plane = rho3 <= rho2;  // false for NaN
   hit.rho = select(hit.in_plane, rho3, rho2);
-  hit.depth = select(hit.in_plane, plane.t, T(s.z_center));
+  hit.depth = select(hit.in_plane, hit.plane.t, T(s.z_center));
 }
 
 template <class T>
@@ -150,31 +152,30 @@ PixelPlaneMap<T> broadcast_map(const PixelPlaneMap<float>& m) {
 template <class T>
 constexpr bool kLeavesEarly = kLanesOf<T> == 1;
 
-// The hit of one splat at one group, composited. Visitors see lanes that do not count with weight,
-// depth and transmittance change 0.
+// The hit of one splat at one group, composited. Lanes that do not count have weight and depth 0.
 template <class T, class Visitor>
 void visit_group(
     const Splat& splat, const PixelPlaneMap<T>& map, int g, TilePixels<T>& pixels, Visitor& visitor
 ) {
   TileHit<T> hit;
+  hit.transmittance = pixels.transmittance[g];
+  if (kLeavesEarly<T> && !any(hit.transmittance > T(0))) return;
   hit.x = pixels.x[g] - T(splat.x_ref);
   hit.y = pixels.y[g] - T(splat.y_ref);
   geometry_of_hit(splat, map, hit);
   hit.valid = (hit.rho <= T(kMaxRho)) & (hit.depth > pixels.nearest[g]);
   if (kLeavesEarly<T> && !any(hit.valid)) return;
-  hit.alpha = splat_alpha(T(splat.opacity), hit.rho);
-  hit.transmittance = pixels.working[g];
-  const BlendStep<T> step = blend_step(hit.transmittance, hit.alpha.alpha);
-  hit.valid = hit.valid & (hit.alpha.alpha >= T(kMinAlpha)) & (hit.transmittance > T(0));
-  const auto enough = step.transmittance >= T(kMinTransmittance);
-  const auto stopping = hit.valid & !enough;
-  if (any(stopping)) pixels.stop(g, stopping);
-  hit.valid = hit.valid & enough;
+  // Lanes beyond 3 sigma get the value there: alpha of a far lane would be denormal, which is slow.
+  hit.alpha = splat_alpha(T(splat.opacity), min_of(hit.rho, T(kMaxRho)));
+  hit.valid = hit.valid & (hit.alpha.alpha >= T(kMinAlpha));
   if (kLeavesEarly<T> && !any(hit.valid)) return;
-  hit.weight = select(hit.valid, step.weight, T(0));
-  hit.depth = select(hit.valid, hit.depth, T(0));
+  const BlendStep<T> step = blend_step(hit.transmittance, keep(hit.valid, hit.alpha.alpha));
+  pixels.transmittance[g] = step.transmittance;
+  hit.transmittance_behind = step.transmittance;
+  hit.weight = step.weight;
+  hit.valid = step.weight > T(0);
+  hit.depth = keep(hit.valid, hit.depth);
   visitor.hit(g, hit);
-  pixels.working[g] = select(hit.valid, step.transmittance, pixels.working[g]);
 }
 
 // Groups of a tile whose blocks a splat's box overlaps, one bit each.
@@ -194,20 +195,29 @@ std::uint64_t groups_of(const TileContext& tile, const PixelBox& box) {
   return groups;
 }
 
-// All hits of a tile, front to back. Visitor: begin(position, entry), hit(group, hit), end(entry).
+// Entries between two looks at which groups are still live: rarely, because the groups of the next
+// splat would otherwise wait for the transmittance behind the last.
+inline constexpr std::uint32_t kEntriesPerLook = 16;
+
+// All hits of a tile, front to back. Visitor: begin(entry), hit(group, hit), end(entry);
+// skip(entry) for those behind everything.
 template <class T, class Visitor>
 void for_each_hit(const TileContext& tile, TilePixels<T>& pixels, Visitor& visitor) {
   const std::uint32_t begin = tile.list_begin(), end = tile.list_end();
-  for (std::uint32_t k = begin; k < end; ++k) {
+  std::uint64_t live = 0;
+  std::uint32_t k = begin;
+  for (; k < end; ++k) {
+    if ((k - begin) % kEntriesPerLook == 0 && (live = pixels.live_groups()) == 0) break;
     const TileEntry entry = tile.lists.entries[k];
-    visitor.begin(k - begin, entry);
+    visitor.begin(entry);
     const Splat& splat = tile.lists.splats[entry.surfel];
     const PixelPlaneMap<T> map = broadcast_map<T>(splat.map);
-    std::uint64_t groups = groups_of<T>(tile, tile.lists.boxes[entry.surfel]) & pixels.live;
+    std::uint64_t groups = groups_of<T>(tile, tile.lists.boxes[entry.surfel]) & live;
     for (; groups != 0; groups &= groups - 1)
       visit_group(splat, map, std::countr_zero(groups), pixels, visitor);
     visitor.end(entry);
   }
+  for (; k < end; ++k) visitor.skip(tile.lists.entries[k]);
 }
 
 }  // namespace glint

@@ -12,7 +12,9 @@ namespace glint {
 namespace {
 
 constexpr Vec3f kHalfRoom{2.5f, 1.5f, 2.5f};  // metres
-constexpr float kOverlap = 1.5f;              // sigma over half the mean distance of neighbours
+// Sigma over half the mean distance of neighbours, set so that a pixel lies in the boxes of about
+// 45 surfels, as in a 2DGS trained on GlassRoom for 1500 steps (45.3).
+constexpr float kOverlap = 2.6f;
 
 struct SurfacePoint {
   Vec3f position;

@@ -22,7 +22,7 @@ __device__ float surfel_formulas(
   splat_alpha_vjp(
       0.5f, alpha, blend_alpha_vjp(1.0f, alpha.alpha, step.weight, 0.1f), dL_dopacity, dL_drho
   );
-  intersect_vjp(zeta, p.map.det, dL_drho, dL_drho, 1.0f, dL_dp.map.g0, dL_dp.map.det);
+  intersect_vjp(hit, dL_drho, dL_drho, 1.0f, dL_dp.map.g0, dL_dp.map.det);
   low_pass_rho2_vjp(p.center_x, p.center_y, dL_drho, dL_dp.center_x, dL_dp.center_y);
   SurfelGeometry<float> dL_dsurfel{};
   Vec3f dL_dm;

@@ -45,6 +45,12 @@ TEST_CASE("In double the exponential is that of the library") {
 }
 
 TEST_CASE("Powers of two have no error") {
-  for (int k = -126; k <= 127; ++k)
-    CHECK(exp2_integer(static_cast<float>(k)) == std::ldexp(1.0f, k));
+  for (int k = -126; k <= 126; ++k)
+    CHECK(times_exp2(1.0f, static_cast<float>(k) + kRoundingShift) == std::ldexp(1.0f, k));
+}
+
+TEST_CASE("keep is the value or zero") {
+  CHECK(keep(true, 2.5f) == 2.5f);
+  CHECK(keep(false, NAN) == 0.0f);
+  CHECK(keep(false, 2.5) == 0.0);
 }

@@ -62,7 +62,7 @@ TEST_CASE("intersect_vjp matches central differences") {
       [](const Vector& x, const Vector& g) {
         Vec3d zeta{};
         double det = 0;
-        intersect_vjp(vec3(x, 0), x[3], g[0], g[1], g[2], zeta, det);
+        intersect_vjp(intersect(vec3(x, 0), x[3]), g[0], g[1], g[2], zeta, det);
         return Vector{zeta.x, zeta.y, zeta.z, det};
       }
   );
