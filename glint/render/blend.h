@@ -41,13 +41,18 @@ struct BlendStep {
   T weight;         // w = alpha T; 0 where the hit does not count
   T transmittance;  // T (1 - alpha) behind the hit
 };
-// alpha: 0 where the hit does not count. Hits that would take T below kMinTransmittance stop the
+// alpha: 0 where the hit does not count. Hits that would take T below min_transmittance stop the
 // ray and do not count.
 template <class T>
-GLINT_HD BlendStep<T> blend_step(T transmittance, T alpha) {
+GLINT_HD BlendStep<T> blend_step(T transmittance, T alpha, T min_transmittance) {
   const T next = transmittance * (T(1) - alpha);
-  const auto enough = next >= T(kMinTransmittance);
+  const auto enough = next >= min_transmittance;
   return {keep(enough, alpha * transmittance), select(enough, next, -abs_of(transmittance))};
+}
+
+template <class T>
+GLINT_HD BlendStep<T> blend_step(T transmittance, T alpha) {
+  return blend_step(transmittance, alpha, T(kMinTransmittance));
 }
 
 // dL/dalpha of one hit, all channels at once. With s_k = sum over channels of dL/dF f_k (the hit's

@@ -44,6 +44,41 @@ GLINT_HD void plane_map_vjp(
   dL_dm += cross(dL_dmap.e1, h1) + cross(h0, dL_dmap.e2) + dL_dmap.det * e3;
 }
 
+// zeta and det of one ray, from h0, h1, e3 = h0 x h1, m and its direction d; e1.d and e2.d written
+// as triple products with m x d, which costs a third of plane_map().
+template <class T>
+struct RayPlane {
+  Vec3<T> zeta;
+  T det;
+};
+template <class T>
+GLINT_HD RayPlane<T> ray_plane(Vec3<T> h0, Vec3<T> h1, Vec3<T> e3, Vec3<T> m, Vec3<T> d) {
+  const Vec3<T> c = cross(m, d);
+  return {{dot(h1, c), -dot(h0, c), dot(e3, d)}, dot(m, e3)};
+}
+// Adds to the gradients of h0, h1 (through e3 too), m and d.
+template <class T>
+GLINT_HD void ray_plane_vjp(
+    Vec3<T> h0,
+    Vec3<T> h1,
+    Vec3<T> e3,
+    Vec3<T> m,
+    Vec3<T> d,
+    const RayPlane<T>& g,
+    Vec3<T>& dL_dh0,
+    Vec3<T>& dL_dh1,
+    Vec3<T>& dL_dm,
+    Vec3<T>& dL_dd
+) {
+  const Vec3<T> c = cross(m, d);
+  const Vec3<T> dL_dc = g.zeta.x * h1 - g.zeta.y * h0;
+  const Vec3<T> dL_de3 = g.zeta.z * d + g.det * m;
+  dL_dh0 += cross(h1, dL_de3) - g.zeta.y * c;
+  dL_dh1 += cross(dL_de3, h0) + g.zeta.x * c;
+  dL_dm += cross(d, dL_dc) + g.det * e3;
+  dL_dd += cross(dL_dc, m) + g.zeta.z * e3;
+}
+
 template <class T>
 struct PlaneHit {
   T u, v;     // in units of sigma

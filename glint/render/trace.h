@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Rays of any origin and direction through surfels, forward and backward: the counterpart of
+// rasterize() for reflections [Na26 Eq. 7]. A hit is where the ray meets a surfel's plane; there is
+// no screen-space low-pass. Same formulas (intersect.h, blend.h), same cut-offs.
+//
+// A surfel contributes to a ray iff t > near, rho = u^2 + v^2 <= max_rho, alpha >= min_alpha, and
+// the ray's transmittance after it stays >= min_transmittance. Order: (t, index), so that
+// coincident surfels (clones) count once each. Colour: spherical harmonics in the direction of the
+// ray.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "glint/core/image.h"
+#include "glint/core/vec.h"
+#include "glint/render/blend.h"
+#include "glint/render/shade.h"
+
+namespace glint {
+
+struct TraceSettings {
+  float near = 0;  // ray parameter
+  float max_rho = kMaxRho;
+  float min_alpha = kMinAlpha;
+  float min_transmittance = kMinTransmittance;
+  int max_hits = 256;  // contributors of a ray
+  bool triangles =
+      false;  // Embree sees two triangles a surfel [Na26] instead of a disc; same picture
+};
+
+// Activated surfels, structure of arrays; borrowed. N surfels.
+struct TraceInput {
+  std::size_t count = 0;
+  int sh_degree = 3;
+  std::span<const float> means;      // [N][3] world, metres
+  std::span<const float> scales;     // [N][2] > 0, metres
+  std::span<const float> rotations;  // [N][4] w x y z, need not be normalised
+  std::span<const float> opacities;  // [N] in [0, 1]
+  std::span<const float> sh_dc;      // [N][3]
+  std::span<const float> sh_rest;    // [N][15][3]
+};
+// scales and opacities of `activated`; its features are not used.
+TraceInput trace_input(const SurfelCloud& cloud, const ActivatedSurfels& activated, int sh_degree);
+
+// One ray a pixel: o + t d. d need not be unit (t and depths are in its units); d = 0: no ray.
+struct Rays {
+  Image origins;     // [H][W][3] world, metres
+  Image directions;  // [H][W][3]
+};
+
+struct TraceOutput {
+  Image color;      // [H][W][3] sum w c; no background is added
+  Image alpha;      // [H][W][1]
+  Image depth_sum;  // [H][W][1] sum w t
+  Image normal;     // [H][W][3] sum w n, world space, each n facing the ray's origin
+};
+
+struct TraceOutputGradient {  // dL/d(output); empty images count as zero
+  Image color, alpha, depth_sum, normal;
+};
+
+struct TraceGradient {
+  std::vector<float> means, scales, rotations, opacities, sh_dc, sh_rest;  // shapes of TraceInput
+  Rays rays;
+  std::vector<float> visibility;  // [N] sum over rays of w
+  std::vector<float>
+      half_depths;  // [N][3] sum over hits of dL/dmean t / 2, for densification [EnvGS]
+};
+
+struct TraceSaved;
+
+class Tracer {
+ public:
+  Tracer();
+  ~Tracer();
+  Tracer(Tracer&&) noexcept;
+  Tracer& operator=(Tracer&&) noexcept;
+
+  // Both are deterministic: the same bytes for any number of threads.
+  void forward(
+      const TraceInput& input, const Rays& rays, const TraceSettings& settings, TraceOutput& output
+  );
+  // Gradients of the last forward call; input, rays and settings must be the same.
+  void backward(
+      const TraceInput& input,
+      const Rays& rays,
+      const TraceSettings& settings,
+      const TraceOutput& output,
+      const TraceOutputGradient& dL_doutput,
+      TraceGradient& gradient
+  );
+  std::size_t num_hits() const;  // contributors of all rays of the last forward call
+
+ private:
+  std::unique_ptr<TraceSaved> saved_;
+};
+
+// Adds dL/d(raw parameters) to `dL_dcloud`.
+void trace_activate_vjp(
+    const ActivatedSurfels& activated, const TraceGradient& gradient, SurfelCloud& dL_dcloud
+);
+
+}  // namespace glint
