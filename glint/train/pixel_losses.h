@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// What the losses with priors say about one pixel, each formula with its vjp below it. Sums over
+// an image: pixel_sums.h and the losses' own files.
+#pragma once
+
+#include <cmath>
+
+#include "glint/core/vec.h"
+
+namespace glint {
+
+GLINT_HD float log_of(float a) { return logf(a); }
+GLINT_HD double log_of(double a) { return log(a); }
+
+// The slope of |a|, 0 at 0.
+template <class T>
+GLINT_HD T sign_of(T a) {
+  return select(a > T(0), T(1), select(a < T(0), T(-1), T(0)));
+}
+template <class T>
+GLINT_HD Vec3<T> sign_of(Vec3<T> a) {
+  return {sign_of(a.x), sign_of(a.y), sign_of(a.z)};
+}
+template <class T>
+GLINT_HD T l1_norm(T a) {
+  return abs_of(a);
+}
+template <class T>
+GLINT_HD T l1_norm(Vec3<T> a) {
+  return abs_of(a.x) + abs_of(a.y) + abs_of(a.z);
+}
+
+// n = N / |N| of a composited normal. A shorter N counts as no normal and gives zero: one surfel
+// that counts leaves at least its alpha, 1/255.
+inline constexpr float kMinNormalLength = 1e-6f;
+template <class T>
+GLINT_HD Vec3<T> unit_normal(Vec3<T> composited) {
+  const T norm = length(composited);
+  const T at_least = max_of(norm, T(kMinNormalLength));
+  return select(norm > T(kMinNormalLength), (T(1) / at_least) * composited, Vec3<T>{});
+}
+template <class T>
+GLINT_HD void unit_normal_vjp(Vec3<T> composited, Vec3<T> dL_dunit, Vec3<T>& dL_dcomposited) {
+  const T norm = length(composited);
+  const T at_least = max_of(norm, T(kMinNormalLength));
+  const Vec3<T> g = normalize_vjp(unit_normal(composited), at_least, dL_dunit);
+  dL_dcomposited += select(norm > T(kMinNormalLength), g, Vec3<T>{});
+}
+
+// 1 - <n, prior>, or 0 where the cosine is below the gate. The gate is a constant: no gradient.
+template <class T>
+GLINT_HD T gated_cosine_loss(Vec3<T> unit, Vec3<T> prior, T min_cosine) {
+  const T cosine = dot(unit, prior);
+  return keep(cosine >= min_cosine, T(1) - cosine);
+}
+template <class T>
+GLINT_HD void gated_cosine_loss_vjp(
+    Vec3<T> unit, Vec3<T> prior, T min_cosine, T dL_dloss, Vec3<T>& dL_dunit
+) {
+  dL_dunit += keep(dot(unit, prior) >= min_cosine, -dL_dloss) * prior;
+}
+
+// exp(-sharpness mean_c |a_c - b_c|) of two neighbours' colours: small across an image edge.
+template <class T>
+GLINT_HD T edge_weight(Vec3<T> a, Vec3<T> b, T sharpness) {
+  return exp_fast(-sharpness * T(1.0 / 3) * l1_norm(a - b));
+}
+
+// Probabilities are kept this far from 0 and 1; beyond, a loss is constant.
+inline constexpr float kMinProbability = 1e-6f;
+template <class T>
+GLINT_HD T clamped_probability(T p) {
+  return min_of(max_of(p, T(kMinProbability)), T(1) - T(kMinProbability));
+}
+
+// -target log p - (1 - target) log(1 - p).
+template <class T>
+GLINT_HD T binary_cross_entropy(T p, T target) {
+  const T q = clamped_probability(p);
+  return -target * log_of(q) - (T(1) - target) * log_of(T(1) - q);
+}
+template <class T>
+GLINT_HD void binary_cross_entropy_vjp(T p, T target, T dL_dloss, T& dL_dp) {
+  const T q = clamped_probability(p);
+  dL_dp += keep(q == p, dL_dloss * (q - target) / (q * (T(1) - q)));
+}
+
+// -p log p - (1 - p) log(1 - p).
+template <class T>
+GLINT_HD T binary_entropy(T p) {
+  return binary_cross_entropy(p, clamped_probability(p));
+}
+template <class T>
+GLINT_HD void binary_entropy_vjp(T p, T dL_dloss, T& dL_dp) {
+  const T q = clamped_probability(p);
+  dL_dp += keep(q == p, dL_dloss * (log_of(T(1) - q) - log_of(q)));
+}
+
+}  // namespace glint

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/pixel_losses.h"
+
+#include "tests/support/check_vjp.h"
+
+using namespace glint;
+using namespace glint::test;
+
+TEST_CASE("The normalisation of a composited normal has the gradient of its differences") {
+  check_vjp(
+      {0.3, -0.2, -0.5},
+      [](const Vector& x) {
+        Vector y;
+        push(y, unit_normal(vec3(x, 0)));
+        return y;
+      },
+      [](const Vector& x, const Vector& g) {
+        Vec3d dL_dn{};
+        unit_normal_vjp(vec3(x, 0), vec3(g, 0), dL_dn);
+        return Vector{dL_dn.x, dL_dn.y, dL_dn.z};
+      }
+  );
+}
+
+TEST_CASE("No normal stays no normal, without gradient") {
+  const Vec3f n = unit_normal(Vec3f{});
+  CHECK((n.x == 0 && n.y == 0 && n.z == 0));
+  Vec3f g{};
+  unit_normal_vjp(Vec3f{}, Vec3f{1, 2, 3}, g);
+  CHECK((g.x == 0 && g.y == 0 && g.z == 0));
+}
+
+TEST_CASE("The cosine loss has no value and no gradient below its gate") {
+  const Vec3d prior{0, 0, -1}, unit{0.8, 0, -0.6};
+  Vec3d g{};
+  CHECK(gated_cosine_loss(unit, prior, 0.5) == Approx(0.4));
+  CHECK(gated_cosine_loss(unit, prior, 0.7) == 0);
+  gated_cosine_loss_vjp(unit, prior, 0.7, 1.0, g);
+  CHECK(g.z == 0);
+  gated_cosine_loss_vjp(unit, prior, 0.5, 2.0, g);
+  CHECK(g.z == 2);
+}
+
+TEST_CASE("Cross-entropy and entropy have the gradients of their differences") {
+  for (const double p : {0.02, 0.3, 0.98}) {
+    check_vjp(
+        {p},
+        [](const Vector& x) {
+          return Vector{binary_cross_entropy(x[0], 0.9), binary_entropy(x[0])};
+        },
+        [](const Vector& x, const Vector& g) {
+          double dL_dp = 0;
+          binary_cross_entropy_vjp(x[0], 0.9, g[0], dL_dp);
+          binary_entropy_vjp(x[0], g[1], dL_dp);
+          return Vector{dL_dp};
+        }
+    );
+  }
+}
+
+TEST_CASE("Entropies have their closed-form values and stay finite at 0 and 1") {
+  CHECK(binary_entropy(0.5) == Approx(std::log(2.0)));
+  CHECK(binary_cross_entropy(0.25, 1.0) == Approx(std::log(4.0)));
+  CHECK(binary_cross_entropy(0.25, 0.0) == Approx(std::log(4.0 / 3)));
+  for (const float p : {0.0f, 1.0f}) {
+    CHECK(static_cast<double>(binary_entropy(p)) == Approx(0).margin(2e-5));
+    CHECK(
+        static_cast<double>(binary_cross_entropy(p, 1 - p)) ==
+        Approx(-std::log(1e-6)).epsilon(5e-3)  // 1 - 1e-6 is rounded to a multiple of 6e-8
+    );
+    float g = 0;
+    binary_entropy_vjp(p, 1.0f, g);
+    binary_cross_entropy_vjp(p, 1 - p, 1.0f, g);
+    CHECK(g == 0.0f);
+  }
+}
+
+TEST_CASE("An image edge's weight is the exponential of its mean contrast") {
+  CHECK(edge_weight(Vec3d{0.1, 0.2, 0.3}, Vec3d{0.1, 0.2, 0.3}, 5.0) == 1);
+  CHECK(edge_weight(Vec3d{1, 0, 0}, Vec3d{0, 0.5, 0}, 2.0) == Approx(std::exp(-1.0)));
+}
