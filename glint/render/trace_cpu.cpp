@@ -4,8 +4,8 @@
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
-#include "glint/core/simd.h"
 #include "glint/render/activations.h"
+#include "glint/render/sh_lanes.h"
 #include "glint/render/spherical_harmonics.h"
 #include "glint/render/trace.h"
 #include "glint/render/trace_bvh.h"
@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::size_t kRaysPerBlock = 64;
 constexpr std::size_t kSurfelGrain = 512;
-constexpr int kBasis = 16;
 
 // One hit's gradient, kept until it is summed with the others of its surfel.
 struct alignas(32) HitGradient {
@@ -37,7 +36,7 @@ struct TraceSaved {
   std::vector<std::uint32_t> counts;               // [rays] hits
   std::vector<std::size_t> ray_begin;              // [rays + 1] first hit
   std::vector<HitGradient> hit_gradients;          // [hits]
-  std::vector<float> basis;                        // [rays][16] spherical harmonics
+  std::vector<float> basis;                        // [rays][48] spherical harmonics, expanded
   std::vector<std::uint32_t> surfel_begin;         // [N + 1] into `hits_of_surfel`
   std::vector<std::uint32_t> hits_of_surfel, ray_of_hit;
 };
@@ -113,20 +112,20 @@ struct RayHit {
 
 struct RayState {
   Vec3f origin, direction;
-  const float* basis;  // [16]
-  int num_basis;
+  ShLanes basis;
   float transmittance = 1;
 };
 
 Vec3f sh_sum(const TraceInput& input, const RayState& ray, std::size_t surfel) {
-  Vec3f sum = ray.basis[0] * at3(input.sh_dc, surfel);
-  const float* rest = input.sh_rest.data() + 45 * surfel;
-  for (int k = 1; k < ray.num_basis; ++k, rest += 3) {
-    sum.x += ray.basis[k] * rest[0];
-    sum.y += ray.basis[k] * rest[1];
-    sum.z += ray.basis[k] * rest[2];
-  }
-  return sum;
+  const Vec3f rest = sh_dot(ray.basis, ShLanes::load(&input.sh_rest[45 * surfel]));
+  return kSh0 * at3(input.sh_dc, surfel) + rest;
+}
+
+// Colours lie scattered in memory: asked for one traversal ahead.
+void prefetch(const TraceInput& input, std::size_t surfel) {
+  const float* rest = &input.sh_rest[45 * surfel];
+  for (int i = 0; i < 48; i += 16) __builtin_prefetch(rest + i);
+  __builtin_prefetch(&input.sh_dc[3 * surfel]);
 }
 
 // Composites one surfel. Returns false when it stops the ray (and does not count).
@@ -154,12 +153,11 @@ bool composite(
   return true;
 }
 
-RayState ray_at(const Rays& rays, const TraceSaved& saved, int degree, std::size_t i) {
+RayState ray_at(const Rays& rays, const TraceSaved& saved, std::size_t i) {
   RayState ray;
   ray.origin = at3(rays.origins, i);
   ray.direction = at3(rays.directions, i);
-  ray.basis = &saved.basis[kBasis * i];
-  ray.num_basis = sh_coefficients(degree);
+  ray.basis = load_expanded(&saved.basis[ShLanes::kFloats * i]);
   return ray;
 }
 
@@ -184,6 +182,7 @@ void trace_ray(
   const std::size_t most = ids.size() + static_cast<std::size_t>(settings.max_hits);
   do {
     saved.bvh.nearest(ray.origin, ray.direction, nearest);
+    for (int i = 0; i < nearest.count; ++i) prefetch(input, nearest.hits[i].surfel);
     for (int i = 0; i < nearest.count && ids.size() < most; ++i) {
       const std::uint32_t surfel = nearest.hits[i].surfel;
       RayHit hit;
@@ -198,10 +197,13 @@ void trace_ray(
   } while (nearest.full() && ids.size() < most);
 }
 
+// Coefficients above the degree in use count as zero.
 void store_basis(const Rays& rays, int degree, std::size_t i, TraceSaved& saved) {
   const Vec3f d = at3(rays.directions, i);
   const float norm = length(d);
-  if (norm > 0) sh_basis(degree, (1 / norm) * d, &saved.basis[kBasis * i]);
+  float basis[16] = {};
+  if (norm > 0) sh_basis(degree, (1 / norm) * d, basis);
+  expand_basis(basis, &saved.basis[ShLanes::kFloats * i]);
 }
 
 void forward_ray(
@@ -215,7 +217,7 @@ void forward_ray(
   std::vector<std::uint32_t>& ids = saved.blocks[i / kRaysPerBlock];
   const std::size_t before = ids.size();
   store_basis(rays, input.sh_degree, i, saved);
-  RayState ray = ray_at(rays, saved, input.sh_degree, i);
+  RayState ray = ray_at(rays, saved, i);
   RaySums sums;
   if (length2(ray.direction) > 0 && input.count > 0)
     trace_ray(input, settings, saved, ray, ids, sums);
@@ -235,7 +237,7 @@ struct RayGradient {
   float alpha, depth;
   float remaining;
   Vec3f origin{}, direction{};
-  float basis[kBasis] = {};
+  ShLanes basis = ShLanes::zero();
 };
 
 RayGradient ray_gradient(const TraceOutput& out, const TraceOutputGradient& g, std::size_t i) {
@@ -250,17 +252,10 @@ RayGradient ray_gradient(const TraceOutput& out, const TraceOutputGradient& g, s
 }
 
 void color_vjp(
-    const TraceInput& input,
-    const RayState& ray,
-    const RayHit& hit,
-    std::size_t surfel,
-    RayGradient& g,
-    HitGradient& out
+    const TraceInput& input, const RayHit& hit, std::size_t surfel, RayGradient& g, HitGradient& out
 ) {
   for (int c = 0; c < 3; ++c) out.color[c] = sh_color_vjp(hit.sh_sum[c], hit.weight * g.color[c]);
-  const float* rest = input.sh_rest.data() + 45 * surfel;
-  for (int k = 1; k < ray.num_basis; ++k, rest += 3)
-    g.basis[k] += out.color.x * rest[0] + out.color.y * rest[1] + out.color.z * rest[2];
+  add_scaled(g.basis, repeat(out.color), ShLanes::load(&input.sh_rest[45 * surfel]));
 }
 
 void hit_vjp(
@@ -304,7 +299,7 @@ void hit_vjp(
   out.normal = (dot(s.normal, ray.direction) > 0 ? -hit.weight : hit.weight) * g.normal;
   out.half_depth = (0.5f * hit.plane.t) * out.m;
   out.weight = hit.weight;
-  color_vjp(input, ray, hit, surfel, g, out);
+  color_vjp(input, hit, surfel, g, out);
 }
 
 void backward_ray(
@@ -317,10 +312,12 @@ void backward_ray(
     TraceSaved& saved,
     TraceGradient& out
 ) {
-  RayState ray = ray_at(rays, saved, input.sh_degree, i);
+  RayState ray = ray_at(rays, saved, i);
   RayGradient g = ray_gradient(output, dL_doutput, i);
   const std::size_t block = i / kRaysPerBlock;
   const std::size_t first = saved.ray_begin[i] - saved.ray_begin[block * kRaysPerBlock];
+  for (std::uint32_t k = 0; k < saved.counts[i]; ++k)
+    prefetch(input, saved.blocks[block][first + k]);
   for (std::uint32_t k = 0; k < saved.counts[i]; ++k) {
     const std::uint32_t surfel = saved.blocks[block][first + k];
     RayHit hit;
@@ -339,7 +336,9 @@ void backward_ray(
   if (saved.counts[i] > 0) {
     const Vec3f unit = (1 / norm) * ray.direction;
     Vec3f dL_dunit{};
-    sh_basis_vjp(input.sh_degree, unit, g.basis, dL_dunit);
+    float dL_dbasis[16] = {};
+    collect_basis(g.basis, dL_dbasis);
+    sh_basis_vjp(input.sh_degree, unit, dL_dbasis, dL_dunit);
     g.direction += normalize_vjp(unit, norm, dL_dunit);
   }
   put3(&out.rays.origins.data()[3 * i], g.origin);
@@ -376,17 +375,15 @@ void add(HitGradient& sum, const HitGradient& g) {
 
 void sum_hits(const TraceInput& input, std::size_t i, const TraceSaved& saved, TraceGradient& out) {
   HitGradient sum{};
-  const int num_basis = sh_coefficients(input.sh_degree);
-  float* rest = &out.sh_rest[45 * i];
-  std::fill_n(rest, 45, 0.0f);
+  ShLanes rest = ShLanes::zero();
   for (std::uint32_t k = saved.surfel_begin[i]; k < saved.surfel_begin[i + 1]; ++k) {
     const std::uint32_t hit = saved.hits_of_surfel[k];
     const HitGradient& g = saved.hit_gradients[hit];
     add(sum, g);
-    const float* basis = &saved.basis[kBasis * static_cast<std::size_t>(saved.ray_of_hit[hit])];
-    for (int b = 1; b < num_basis; ++b)
-      for (int c = 0; c < 3; ++c) rest[3 * (b - 1) + c] += basis[b] * g.color[c];
+    const std::size_t ray = saved.ray_of_hit[hit];
+    add_scaled(rest, repeat(g.color), load_expanded(&saved.basis[ShLanes::kFloats * ray]));
   }
+  rest.store(&out.sh_rest[45 * i]);
   put3(&out.sh_dc[3 * i], kSh0 * sum.color);
   surfel_vjp(input, i, sum, out);
 }
@@ -443,7 +440,7 @@ void prepare(
   if (input.count > 0) saved.bvh.update(saved.surfels, settings.triangles);
   saved.blocks.resize((num_rays + kRaysPerBlock - 1) / kRaysPerBlock);
   saved.counts.resize(num_rays);
-  saved.basis.resize(kBasis * num_rays);
+  saved.basis.resize(ShLanes::kFloats * num_rays);
 }
 
 }  // namespace
