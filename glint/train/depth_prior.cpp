@@ -67,11 +67,15 @@ struct FittedPairs : DepthPairs<T> {
   }
 };
 
-// The gradient-matching term and its gradient with respect to the residuals.
+// The gradient-matching term and its gradient with respect to the residuals, and from there to w.
 template <class T>
 struct GradientMatching {
   double loss = 0;
-  BasicImage<T> dL_dresidual;  // empty without the term
+  BasicImage<T> dL_dresidual;  // [H][W][1], empty without the term
+  T dL_dscale = 0;
+  T dL_dresidual_at(int x, int y) const {
+    return dL_dresidual.empty() ? T(0) : dL_dresidual.at(x, y);
+  }
 };
 
 // Sum of m m' |r' - r| over the pixel's forward differences; adds scale * its gradient.
@@ -117,6 +121,9 @@ GradientMatching<T> match_gradients(const FittedPairs<T>& pairs, const DepthPrio
           );
         });
   }
+  result.dL_dscale = static_cast<T>(sum_over_pixels(pairs.depth.size(), [&](int x, int y) {
+    return static_cast<double>(result.dL_dresidual.at(x, y) * pairs.z(x, y));
+  }));
   return result;
 }
 
@@ -145,21 +152,14 @@ double DepthPriorLoss::evaluate(
   if (!fit.valid) return 0;
   const FittedPairs<T> pairs{{depth, prior, pixel_weight}, fit};
   const GradientMatching<T> matching = match_gradients(pairs, *this);
-  const bool has_matching = !matching.dL_dresidual.empty();
-  T dL_dscale = 0;
-  if (has_matching)
-    dL_dscale = static_cast<T>(sum_over_pixels(depth.size(), [&](int x, int y) {
-      return static_cast<double>(matching.dL_dresidual.at(x, y) * depth.at(x, y));
-    }));
   const T per_weight = static_cast<T>(1 / fit.weight_sum);
   const double squares = sum_over_pixels(depth.size(), [&](int x, int y) {
     const T m = pairs.weight(x, y);
     if (!(m > 0)) return 0.0;
     const T residual = pairs.residual(x, y);
-    T dL_dresidual = 2 * per_weight * m * residual;
-    if (has_matching) dL_dresidual += matching.dL_dresidual.at(x, y);
-    dL_ddepth.at(x, y) +=
-        weight * (pairs.scale * dL_dresidual + dL_dscale * m * pairs.dscale_dz(x, y));
+    const T dL_dresidual = 2 * per_weight * m * residual + matching.dL_dresidual_at(x, y);
+    const T through_scale = matching.dL_dscale * m * pairs.dscale_dz(x, y);
+    dL_ddepth.at(x, y) += weight * (pairs.scale * dL_dresidual + through_scale);
     return static_cast<double>(m * residual * residual);
   });
   return squares / fit.weight_sum + matching.loss;

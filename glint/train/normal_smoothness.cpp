@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/normal_smoothness.h"
 
-#include <optional>
-
 #include "glint/train/pixel_sums.h"
 
 namespace glint {
@@ -28,17 +26,14 @@ double NormalSmoothnessLoss::evaluate(
 ) const {
   check_fits("image of the normal smoothness", image, normal.size(), 3);
   const BasicImage<T> units = unit_normals(normal);
-  const auto unit_at = [&](int x, int y) -> std::optional<Vec3<T>> {
-    const Vec3<T> unit = load3<T>(units, x, y);
-    if (!(length2(unit) > 0)) return std::nullopt;
-    return unit;
-  };
+  const auto exists = [](const T* n) { return n[0] != 0 || n[1] != 0 || n[2] != 0; };
   const auto num_pixels = static_cast<double>(normal.num_pixels());
   const T sharpness = static_cast<T>(edge_sharpness), scale = weight / static_cast<T>(num_pixels);
   const double sum = sum_over_pixels(normal.size(), [&](int x, int y) {
-    const auto here = edge_aware_smoothness_at(image, sharpness, unit_at, x, y);
+    const auto here = edge_aware_smoothness_at<3>(units, image, sharpness, exists, x, y);
+    const Vec3<T> dL_dunit{here.gradient[0], here.gradient[1], here.gradient[2]};
     Vec3<T> gradient = load3<T>(dL_dnormal, x, y);
-    unit_normal_vjp(load3<T>(normal, x, y), scale * here.gradient, gradient);
+    unit_normal_vjp(load3<T>(normal, x, y), scale * dL_dunit, gradient);
     store3(dL_dnormal, x, y, gradient);
     return here.loss;
   });

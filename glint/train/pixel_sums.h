@@ -64,27 +64,32 @@ inline void check_fits(
 
 // One pixel's part in the sum over neighbours p, p + e (e = x, y) of
 // |v(p + e) - v(p)|_1 edge_weight(I(p), I(p + e)).
-template <class Value>
+template <int kChannels, class T>
 struct SmoothnessAt {
-  double loss = 0;   // of the pixel's two forward differences
-  Value gradient{};  // of the whole sum with respect to v at the pixel
+  double loss = 0;          // of the pixel's two forward differences
+  T gradient[kChannels]{};  // of the whole sum with respect to v at the pixel
 };
-// value(x, y) -> std::optional<T or Vec3<T>>; differences with a pixel without value do not count.
-// guide: [H][W][3], values in [0, 1].
-template <class T, class ValueAt>
-auto edge_aware_smoothness_at(const Image& guide, T sharpness, const ValueAt& value, int x, int y) {
-  SmoothnessAt<typename decltype(value(x, y))::value_type> result;
-  const auto here = value(x, y);
-  if (!here) return result;
+// values: v [H][W][kChannels]; guide: I [H][W][3], values in [0, 1]. Differences with a pixel where
+// exists(v of the pixel) is false do not count.
+template <int kChannels, class T, class Exists>
+SmoothnessAt<kChannels, T> edge_aware_smoothness_at(
+    const BasicImage<T>& values, const Image& guide, T sharpness, const Exists& exists, int x, int y
+) {
+  SmoothnessAt<kChannels, T> result;
+  const T* here = values.pixel(x, y);
+  if (!exists(here)) return result;
   const Vec3<T> color = load3<T>(guide, x, y);
   const auto add_difference = [&](int nx, int ny, bool is_forward) {
-    if (nx < 0 || ny < 0 || nx >= guide.width() || ny >= guide.height()) return;
-    const auto there = value(nx, ny);
-    if (!there) return;
+    if (nx < 0 || ny < 0 || nx >= values.width() || ny >= values.height()) return;
+    const T* there = values.pixel(nx, ny);
+    if (!exists(there)) return;
     const T weight = edge_weight(color, load3<T>(guide, nx, ny), sharpness);
-    const auto difference = *here - *there;
-    result.gradient += weight * sign_of(difference);
-    if (is_forward) result.loss += static_cast<double>(weight * l1_norm(difference));
+    T distance = 0;
+    for (int c = 0; c < kChannels; ++c) {
+      result.gradient[c] += weight * sign_of(here[c] - there[c]);
+      distance += abs_of(here[c] - there[c]);
+    }
+    if (is_forward) result.loss += static_cast<double>(weight * distance);
   };
   add_difference(x + 1, y, true);
   add_difference(x, y + 1, true);

@@ -16,9 +16,9 @@ struct TransparencyCues {
   ImageView interface_depth;     // [H][W][1] planar z, 0: none
   ImageView transmission_depth;  // [H][W][1] planar z of the transmission set seen from the camera
                                  // on its own (not only behind the interface), 0: none
-  ImageView albedo;     // [H][W][3] the prior's diffuse albedo as stored
-  ImageView basecolor;  // [H][W][3] the prior's; kBce only
-  ImageView cosine;     // [H][W][1] of viewing_cosines(), empty for 1; kBce only
+  ImageView albedo;              // [H][W][3] the prior's diffuse albedo as stored
+  ImageView basecolor;           // [H][W][3] the prior's; kBce only
+  ImageView cosine;              // [H][W][1] of viewing_cosines(), empty for 1; kBce only
 };
 
 // [H][W][1] weights in [0, 1], for the loss and for figures. Empty: no guidance for this view.

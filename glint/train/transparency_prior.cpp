@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/transparency_prior.h"
 
-#include <optional>
-
 #include "glint/train/pixel_sums.h"
 
 namespace glint {
@@ -12,17 +10,17 @@ double TransparencyPriorLoss::evaluate(
     const BasicImage<T>& transparency, const Image& image, T weight, BasicImage<T>& dL_dtransparency
 ) const {
   check_fits("image of the transparency prior", image, transparency.size(), 3);
-  const auto t_at = [&](int x, int y) { return std::optional<T>(transparency.at(x, y)); };
+  const auto exists = [](const T*) { return true; };
   const auto num_pixels = static_cast<double>(transparency.num_pixels());
   const T sharpness = static_cast<T>(edge_sharpness), scale = weight / static_cast<T>(num_pixels);
   const T w_entropy = static_cast<T>(entropy), w_sparsity = static_cast<T>(sparsity);
   const T w_smoothness = static_cast<T>(smoothness);
   const double sum = sum_over_pixels(transparency.size(), [&](int x, int y) {
     const T t = transparency.at(x, y);
-    const auto smooth = edge_aware_smoothness_at(image, sharpness, t_at, x, y);
+    const auto smooth = edge_aware_smoothness_at<1>(transparency, image, sharpness, exists, x, y);
     T& gradient = dL_dtransparency.at(x, y);
     binary_entropy_vjp(t, scale * w_entropy, gradient);
-    gradient += scale * (w_sparsity * sign_of(t) + w_smoothness * smooth.gradient);
+    gradient += scale * (w_sparsity * sign_of(t) + w_smoothness * smooth.gradient[0]);
     return static_cast<double>(w_entropy * binary_entropy(t) + w_sparsity * abs_of(t)) +
            static_cast<double>(w_smoothness) * smooth.loss;
   });

@@ -91,7 +91,8 @@ TEST_CASE("A prior's scale multiplies the depth loss by its square, a shift chan
   CHECK(value_of(loss_with(moved), depth) == Approx(4 * value).epsilon(1e-5));
 }
 
-TEST_CASE("Scaling and shifting the depth changes neither the value nor the gradient's relation") {
+TEST_CASE("Scaling and shifting the depth does not change its loss, nor does the gradient do either"
+) {
   const auto loss = loss_with(test_prior(), test_weights(), {4, 1});
   const ImageD depth = test_depth();
   const ImageD moved = mapped(depth, [](double z) { return z > 0 ? 3 * z + 1 : 0; });
