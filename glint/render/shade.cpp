@@ -53,14 +53,18 @@ T sh_sum(const SurfelCloud& cloud, std::size_t i, int count, const T basis[16], 
 }
 
 template <class T>
-void activate_lanes(
-    const SurfelCloud& cloud, Vec3f eye, int degree, std::size_t i, ActivatedSurfels& out
-) {
+void activate_geometry_lanes(const SurfelCloud& cloud, std::size_t i, ActivatedSurfels& out) {
   for (int axis = 0; axis < 2; ++axis) {
     const std::size_t at = 2 * i + axis;
     store_strided(&out.scales[at], 2, exp_fast(load_strided<T>(&cloud.log_scales[at], 2)));
   }
   store_strided(&out.opacities[i], 1, sigmoid(load_strided<T>(&cloud.opacity_logits[i], 1)));
+}
+
+template <class T>
+void activate_features_lanes(
+    const SurfelCloud& cloud, Vec3f eye, int degree, std::size_t i, ActivatedSurfels& out
+) {
   T basis[16];
   sh_basis(degree, view_direction<T>(cloud, eye, i).unit, basis);
   for (int c = 0; c < 3; ++c)
@@ -158,7 +162,18 @@ void activate(const SurfelCloud& cloud, Vec3f eye, int sh_degree, ActivatedSurfe
   activated.features.resize(cloud.size() * activated.channels);
   parallel_for_blocks(cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for_lanes(begin, end, [&](auto lanes, std::size_t i) {
-      activate_lanes<decltype(lanes)>(cloud, eye, sh_degree, i, activated);
+      activate_geometry_lanes<decltype(lanes)>(cloud, i, activated);
+      activate_features_lanes<decltype(lanes)>(cloud, eye, sh_degree, i, activated);
+    });
+  });
+}
+
+void activate_geometry(const SurfelCloud& cloud, ActivatedSurfels& activated) {
+  activated.scales.resize(2 * cloud.size());
+  activated.opacities.resize(cloud.size());
+  parallel_for_blocks(cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for_lanes(begin, end, [&](auto lanes, std::size_t i) {
+      activate_geometry_lanes<decltype(lanes)>(cloud, i, activated);
     });
   });
 }

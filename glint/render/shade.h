@@ -20,6 +20,9 @@ struct ActivatedSurfels {
 // eye: camera centre, metres. sh_degree: 0..3 (coefficients above are ignored).
 void activate(const SurfelCloud& cloud, Vec3f eye, int sh_degree, ActivatedSurfels& activated);
 
+// Scales and opacities alone, for trace(): its colours depend on the rays.
+void activate_geometry(const SurfelCloud& cloud, ActivatedSurfels& activated);
+
 // The activated cloud as rasterize() takes it.
 RasterInput raster_input(const SurfelCloud& cloud, const ActivatedSurfels& activated);
 

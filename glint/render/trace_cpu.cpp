@@ -445,19 +445,6 @@ void prepare(
 
 }  // namespace
 
-TraceInput trace_input(const SurfelCloud& cloud, const ActivatedSurfels& activated, int sh_degree) {
-  TraceInput input;
-  input.count = cloud.size();
-  input.sh_degree = sh_degree;
-  input.means = cloud.means;
-  input.scales = activated.scales;
-  input.rotations = cloud.rotations;
-  input.opacities = activated.opacities;
-  input.sh_dc = cloud.sh_dc;
-  input.sh_rest = cloud.sh_rest;
-  return input;
-}
-
 Tracer::Tracer() : saved_(std::make_unique<TraceSaved>()) {}
 Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;

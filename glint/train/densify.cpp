@@ -55,6 +55,19 @@ void Densifier::observe(const RasterOutput& output, const RasterGradient& gradie
   }
 }
 
+void Densifier::observe(const TraceGradient& gradient, int rows) {
+  const std::size_t count = gradient.visibility.size();
+  gradient_sum_.resize(count, 0.0f);
+  views_.resize(count, 0);
+  const float scale = static_cast<float>(rows) / static_cast<float>(config_.reference_rows);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (gradient.visibility[i] <= 0) continue;
+    const float* g = &gradient.half_depths[3 * i];
+    gradient_sum_[i] += scale * std::hypot(g[0], g[1], g[2]);
+    ++views_[i];
+  }
+}
+
 // Children are drawn from the parent's Gaussian in its plane.
 void Densifier::append_splits(SurfelCloud& cloud, const std::vector<std::uint32_t>& parents) {
   for (int child = 0; child < kChildren; ++child) {

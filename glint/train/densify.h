@@ -8,6 +8,7 @@
 
 #include "glint/core/rng.h"
 #include "glint/render/rasterize.h"
+#include "glint/render/trace.h"
 #include "glint/scene/surfels.h"
 #include "glint/train/adam.h"
 
@@ -52,6 +53,9 @@ class Densifier {
   // brought to the image height that the published threshold is for; otherwise small images would
   // densify without end.
   void observe(const RasterOutput& output, const RasterGradient& gradient);
+  // For traced sets, which have no screen: the norm of the summed dL/dmean t / 2 [EnvGS], of the
+  // surfels that some ray saw. The same scaling by image height.
+  void observe(const TraceGradient& gradient, int rows);
   // Densifies and resets when this step is due. `step` counts from 1, after the optimiser's step.
   DensifyCounts update(int step, SurfelCloud& cloud, SurfelAdam& adam);
 

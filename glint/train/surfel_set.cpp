@@ -18,10 +18,12 @@ SurfelSet::SurfelSet(
 }
 
 const RasterOutput& SurfelSet::forward(
-    const Camera& camera, int sh_degree, const RasterSettings& settings
+    const Camera& camera, int sh_degree, const RasterSettings& settings, ImageView near_limit
 ) {
   activate(cloud_, cast<float>(camera.center()), sh_degree, activated_);
-  rasterizer_.forward(raster_input(cloud_, activated_), camera, settings, output_);
+  RasterInput input = raster_input(cloud_, activated_);
+  input.near_limit = near_limit;
+  rasterizer_.forward(input, camera, settings, output_);
   return output_;
 }
 
@@ -29,15 +31,43 @@ void SurfelSet::backward(
     const Camera& camera,
     int sh_degree,
     const RasterSettings& settings,
-    const RasterOutputGradient& dL_doutput
+    const RasterOutputGradient& dL_doutput,
+    ImageView near_limit
 ) {
-  rasterizer_.backward(
-      raster_input(cloud_, activated_), camera, settings, output_, dL_doutput, raster_gradient_
-  );
+  RasterInput input = raster_input(cloud_, activated_);
+  input.near_limit = near_limit;
+  rasterizer_.backward(input, camera, settings, output_, dL_doutput, raster_gradient_);
   activate_vjp(
       cloud_, cast<float>(camera.center()), sh_degree, activated_, raster_gradient_, gradient_
   );
   densifier_.observe(output_, raster_gradient_);
+}
+
+const TraceOutput& SurfelSet::trace(
+    const Rays& rays, int sh_degree, const TraceSettings& settings
+) {
+  activate_geometry(cloud_, activated_);
+  tracer_.forward(trace_input(cloud_, activated_, sh_degree), rays, settings, trace_output_);
+  return trace_output_;
+}
+
+const Rays& SurfelSet::trace_backward(
+    const Rays& rays,
+    int sh_degree,
+    const TraceSettings& settings,
+    const TraceOutputGradient& dL_doutput
+) {
+  tracer_.backward(
+      trace_input(cloud_, activated_, sh_degree),
+      rays,
+      settings,
+      trace_output_,
+      dL_doutput,
+      trace_gradient_
+  );
+  trace_activate_vjp(activated_, trace_gradient_, gradient_);
+  densifier_.observe(trace_gradient_, rays.origins.height());
+  return trace_gradient_.rays;
 }
 
 DensifyCounts SurfelSet::update(int step) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// One trainable, rasterised set of surfels: the building block that methods are composed of. Holds
-// the parameters, the optimiser, densification, and the buffers of the two passes.
+// One trainable set of surfels, rasterised or traced: the building block that methods are composed
+// of. Holds the parameters, the optimiser, densification, and the buffers of the two passes.
 #pragma once
 
 #include "glint/render/shade.h"
+#include "glint/render/trace.h"
 #include "glint/scene/scene.h"
 #include "glint/train/adam.h"
 #include "glint/train/densify.h"
@@ -17,14 +18,25 @@ class SurfelSet {
       SurfelCloud cloud, SurfelRates rates, DensifyConfig densify, float extent, std::uint64_t seed
   );
 
-  // Renders the set; the output stays valid until the next call.
-  const RasterOutput& forward(const Camera& camera, int sh_degree, const RasterSettings& settings);
+  // Renders the set; the output stays valid until the next call. near_limit: see RasterInput.
+  const RasterOutput& forward(
+      const Camera& camera, int sh_degree, const RasterSettings& settings, ImageView near_limit = {}
+  );
   // Back through the last forward call; adds to the gradient of the parameters.
   void backward(
       const Camera& camera,
       int sh_degree,
       const RasterSettings& settings,
-      const RasterOutputGradient& dL_doutput
+      const RasterOutputGradient& dL_doutput,
+      ImageView near_limit = {}
+  );
+  // The same for rays; trace_backward returns the rays' gradient, valid until the next call.
+  const TraceOutput& trace(const Rays& rays, int sh_degree, const TraceSettings& settings);
+  const Rays& trace_backward(
+      const Rays& rays,
+      int sh_degree,
+      const TraceSettings& settings,
+      const TraceOutputGradient& dL_doutput
   );
   // Optimiser step and, when due, densification. `step` counts from 1.
   DensifyCounts update(int step);
@@ -32,6 +44,7 @@ class SurfelSet {
   SurfelCloud& cloud() { return cloud_; }
   const SurfelCloud& cloud() const { return cloud_; }
   const SurfelCloud& gradient() const { return gradient_; }
+  const ActivatedSurfels& activated() const { return activated_; }  // of the last pass
   std::size_t num_pairs() const { return rasterizer_.num_pairs(); }
 
  private:
@@ -44,6 +57,9 @@ class SurfelSet {
   Rasterizer rasterizer_;
   RasterOutput output_;
   RasterGradient raster_gradient_;
+  Tracer tracer_;
+  TraceOutput trace_output_;
+  TraceGradient trace_gradient_;
 };
 
 // The scene's points, or `count` uniform random ones in its bounds where it has none.

@@ -103,7 +103,9 @@ TEST_CASE("every metric of the protocol is registered once, with direction and p
         "depth-delta1-release",
         "transparency-iou",
         "transparency-mae",
-        "behind-absrel"})
+        "behind-absrel",
+        "trans-psnr",
+        "refl-psnr"})
     CHECK(ids.count(id) == 1);
   CHECK(find_metric("normal-mae@glass")->direction == Direction::kLowerIsBetter);
   CHECK(find_metric("no-such-metric") == nullptr);

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Radiance at glass [Na26 Eq. 5-9], each function with its vjp. Directions: d is the unit camera
+// ray (away from the camera), so the paper's w_o = -d.
+#pragma once
+
+#include "glint/core/vec.h"
+
+namespace glint {
+
+inline constexpr float kGlassF0 = 0.04f;  // reflectance of glass at normal incidence
+
+// Schlick's Fresnel term [Na26 Eq. 8]: F0 + (1 - F0)(1 - c)^5, c = max(0, n.w_o).
+template <class T>
+GLINT_HD T schlick(T f0, T cosine) {
+  const T m = T(1) - max_of(cosine, T(0)), m2 = m * m;
+  return f0 + (T(1) - f0) * (m2 * m2 * m);
+}
+template <class T>
+GLINT_HD T schlick_vjp(T f0, T cosine, T dL_df) {
+  const T m = T(1) - cosine, m2 = m * m;
+  return keep(cosine > T(0), T(-5) * (T(1) - f0) * (m2 * m2) * dL_df);
+}
+
+// Share of mirrored light k_s = s + (1 - s) F [Na26 Eq. 8] of specularity s.
+template <class T>
+GLINT_HD T mirrored_share(T specular, T fresnel) {
+  return specular + (T(1) - specular) * fresnel;
+}
+template <class T>
+GLINT_HD void mirrored_share_vjp(T specular, T fresnel, T dL_dk, T& dL_dspecular, T& dL_dfresnel) {
+  dL_dspecular += dL_dk * (T(1) - fresnel);
+  dL_dfresnel += dL_dk * (T(1) - specular);
+}
+
+// The mirrored direction w_r = 2 (n.w_o) n - w_o = d - 2 (n.d) n [Na26 Eq. 9].
+template <class T>
+GLINT_HD Vec3<T> mirrored_direction(Vec3<T> d, Vec3<T> n) {
+  return d - (T(2) * dot(n, d)) * n;
+}
+template <class T>
+GLINT_HD void mirrored_direction_vjp(Vec3<T> d, Vec3<T> n, Vec3<T> dL_dw, Vec3<T>& dL_dn) {
+  dL_dn += (T(-2) * dot(n, dL_dw)) * d + (T(-2) * dot(n, d)) * dL_dw;
+}
+
+// Outgoing radiance [Na26 Eq. 5-7]. Both the opaque and the transparent branch carry the same k_s
+// and reflection, so
+//   L_o = (1 - t) L_opaque + t L_transparent = (1 - k_s) ((1 - t) L_intr + t L_trans) + k_s L_refl.
+template <class T>
+struct GlassRadiance {
+  Vec3<T> interface, transmission, reflection;
+  T transparency, mirrored;  // t, k_s
+};
+template <class T>
+GLINT_HD Vec3<T> outgoing_radiance(const GlassRadiance<T>& p) {
+  const Vec3<T> base = (T(1) - p.transparency) * p.interface + p.transparency * p.transmission;
+  return (T(1) - p.mirrored) * base + p.mirrored * p.reflection;
+}
+template <class T>
+GLINT_HD GlassRadiance<T> outgoing_radiance_vjp(const GlassRadiance<T>& p, Vec3<T> g) {
+  const T through = T(1) - p.mirrored;
+  const Vec3<T> base = (T(1) - p.transparency) * p.interface + p.transparency * p.transmission;
+  return {
+      (through * (T(1) - p.transparency)) * g,
+      (through * p.transparency) * g,
+      p.mirrored * g,
+      through * dot(g, p.transmission - p.interface),
+      dot(g, p.reflection - base)};
+}
+
+}  // namespace glint

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// The pixels between the three sets of GLINT: from the interface's G-buffer to mirrored rays and
+// transparency, from the sets' radiance to the picture [Na26 Eq. 5-9], and the way back.
+#pragma once
+
+#include "glint/render/rasterize.h"
+#include "glint/render/trace.h"
+
+namespace glint {
+
+// Extra feature channels of the interface set, behind the three of its colour.
+inline constexpr int kTransparencyChannel = 3, kSpecularChannel = 4, kInterfaceChannels = 5;
+
+struct GlassOptions {
+  float f0 = 0.04f;
+  bool transmission = true;     // off: t counts as 0
+  bool reflection = true;       // off: k_s counts as 0
+  bool detach_origins = false;  // no gradient from reflections to the interface's depth
+};
+
+// What the interface says about each pixel.
+struct GlassBuffer {
+  Image depth;         // [H][W][1] expected depth, metres; 0: nothing hit
+  Image normal;        // [H][W][3] unit, camera space; zero: nothing hit
+  Image transparency;  // [H][W][1] t, composited (not divided by alpha)
+  Image specular;      // [H][W][1] s, composited
+  Image fresnel;       // [H][W][1]
+  Image mirrored;      // [H][W][1] k_s; 0 where nothing was hit
+  Rays reflected;      // world; unit directions, 0 where nothing was hit
+};
+
+// Radiance of the sets and the picture made of it, [H][W][3].
+struct GlassLayers {
+  Image interface, transmission, reflection;
+};
+
+class GlassTransport {
+ public:
+  explicit GlassTransport(GlassOptions options = {}) : options_(options) {}
+
+  // From the interface set rasterised with kInterfaceChannels features.
+  const GlassBuffer& read_interface(const Camera& camera, const RasterOutput& interface);
+  // The picture [H][W][3]. Images of layers that are switched off may be empty.
+  const Image& compose(const GlassLayers& layers);
+
+  // Back through compose(): fills the gradients of the layers, and keeps those of t and k_s.
+  const GlassLayers& compose_vjp(const GlassLayers& layers, const Image& dL_dimage);
+  // Back through read_interface(), with the mirrored rays' gradient (may be null), dL/dt from
+  // losses on the transparency map (may be empty) and the layers' own. Adds to the interface's
+  // gradient, whose images must have their sizes.
+  void interface_vjp(
+      const Camera& camera,
+      const RasterOutput& interface,
+      const Rays* dL_drays,
+      const Image& dL_dtransparency,
+      RasterOutputGradient& dL_dinterface
+  ) const;
+
+  const GlassBuffer& buffer() const { return buffer_; }
+
+ private:
+  GlassOptions options_;
+  GlassBuffer buffer_;
+  Image image_, dL_dtransparency_, dL_dmirrored_;
+  GlassLayers dL_dlayers_;
+};
+
+}  // namespace glint
