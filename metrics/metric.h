@@ -42,9 +42,12 @@ struct ViewPair {
   ImageView normal;  // [H][W][3] camera space, OpenCV axes; zero or not finite: nothing rendered
   ImageView transparency;  // [H][W][1] in [0, 1]
   ImageView behind_depth;  // [H][W][1] planar z in metres of the first surface behind glass
+  ImageView transmitted;   // [H][W][3] the part of rgb that came through glass
+  ImageView reflected;     // [H][W][3] the part of rgb that glass mirrored
 
   ImageView true_rgb, true_depth, true_normal, true_behind_depth;
-  MaskView glass;  // non-zero: the first surface is glass
+  ImageView true_transmitted, true_reflected;  // [H][W][3] linear radiance (components.h)
+  MaskView glass;                              // non-zero: the first surface is glass
 };
 
 enum class Direction { kHigherIsBetter, kLowerIsBetter };

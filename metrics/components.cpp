@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/components.h"
+
+#include <cmath>
+
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+void check_radiance(ImageView displayed, ImageView radiance) {
+  GLINT_CHECK(
+      radiance.size() == displayed.size() && radiance.channels == displayed.channels,
+      kBadReference,
+      "radiance component has {} x {} pixels with {} channels, the image {} x {} with {}",
+      radiance.width,
+      radiance.height,
+      radiance.channels,
+      displayed.width,
+      displayed.height,
+      displayed.channels
+  );
+  for (int y = 0; y < radiance.height; ++y)
+    for (int x = 0; x < radiance.width; ++x)
+      for (int c = 0; c < radiance.channels; ++c)
+        GLINT_CHECK(
+            std::isfinite(radiance.at(x, y, c)) && radiance.at(x, y, c) >= 0,
+            kBadReference,
+            "radiance component: value {} at pixel ({}, {}); expected 0 or more",
+            radiance.at(x, y, c),
+            x,
+            y
+        );
+}
+
+}  // namespace
+
+Image displayed_component(ImageView displayed, ImageView component, ImageView other) {
+  check_radiance(displayed, component);
+  check_radiance(displayed, other);
+  Image result(displayed.width, displayed.height, displayed.channels);
+  for (std::size_t i = 0; i < result.values().size(); ++i) {
+    const double part = static_cast<double>(component.data[i]);
+    const double sum = part + static_cast<double>(other.data[i]);
+    const double share = sum > 0 ? part / sum : 0.0;
+    result.data()[i] = static_cast<float>(share * static_cast<double>(displayed.data[i]));
+  }
+  return result;
+}
+
+}  // namespace glint
