@@ -6,7 +6,7 @@ fail() { echo "check_outputs: $*" >&2; exit 4; }
 
 [ -s "$out/records.jsonl" ] || fail "$out/records.jsonl is missing or empty"
 if grep -q '"status":"failed"' "$out/records.jsonl"; then fail "a cell failed: see $out/records.jsonl"; fi
-for table in table1_photometric table2_geometry table3_ablation tableB_cost; do
+for table in table1_photometric table2_geometry table3_ablation tableB_cost regions decomposition; do
   for format in md tex csv json; do
     [ -s "$out/tables/$table.$format" ] || fail "$out/tables/$table.$format is missing or empty"
   done
@@ -21,4 +21,4 @@ for run in "$out"/runs/*/*/*/; do
   runs=$((runs + 1))
 done
 [ "$runs" -gt 0 ] || fail "no run folders in $out/runs"
-echo "check_outputs: $runs runs, four tables in four formats" >&2
+echo "check_outputs: $runs runs, six tables in four formats" >&2

@@ -42,4 +42,9 @@ float srgb_decode(float encoded);
 Image colorize_depth(ImageView depth, float low, float high);
 Image colorize_normal(ImageView normal);
 
+// Black letters over the picture, ASCII, the first one's lower left corner at (left, baseline), its
+// capitals `cap_height` pixels tall. What lies outside of the picture is cut off.
+void draw_text(Image& image, const std::string& text, int left, int baseline, int cap_height);
+int text_width(const std::string& text, int cap_height);  // pixels
+
 }  // namespace glint

@@ -41,6 +41,8 @@ Scores score_view(const fs::path& folder, const View& view) {
   const Image normal = read_map(folder / "normal.exr", 3, size);
   const Image transparency = read_map(folder / "transparency.exr", 1, size);
   const Image behind_depth = read_map(folder / "behind_depth.exr", 1, size);
+  const Image transmitted = read_map(folder / "transmitted.exr", 3, size);
+  const Image reflected = read_map(folder / "reflected.exr", 3, size);
 
   ViewPair pair;
   pair.rgb = rgb;
@@ -48,10 +50,14 @@ Scores score_view(const fs::path& folder, const View& view) {
   pair.normal = view_of(normal);
   pair.transparency = view_of(transparency);
   pair.behind_depth = view_of(behind_depth);
+  pair.transmitted = view_of(transmitted);
+  pair.reflected = view_of(reflected);
   pair.true_rgb = view.rgb;
   pair.true_depth = view_of(view.truth.depth);
   pair.true_normal = view_of(view.truth.normal);
   pair.true_behind_depth = view_of(view.truth.behind_depth);
+  pair.true_transmitted = view_of(view.truth.transmitted);
+  pair.true_reflected = view_of(view.truth.reflected);
   if (!view.truth.glass.empty()) pair.glass = view.truth.glass;
   return evaluate_view(pair);
 }

@@ -33,6 +33,29 @@ Json parse_file(const fs::path& path) {
   });
 }
 
+void check_map(const fs::path& folder, const std::string& name, const Image& map, ImageSize size) {
+  GLINT_CHECK(
+      map.size() == size && (map.channels() == 1 || map.channels() == 3),
+      kBadPrediction,
+      "{}: the method rendered {} as {}x{}x{}, expected {}x{} pixels of 1 or 3 channels",
+      folder.string(),
+      name,
+      map.width(),
+      map.height(),
+      map.channels(),
+      size.width,
+      size.height
+  );
+}
+
+void write_layer(const fs::path& folder, const std::string& name, const Image& layer) {
+  const bool for_people = name == "interface" || name == "transmission" || name == "reflection";
+  if (for_people)
+    write_png(folder / (name + ".png"), layer);
+  else
+    write_exr(folder / (name + ".exr"), layer);
+}
+
 }  // namespace
 
 fs::path run_folder(const fs::path& out, const CellKey& cell) { return out / "runs" / cell.text(); }
@@ -111,15 +134,14 @@ fs::path view_folder(const fs::path& run, const std::string& view_name) {
 void write_render(const fs::path& folder, const RenderOutput& output) {
   write_exr(folder / "rgb.exr", output.rgb);
   write_png(folder / "rgb.png", output.rgb);
-  if (!output.depth.empty()) write_exr(folder / "depth.exr", output.depth);
-  if (!output.normal.empty()) write_exr(folder / "normal.exr", output.normal, true);
-  for (const auto& [name, layer] : output.layers) {
-    if (layer.empty()) continue;
-    if (layer.channels() == 1)
-      write_exr(folder / (name + ".exr"), layer);
-    else
-      write_png(folder / (name + ".png"), layer);
-  }
+  const auto there = [&](const std::string& name, const Image& map) {
+    if (!map.empty()) check_map(folder, name, map, output.rgb.size());
+    return !map.empty();
+  };
+  if (there("depth", output.depth)) write_exr(folder / "depth.exr", output.depth);
+  if (there("normal", output.normal)) write_exr(folder / "normal.exr", output.normal, true);
+  for (const auto& [name, layer] : output.layers)
+    if (there(name, layer)) write_layer(folder, name, layer);
 }
 
 std::vector<std::string> log_tail(const fs::path& run, std::size_t lines) {

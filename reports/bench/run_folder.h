@@ -45,8 +45,10 @@ std::optional<TrainCost> trained_cost(const RunSpec& spec);
 // renders/<view>: the view's name with '/' replaced.
 fs::path view_folder(const fs::path& run, const std::string& view_name);
 
-// rgb.exr (as displayed, not clamped), rgb.png, depth.exr, normal.exr, and each layer: maps of one
-// channel as EXR, colours as PNG.
+// rgb.exr (as displayed, not clamped), rgb.png, depth.exr, normal.exr, and each layer under its
+// name (docs/RECORDS.md lists those that are scored): the radiance of a set ("interface",
+// "transmission", "reflection") as PNG, for people; everything else as EXR. Errors
+// (kBadPrediction): a map of another size than rgb, or with neither 1 nor 3 channels.
 void write_render(const fs::path& folder, const RenderOutput& output);
 
 // Last lines of log.jsonl, for failure records.

@@ -67,7 +67,7 @@ void render_stage(const RunSpec& spec, const Scene& scene, const Method& method)
     );
     write_render(view_folder(spec.folder, view.name), output);
   }
-  write_strip(spec.folder, scene.test);
+  write_strips(spec.folder, scene.test);
 }
 
 double measure_fps(const Method& method, const Scene& scene, const TimingOptions& options) {

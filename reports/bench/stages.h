@@ -22,7 +22,7 @@ std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene);
 // The trained method of a run folder. Errors (kBadPrediction): not trained, files damaged.
 std::unique_ptr<Method> load_trained(const RunSpec& spec);
 
-// Renders the test views into renders/, and strip.png for people.
+// Renders the test views into renders/, and strips of them for people (strip.h).
 void render_stage(const RunSpec& spec, const Scene& scene, const Method& method);
 
 // Frames a second over the test cameras: the inverse of the mean frame time. Nothing is written or

@@ -1,17 +1,34 @@
 // SPDX-License-Identifier: MIT
-// strip.png: rows of ground truth, render, error, depth and normals side by side, to look at.
+// strip.png: the maps of a render beside their ground truth, to look at. Depths have one scale for
+// all methods of a scene and errors one gain; both are printed below.
 #pragma once
+
+#include <string>
+#include <vector>
 
 #include "glint/core/files.h"
 #include "glint/scene/scene.h"
 
 namespace glint {
 
-inline constexpr int kStripViews = 4;      // rows, evenly spread over the test views
+inline constexpr std::size_t kStripViews =
+    4;                                     // rows of a run's strip, evenly spread over the views
 inline constexpr float kErrorGain = 4.0f;  // |render - truth| is shown this much brighter
 
-// From the files of `run`/renders. Panels in order: truth, render, error, depth, true depth,
-// normal, true normal; those that do not exist are grey.
-void write_strip(const fs::path& run, const std::vector<View>& views);
+// The limits of the depth colours in metres: the 1st and 99th percentile of the true depths of all
+// views, first surface and behind glass. Without truth, of the depths that this run rendered.
+struct DepthScale {
+  float low = 0, high = 1;
+  bool from_truth = false;
+};
+DepthScale depth_scale(const fs::path& run, const std::vector<View>& views);
+
+// The panels of a run, alike in all its strips: truth, render, error, then each map that any view
+// has under renders/, followed by its truth.
+std::vector<std::string> strip_titles(const fs::path& run, const std::vector<View>& views);
+
+// renders/<view>/strip.png of every view and `run`/strip.png, from the files under `run`/renders. A
+// map that only this view lacks is grey. Errors (kBadReference): an image file is damaged.
+void write_strips(const fs::path& run, const std::vector<View>& views);
 
 }  // namespace glint

@@ -66,6 +66,7 @@ TEST_CASE("a run folder holds the files of the contract") {
         "renders/0002/rgb.exr",
         "renders/0002/rgb.png",
         "renders/0002/depth.exr",
+        "renders/0003/strip.png",
         "renders/0003/transparency.exr",
         "renders/0003/interface.png"}) {
     INFO(file);
@@ -203,7 +204,12 @@ TEST_CASE("tables of a whole run are written in four formats") {
   run_profile(fake_run(folder.path()));
   write_tables(folder.path(), result_tables(folder.path()));
   for (const char* table :
-       {"table1_photometric", "table2_geometry", "table3_ablation", "tableB_cost", "regions"})
+       {"table1_photometric",
+        "table2_geometry",
+        "table3_ablation",
+        "tableB_cost",
+        "regions",
+        "decomposition"})
     for (const char* extension : {".md", ".tex", ".csv", ".json"})
       CHECK(fs::exists(folder.path() / "tables" / (std::string(table) + extension)));
   CHECK_THROWS_AS(result_tables(folder.path(), {"table9"}), Error);

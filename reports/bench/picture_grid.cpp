@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "reports/bench/picture_grid.h"
+
+#include <algorithm>
+
+#include "glint/scene/image_files.h"
+
+namespace glint {
+
+namespace {
+
+constexpr int kGap = 4;  // pixels between panels
+
+// Sizes of a grid in pixels.
+struct Layout {
+  int column = 0;         // width of a panel
+  int letter = 0;         // height of capitals
+  int line = 0;           // height of a line of text
+  int baseline = 0;       // of a line, from its top
+  int bar = 0;            // width of the colour bar
+  std::vector<int> rows;  // heights
+};
+
+int height_of(const std::vector<Image>& row) {
+  int height = 0;
+  for (const Image& panel : row) height = std::max(height, panel.height());
+  return height;
+}
+
+Layout layout_of(const PictureGrid& grid) {
+  Layout layout;
+  layout.column = kMinPanelWidth;
+  for (const auto& row : grid.rows) {
+    layout.rows.push_back(height_of(row));
+    for (const Image& panel : row) layout.column = std::max(layout.column, panel.width());
+  }
+  layout.letter = layout.column / 20;
+  layout.line = 2 * layout.letter;
+  layout.baseline = layout.line - layout.letter / 2;
+  layout.bar = layout.column / 2;
+  return layout;
+}
+
+int left_of(std::size_t column, const Layout& layout) {
+  return static_cast<int>(column) * (layout.column + kGap);
+}
+
+int width_of(const LegendLine& line, const Layout& layout) {
+  int width = kGap + text_width(line.text, layout.letter) + layout.letter;
+  if (line.depth_bar)
+    width += layout.bar + layout.letter + text_width(line.rest, layout.letter) + layout.letter;
+  return width;
+}
+
+void paste(const Image& panel, int left, int top, Image& picture) {
+  for (int y = 0; y < panel.height(); ++y)
+    std::copy_n(panel.pixel(0, y), panel.width() * panel.channels(), picture.pixel(left, top + y));
+}
+
+Image depth_bar(int width, int height) {
+  Image ramp(width, height, 1);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) ramp.at(x, y) = static_cast<float>(x + 1);
+  return colorize_depth(ramp, 1, static_cast<float>(width));
+}
+
+void draw_legend_line(const LegendLine& line, int top, const Layout& layout, Image& picture) {
+  const int baseline = top + layout.baseline;
+  int left = kGap;
+  draw_text(picture, line.text, left, baseline, layout.letter);
+  if (!line.depth_bar) return;
+  left += text_width(line.text, layout.letter) + layout.letter;
+  paste(depth_bar(layout.bar, layout.letter), left, baseline - layout.letter, picture);
+  left += layout.bar + layout.letter;
+  draw_text(picture, line.rest, left, baseline, layout.letter);
+}
+
+Image white_picture(const PictureGrid& grid, const Layout& layout) {
+  int width = left_of(grid.titles.size(), layout) - kGap;
+  for (const LegendLine& line : grid.legend) width = std::max(width, width_of(line, layout));
+  int height = layout.line * static_cast<int>(1 + grid.legend.size());
+  for (const int row : layout.rows) height += row + kGap;
+  return Image(width, height, 3, 1.0f);
+}
+
+void draw_row(
+    const std::vector<Image>& row, int top, int height, const Layout& layout, Image& picture
+) {
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const bool missing = row[i].empty();
+    paste(
+        missing ? Image(layout.column, height, 3, 0.5f) : row[i], left_of(i, layout), top, picture
+    );
+  }
+}
+
+}  // namespace
+
+Image fit_panel(const Image& panel) {
+  if (panel.width() > kMaxPanelWidth) {
+    const int height = std::max(1, panel.height() * kMaxPanelWidth / panel.width());
+    return resize_image(panel, {kMaxPanelWidth, height});
+  }
+  const int factor = (kMinPanelWidth + panel.width() - 1) / panel.width();
+  if (factor <= 1) return panel;
+  Image large(panel.width() * factor, panel.height() * factor, panel.channels());
+  for (int y = 0; y < large.height(); ++y)
+    for (int x = 0; x < large.width(); ++x)
+      std::copy_n(panel.pixel(x / factor, y / factor), panel.channels(), large.pixel(x, y));
+  return large;
+}
+
+Image draw_grid(const PictureGrid& grid) {
+  const Layout layout = layout_of(grid);
+  Image picture = white_picture(grid, layout);
+  for (std::size_t i = 0; i < grid.titles.size(); ++i) {
+    const int left = left_of(i, layout) + kGap;
+    draw_text(picture, grid.titles[i], left, layout.baseline, layout.letter);
+  }
+  int top = layout.line;
+  for (std::size_t i = 0; i < grid.rows.size(); ++i) {
+    draw_row(grid.rows[i], top, layout.rows[i], layout, picture);
+    top += layout.rows[i] + kGap;
+  }
+  for (const LegendLine& line : grid.legend) {
+    draw_legend_line(line, top, layout, picture);
+    top += layout.line;
+  }
+  return picture;
+}
+
+}  // namespace glint

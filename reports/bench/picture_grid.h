@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Pictures in rows and columns with titles above and a legend below, to look at.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glint/core/image.h"
+
+namespace glint {
+
+// Panels are enlarged to at least the first, by whole numbers, and shrunk to at most the second.
+inline constexpr int kMinPanelWidth = 200, kMaxPanelWidth = 480;  // pixels
+
+struct LegendLine {
+  std::string text;
+  bool depth_bar = false;  // the colours of depth, near to far, behind the text
+  std::string rest;        // behind the bar
+};
+
+struct PictureGrid {
+  std::vector<std::string> titles;       // one a column
+  std::vector<std::vector<Image>> rows;  // panels [h][w][3] from fit_panel(); empty ones stay grey
+  std::vector<LegendLine> legend;
+};
+
+Image fit_panel(const Image& panel);
+
+// On white, every column as wide as the widest panel.
+Image draw_grid(const PictureGrid& grid);
+
+}  // namespace glint
