@@ -44,6 +44,17 @@ PixelRay pixel_ray(const Camera& camera, std::size_t i) {
 
 }  // namespace
 
+Rays camera_rays(const Camera& camera) {
+  const ImageSize size = camera.size();
+  Rays rays{Image(size.width, size.height, 3), Image(size.width, size.height, 3)};
+  const Mat3f rotation = cast<float>(camera.rotation_cam_from_world);
+  for (std::size_t i = 0; i < size.num_pixels(); ++i) {
+    put3(rays.origins, i, cast<float>(camera.center()));
+    put3(rays.directions, i, transpose_times(rotation, pixel_ray(camera, i).in_cam));
+  }
+  return rays;
+}
+
 const GlassBuffer&
 GlassTransport::read_interface(const Camera& camera, const RasterOutput& interface) {
   const ImageSize size = camera.size();

@@ -34,6 +34,9 @@ struct GlassLayers {
   Image interface, transmission, reflection;
 };
 
+// Camera rays with camera-space z = 1: t is planar depth.
+Rays camera_rays(const Camera& camera);
+
 class GlassTransport {
  public:
   explicit GlassTransport(GlassOptions options = {}) : options_(options) {}

@@ -13,8 +13,6 @@ namespace glint {
 
 namespace {
 
-constexpr int kPublishedIterations = 30000;
-
 Json log_line(const StepStats& stats, double seconds) {
   Json line = {
       {"iteration", stats.iteration},
@@ -45,8 +43,8 @@ void check_step(const Method& method, const StepStats& stats, const fs::path& ch
 
 }  // namespace
 
-int scaled_step(int published, int iterations, int at_least) {
-  const double scaled = static_cast<double>(published) * iterations / kPublishedIterations;
+int scaled_step(int published, int iterations, int at_least, int of) {
+  const double scaled = static_cast<double>(published) * iterations / of;
   return std::max(at_least, static_cast<int>(std::lround(scaled)));
 }
 

@@ -43,8 +43,8 @@ class ViewSampler {
   std::vector<std::size_t> remaining_;
 };
 
-// A published schedule for 30,000 iterations, scaled to this run: round(n * iterations / 30000), at
+// A published schedule for `of` iterations, scaled to this run: round(n * iterations / of), at
 // least `at_least`.
-int scaled_step(int published, int iterations, int at_least = 1);
+int scaled_step(int published, int iterations, int at_least = 1, int of = 30000);
 
 }  // namespace glint
