@@ -62,6 +62,9 @@ struct GlintConfig {
   float depth_threshold = 0.01f, low_albedo = 0.05f;
   DensifyConfig densify;
   float reflection_gradient = 1e-4f;
+  // Opacity resets of the secondary sets. Off: their gradient is weighted by t and k_s, so most of
+  // their surfels would not recover before the next pruning.
+  bool reset_secondary = false;
   SurfelRates rates;
 
   GlintConfig() {
@@ -100,6 +103,7 @@ struct GlintConfig {
     v("depth_threshold", depth_threshold, "tau_d: metres between the layers at glass");
     v("low_albedo", low_albedo, "gamma_a: albedo of glass lies below");
     v("reflection_gradient", reflection_gradient, "densification threshold of the reflection set");
+    v("reset_secondary", reset_secondary, "opacity resets of transmission and reflection too");
     densify.visit(v);
   }
   int cells_for(ImageSize size) const {
@@ -182,8 +186,10 @@ class Glint final : public Method {
     switch_off_missing_priors();
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
     interface_ = new_set(points, options.seed, true, windows_.densify);
-    transmission_ = new_set(points, options.seed + 1, false, windows_.densify);
-    DensifyConfig traced = windows_.densify;
+    DensifyConfig secondary = windows_.densify;
+    if (!config_.reset_secondary) secondary.reset_interval = options.iterations + 1;
+    transmission_ = new_set(points, options.seed + 1, false, secondary);
+    DensifyConfig traced = secondary;
     traced.gradient_threshold = config_.reflection_gradient;
     reflection_ = new_set(
         reflection_points(
@@ -252,6 +258,13 @@ class Glint final : public Method {
     interface_ = read("interface.ply");
     transmission_ = read("transmission.ply");
     reflection_ = read("reflection.ply");
+    GLINT_CHECK(
+        interface_.cloud().extra_names == std::vector<std::string>({"transparency", "specular"}),
+        kBadPrediction,
+        "{}/interface.ply: expected the extra fields transparency and specular; was it trained by "
+        "another method?",
+        folder
+    );
     joint_ = true;
     interface_degree_ = secondary_degree_ = 3;
     transport_ = GlassTransport(joint_options());

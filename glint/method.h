@@ -28,8 +28,9 @@ struct RenderOutput {
   Image depth;   // [H][W][1] planar z in metres; 0: nothing hit
   Image normal;  // [H][W][3] unit, camera space, facing the camera; zero: nothing hit
   Image alpha;   // [H][W][1]
-  std::map<std::string, Image>
-      layers;  // "transparency", "interface", "transmission", "reflection", ...
+  // Further maps by name (docs/RECORDS.md): transparency, specularity, behind_depth, transmitted,
+  // reflected; pictures: interface, transmission, reflection.
+  std::map<std::string, Image> layers;
 };
 
 // Options of one run that every method gets.

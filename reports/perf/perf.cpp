@@ -53,6 +53,7 @@ std::string ratio(double value) { return value > 0 ? fmt::format("{:.2f}x", valu
 
 std::vector<PerfRow> run_perf(const PerfOptions& options) {
   std::vector<PerfCase> cases = raster_cases(options);
+  for (PerfCase& c : trace_cases(options)) cases.push_back(std::move(c));
   for (PerfCase& c : training_cases(options)) cases.push_back(std::move(c));
   std::vector<PerfRow> rows;
   const int max_threads = std::thread::hardware_concurrency() > 1 ? 2 : 1;
@@ -75,6 +76,7 @@ Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) 
       {"width", options.width},
       {"height", options.height},
       {"surfels", options.surfels},
+      {"overlap", options.overlap},
       {"runs", options.runs},
       {"rows", Json::array()}};
   for (const PerfRow& row : rows)
@@ -92,10 +94,12 @@ Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) 
 
 std::string perf_to_text(const PerfOptions& options, const std::vector<PerfRow>& rows) {
   std::string text = fmt::format(
-      "{}x{}, {} surfels, medians of {} runs, {}\n{:<34} {:>7} {:>10} {:>16} {:>10} {:>10}\n",
+      "{}x{}, {} surfels (overlap {}), medians of {} runs, {}\n{:<34} {:>7} {:>10} {:>16} {:>10} "
+      "{:>10}\n",
       options.width,
       options.height,
       options.surfels,
+      options.overlap,
       options.runs,
       this_machine().cpu,
       "op",

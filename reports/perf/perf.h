@@ -31,11 +31,15 @@ struct PerfRow {
 struct PerfOptions {
   int width = 240, height = 135;  // pixels
   std::size_t surfels = 20000;
+  // Sigma of a surfel over half the mean distance of its neighbours. 2.6 puts a pixel into the
+  // boxes of about 45 surfels, as in a 2DGS trained on GlassRoom for 1500 steps; 1.5: about 15.
+  float overlap = 2.6f;
   int runs = 15;           // of each case, after one warm-up
   std::string only = "*";  // glob over case names
 };
 
 std::vector<PerfCase> raster_cases(const PerfOptions& options);
+std::vector<PerfCase> trace_cases(const PerfOptions& options);
 std::vector<PerfCase> training_cases(const PerfOptions& options);
 
 // Every case at 1 and 2 threads (1 only where the machine has one). Runs of SIMD and scalar

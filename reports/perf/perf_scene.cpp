@@ -12,9 +12,6 @@ namespace glint {
 namespace {
 
 constexpr Vec3f kHalfRoom{2.5f, 1.5f, 2.5f};  // metres
-// Sigma over half the mean distance of neighbours, set so that a pixel lies in the boxes of about
-// 45 surfels, as in a 2DGS trained on GlassRoom for 1500 steps (45.3).
-constexpr float kOverlap = 2.6f;
 
 struct SurfacePoint {
   Vec3f position;
@@ -60,7 +57,7 @@ SurfelCloud perf_cloud(const PerfOptions& options) {
     const float rotation[4] = {q.w, q.x, q.y, q.z};
     std::copy_n(rotation, 4, &cloud.rotations[4 * i]);
     for (int k = 0; k < 2; ++k)
-      cloud.log_scales[2 * i + k] = std::log(kOverlap * spacing * rng.uniform(0.4f, 1.2f));
+      cloud.log_scales[2 * i + k] = std::log(options.overlap * spacing * rng.uniform(0.4f, 1.2f));
     cloud.opacity_logits[i] =
         logit(rng.uniform() < 0.6f ? rng.uniform(0.7f, 0.99f) : rng.uniform(0.05f, 0.7f));
     for (int k = 0; k < 45; ++k) cloud.sh_rest[45 * i + k] = 0.05f * rng.normal();
@@ -79,6 +76,13 @@ Scene perf_scene(const PerfOptions& options) {
   view.rgb = Image(options.width, options.height, 3);
   Rng rng(2);
   for (float& value : view.rgb.values()) value = rng.uniform(0.3f, 0.6f);
+  view.priors.normal = Image(options.width, options.height, 3);
+  for (std::size_t i = 0; i < view.priors.normal.num_pixels(); ++i)
+    view.priors.normal.data()[3 * i + 2] = -1;
+  view.priors.depth = Image(options.width, options.height, 1);
+  for (float& value : view.priors.depth.values()) value = rng.uniform(0.2f, 0.8f);
+  view.priors.albedo = Image(options.width, options.height, 3, 0.3f);
+  view.priors.basecolor = view.priors.albedo;
   scene.train.push_back(std::move(view));
   const SurfelCloud cloud = perf_cloud(options);
   for (std::size_t i = 0; i < cloud.size(); ++i) {

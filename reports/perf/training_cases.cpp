@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "glint/core/files.h"
 #include "glint/method.h"
 #include "glint/scene/ply.h"
 #include "glint/train/adam.h"
@@ -67,20 +68,34 @@ PerfCase adam_case(const PerfOptions& options) {
       {}};
 }
 
-// Whole steps of a method late in training (all losses, SH degree 3), without densification, on the
-// same surfels as the ops.
+// The arrays of perf_cloud() in every set that the method saves; extra channels are repeated.
+void write_perf_sets(const Method& method, const fs::path& folder, const PerfOptions& options) {
+  method.save(folder.string());
+  for (const fs::path& file : list_files(folder, {".ply"})) {
+    SurfelCloud cloud = perf_cloud(options);
+    const SurfelCloud saved = read_surfel_ply(file);
+    cloud.extra_names = saved.extra_names;
+    cloud.extra_logits.resize(cloud.size() * saved.num_extra());
+    for (std::size_t i = 0; i < cloud.extra_logits.size(); ++i)
+      cloud.extra_logits[i] = saved.extra_logits[i % saved.extra_logits.size()];
+    write_surfel_ply(file, cloud);
+  }
+}
+
+// Whole steps of a method in mid-training (all sets and losses, SH degree 3), without
+// densification, every set with the same surfels as the ops.
 PerfCase step_case(const MethodSpec& spec, const PerfOptions& options) {
   struct State {
     Scene scene;
     std::unique_ptr<Method> method;
-    int iteration = 20000;
+    int iteration = 15000;
   };
   const auto s = std::make_shared<State>();
   s->scene = perf_scene(options);
   s->method = spec.create(Json{{"densify_until", 0}});
   s->method->initialize(s->scene, {30000, 0});
   const fs::path folder = fs::temp_directory_path() / fmt::format("glint_perf_{}", ::getpid());
-  write_surfel_ply(folder / "interface.ply", perf_cloud(options));
+  write_perf_sets(*s->method, folder, options);
   s->method->load(folder.string());
   fs::remove_all(folder);
   return {

@@ -20,6 +20,8 @@ void add_perf_verb(CommandLine& line) {
   verb->add_option("--height", options->height, "pixels")->check(CLI::PositiveNumber);
   verb->add_option("--surfels", options->surfels, "surfels of the scene")
       ->check(CLI::PositiveNumber);
+  verb->add_option("--overlap", options->overlap, "surfels' sigma over half their spacing")
+      ->check(CLI::PositiveNumber);
   verb->add_option("--runs", options->runs, "runs of each op")->check(CLI::PositiveNumber);
   verb->add_option("--op", options->only, "only ops whose name matches a glob");
 }
