@@ -166,10 +166,11 @@ TEST_CASE("coincident surfels count once each, more of them than one traversal r
   }
 }
 
-TEST_CASE("camera rays see what rasterize sees where the low-pass is inactive") {
-  Rng rng(6);
-  const Camera camera = random_camera(rng, {48, 32});
-  // Face on within 3 degrees and half a metre apart: both orders agree, the low-pass never holds.
+namespace {
+
+// Face on within 3 degrees and half a metre apart: rasterize's order (of centres) and trace's (of
+// hits) agree, and the low-pass never holds.
+TraceArrays layered_arrays(const Camera& camera, Rng& rng) {
   TraceArrays arrays;
   arrays.sh_degree = 0;
   for (int i = 0; i < 14; ++i) {
@@ -187,35 +188,76 @@ TEST_CASE("camera rays see what rasterize sees where the low-pass is inactive") 
     for (const float f : feature) arrays.sh_dc.push_back((f - 0.5f) / kSh0);
     arrays.sh_rest.insert(arrays.sh_rest.end(), 45, 0.0f);
   }
-  Rasterizer rasterizer;
-  RasterOutput raster;
-  rasterizer.forward(arrays.surfels.view(), camera, {}, raster);
+  return arrays;
+}
+
+// Rays of the pixels (camera z = 1), starting at a planar depth.
+Rays pixel_rays(const Camera& camera, const Image& start) {
   Rays rays = empty_rays(camera.width, camera.height);
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
+      const auto i = static_cast<std::size_t>(y * camera.width + x);
       const Vec3d in_cam = camera.ray_in_cam(x + 0.5, y + 0.5);
-      set_ray(
-          rays,
-          static_cast<std::size_t>(y * camera.width + x),
-          camera.center(),
-          transpose_times(camera.rotation_cam_from_world, in_cam)
-      );
+      const Vec3d direction = transpose_times(camera.rotation_cam_from_world, in_cam);
+      const auto z = static_cast<double>(start.data()[i]);
+      set_ray(rays, i, camera.center() + z * direction, direction);
     }
+  return rays;
+}
+
+// Share of the pixels where both agree; depths of `traced` are behind `start`. Pixels where a hit
+// lies at a cut-off may differ.
+double share_that_agrees(
+    const TraceOutput& traced, const RasterOutput& raster, const Image& start
+) {
+  std::size_t agree = 0;
+  const std::size_t pixels = traced.alpha.num_pixels();
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const float alpha = raster.alpha.data()[i];
+    const float depth = raster.depth_sum.data()[i] - alpha * start.data()[i];
+    agree += std::abs(traced.alpha.data()[i] - alpha) < 1e-4f &&
+             std::abs(traced.depth_sum.data()[i] - depth) < 1e-3f &&
+             std::abs(traced.color.data()[3 * i] - raster.features.data()[3 * i]) < 1e-4f;
+  }
+  return static_cast<double>(agree) / static_cast<double>(pixels);
+}
+
+}  // namespace
+
+TEST_CASE("camera rays see what rasterize sees where the low-pass is inactive") {
+  Rng rng(6);
+  const Camera camera = random_camera(rng, {48, 32});
+  const TraceArrays arrays = layered_arrays(camera, rng);
+  Rasterizer rasterizer;
+  RasterOutput raster;
+  rasterizer.forward(arrays.surfels.view(), camera, {}, raster);
+  const Image start(camera.width, camera.height, 1);
   TraceSettings settings;
   settings.near = 0.2f;
   Tracer tracer;
   TraceOutput out;
-  tracer.forward(arrays.view(), rays, settings, out);
-  std::size_t covered = 0, agree = 0;
-  for (std::size_t i = 0; i < out.alpha.num_pixels(); ++i) {
-    covered += raster.alpha.data()[i] > 0.1f;
-    agree += std::abs(out.alpha.data()[i] - raster.alpha.data()[i]) < 1e-4f &&
-             std::abs(out.depth_sum.data()[i] - raster.depth_sum.data()[i]) < 1e-3f &&
-             std::abs(out.color.data()[3 * i] - raster.features.data()[3 * i]) < 1e-4f;
-  }
+  tracer.forward(arrays.view(), pixel_rays(camera, start), settings, out);
+  std::size_t covered = 0;
+  for (const float alpha : raster.alpha.values()) covered += alpha > 0.1f;
   CHECK(covered > 300);
-  // Pixels where a hit lies at a cut-off may differ.
-  CHECK(static_cast<double>(agree) > 0.97 * static_cast<double>(out.alpha.num_pixels()));
+  CHECK(share_that_agrees(out, raster, start) > 0.97);
+}
+
+TEST_CASE("rasterising behind a depth map is tracing the camera rays on from there") {
+  Rng rng(16);
+  const Camera camera = random_camera(rng, {48, 32});
+  const TraceArrays arrays = layered_arrays(camera, rng);
+  Image start(camera.width, camera.height, 1);
+  for (float& z : start.values()) z = rng.uniform(0.3f, 6);
+  RasterInput input = arrays.surfels.view();
+  input.near_limit = start;
+  Rasterizer rasterizer;
+  RasterOutput raster;
+  rasterizer.forward(input, camera, {}, raster);
+  Tracer tracer;
+  TraceOutput out;
+  tracer.forward(arrays.view(), pixel_rays(camera, start), {}, out);
+  CHECK(share_that_agrees(out, raster, start) > 0.97);
 }
 
 TEST_CASE("a mirrored ray sees the surfel in the mirror") {
