@@ -10,7 +10,8 @@
 #include "glint/method.h"
 #include "glint/render/blend.h"
 #include "glint/scene/ply.h"
-#include "glint/train/normal_consistency.h"
+#include "glint/train/geometry_losses.h"
+#include "glint/train/initial_points.h"
 #include "glint/train/photometric.h"
 #include "glint/train/surfel_set.h"
 #include "glint/train/trainer.h"
@@ -21,30 +22,33 @@ namespace {
 
 struct TwoDgsConfig {
   float lambda_ssim = 0.2f;  // (1 - lambda) L1 + lambda (1 - SSIM)
-  float lambda_normal = 0.05f;
-  float lambda_distortion =
-      0.0f;                // the official default; the paper names 1000 (bounded), 100 (else)
-  int normal_from = 7000;  // published iterations, scaled to the run
-  int distortion_from = 3000;
-  int sh_interval = 1000;     // one degree more each
-  int random_points = 30000;  // where the scene has no points
+  // The official default; the paper names 1000 (bounded scenes), 100 (unbounded).
+  float lambda_distortion = 0;
+  int distortion_from = 3000;  // published iterations, scaled to the run
+  int sh_interval = 1000;      // one degree more each
+  int random_points = 30000;   // where the scene has no points
+  GeometryLossConfig geometry;
   DensifyConfig densify;
   SurfelRates rates;
 
+  TwoDgsConfig() {
+    geometry.lambda_consistency = 0.05f;
+    geometry.consistency_from = 7000;
+  }
   template <class V>
   void visit(V&& v) {
     v("lambda_ssim", lambda_ssim, "weight of 1 - SSIM against L1");
-    v("lambda_normal", lambda_normal, "weight of normal consistency");
     v("lambda_distortion", lambda_distortion, "weight of depth distortion");
-    v("normal_from", normal_from, "first iteration of normal consistency (of 30,000)");
     v("distortion_from", distortion_from, "first iteration of depth distortion (of 30,000)");
     v("sh_interval", sh_interval, "iterations per SH degree (of 30,000)");
     v("random_points", random_points, "initial surfels of scenes without points");
+    geometry.visit(v);
     densify.visit(v);
+    rates.visit(v);
   }
   // Windows of this run.
   void scale_to(int iterations) {
-    normal_from = scaled_step(normal_from, iterations);
+    geometry.scale([&](int published) { return scaled_step(published, iterations); });
     distortion_from = scaled_step(distortion_from, iterations);
     sh_interval = scaled_step(sh_interval, iterations);
     densify.from = scaled_step(densify.from, iterations);
@@ -52,7 +56,7 @@ struct TwoDgsConfig {
     // Fewer views than this would make the gradient statistic too noisy to grow by.
     densify.interval = scaled_step(densify.interval, iterations, 50);
     densify.reset_interval = scaled_step(densify.reset_interval, iterations, 300);
-    rates.means_steps = iterations;
+    rates.means_steps = scaled_step(rates.means_steps, iterations);
   }
 };
 
@@ -64,6 +68,10 @@ class TwoDgs final : public Method {
     scene_ = &scene;
     windows_ = config_;
     windows_.scale_to(options.iterations);
+    warnings_ = geometry_.set_up(windows_.geometry, scene, "2dgs");
+    if (scene.points.positions.empty())
+      warnings_.push_back(fmt::format("2dgs: {} has no points; starts from random ones", scene.name)
+      );
     InitialSurfels initial;
     initial.seed = options.seed;
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
@@ -85,9 +93,10 @@ class TwoDgs final : public Method {
     const RasterOutput& out = set_.forward(view.camera, sh_degree_, settings_);
     StepStats stats;
     stats.iteration = iteration;
-    clear_gradients(view.camera.size());
+    clear_gradient(view.camera.size(), 3, gradient_);
     add_photometric(view, out, stats);
-    if (iteration >= windows_.normal_from) add_normal_consistency(view, out, stats);
+    expected_depth_map(out, depth_);
+    geometry_.add(view, iteration, out, depth_, gradient_, stats);
     if (settings_.with_distortion) add_distortion(out, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     set_.backward(view.camera, sh_degree_, settings_, gradient_);
@@ -120,24 +129,9 @@ class TwoDgs final : public Method {
   Json config() const override { return config_to_json(config_); }
   void check_finite() const override { glint::check_finite(set_.cloud(), "interface"); }
   std::size_t num_surfels() const override { return set_.cloud().size(); }
-  std::vector<std::string> warnings() const override {
-    if (scene_ == nullptr || !scene_->points.positions.empty()) return {};
-    return {fmt::format("2dgs: {} has no points; starts from random ones", scene_->name)};
-  }
+  std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
-  void clear_gradients(ImageSize size) {
-    for (auto [image, channels] :
-         {std::pair{&gradient_.features, 3},
-          {&gradient_.normal, 3},
-          {&gradient_.alpha, 1},
-          {&gradient_.depth_sum, 1},
-          {&gradient_.distortion, 1},
-          {&dL_ddepth_, 1}}) {
-      if (image->size() != size) *image = Image(size.width, size.height, channels);
-      std::fill(image->values().begin(), image->values().end(), 0.0f);
-    }
-  }
   void add_photometric(const View& view, const RasterOutput& out, StepStats& stats) {
     const PhotometricWeights weights{1 - config_.lambda_ssim, config_.lambda_ssim};
     const PhotometricTerms terms =
@@ -145,42 +139,26 @@ class TwoDgs final : public Method {
     stats.terms["photometric"] = terms.weighted(weights);
     stats.psnr = -10 * std::log10(std::max(terms.mse, 1e-10));
   }
-  void add_normal_consistency(const View& view, const RasterOutput& out, StepStats& stats) {
-    expected_depth_map(out, depth_);
-    const float weight = config_.lambda_normal;
-    stats.terms["normal"] =
-        static_cast<double>(weight) *
-        normal_.evaluate(
-            view.camera, out.normal, depth_, out.alpha, weight, gradient_.normal, dL_ddepth_
-        );
-    for (std::size_t i = 0; i < depth_.num_pixels(); ++i)
-      expected_depth_vjp(
-          out.depth_sum.data()[i],
-          out.alpha.data()[i],
-          dL_ddepth_.data()[i],
-          gradient_.depth_sum.data()[i],
-          gradient_.alpha.data()[i]
-      );
-  }
   void add_distortion(const RasterOutput& out, StepStats& stats) {
     const double count = static_cast<double>(out.distortion.num_pixels());
     const std::span<const float> values = out.distortion.values();
     const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
     stats.terms["distortion"] = static_cast<double>(config_.lambda_distortion) * mean;
     const float weight = config_.lambda_distortion / static_cast<float>(count);
-    std::fill(gradient_.distortion.values().begin(), gradient_.distortion.values().end(), weight);
+    gradient_.distortion = Image(out.distortion.width(), out.distortion.height(), 1, weight);
   }
 
   TwoDgsConfig config_, windows_;
   const Scene* scene_ = nullptr;
+  std::vector<std::string> warnings_;
   SurfelSet set_;
   ViewSampler views_;
   int sh_degree_ = 3;
   RasterSettings settings_;
   PhotometricLoss photometric_;
-  NormalConsistencyLoss normal_;
+  GeometryLosses geometry_;
   RasterOutputGradient gradient_;
-  Image depth_, dL_ddepth_;
+  Image depth_;
 };
 
 MethodSpec two_dgs_spec() {
@@ -194,8 +172,20 @@ MethodSpec two_dgs_spec() {
   return spec;
 }
 
+// Control: priors alone may explain a gain. The losses, weights and gate of GLINT's priors.
+MethodSpec two_dgs_prior_spec() {
+  MethodSpec spec = two_dgs_spec();
+  spec.id = "2dgs/prior";
+  spec.title = "2DGS + priors";
+  spec.paper_row = "";
+  spec.description = "2DGS with the depth and normal priors of GLINT";
+  spec.overrides = prior_control(30000);
+  return spec;
+}
+
 }  // namespace
 
 GLINT_REGISTER(two_dgs_spec())
+GLINT_REGISTER(two_dgs_prior_spec())
 
 }  // namespace glint

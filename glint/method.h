@@ -64,13 +64,17 @@ struct MethodSpec {
   std::string paper_row;    // row of reports/paper/glint.json, empty when the paper has none
   std::string description;  // one line
   Json overrides = Json::object();  // config fields that make this variant
-  std::function<std::unique_ptr<Method>(const Json& config)> create;  // config: overrides + user's
+  // From a config with all overrides. Call create_method(), which adds the variant's own.
+  std::function<std::unique_ptr<Method>(const Json& config)> create;
 };
 
 // All registered methods by id, in the order of their ids.
 const std::map<std::string, MethodSpec>& method_registry();
 // Errors (kUsage): unknown id; the message lists the known ones and the nearest.
 const MethodSpec& find_method(const std::string& id);
+// The method with its variant's overrides, and the user's on top. Errors (kUsage): unknown id or
+// config field.
+std::unique_ptr<Method> create_method(const std::string& id, const Json& config = Json::object());
 bool register_method(MethodSpec spec);
 
 }  // namespace glint

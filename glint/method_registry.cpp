@@ -58,4 +58,11 @@ const MethodSpec& find_method(const std::string& id) {
   );
 }
 
+std::unique_ptr<Method> create_method(const std::string& id, const Json& config) {
+  const MethodSpec& spec = find_method(id);
+  Json merged = spec.overrides;
+  merged.update(config);
+  return spec.create(merged);
+}
+
 }  // namespace glint

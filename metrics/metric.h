@@ -41,6 +41,7 @@ struct ViewPair {
   ImageView depth;   // [H][W][1] planar z in metres; 0 or not finite: nothing rendered
   ImageView normal;  // [H][W][3] camera space, OpenCV axes; zero or not finite: nothing rendered
   ImageView transparency;  // [H][W][1] in [0, 1]
+  ImageView specularity;   // [H][W][1] in [0, 1]
   ImageView behind_depth;  // [H][W][1] planar z in metres of the first surface behind glass
   ImageView transmitted;   // [H][W][3] the part of rgb that came through glass
   ImageView reflected;     // [H][W][3] the part of rgb that glass mirrored

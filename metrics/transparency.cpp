@@ -55,6 +55,17 @@ std::optional<double> transparency_iou(
   return sum.mean();
 }
 
+std::optional<double> best_threshold_iou(ImageView map, MaskView glass) {
+  constexpr int kThresholds = 19;
+  std::optional<double> best;
+  for (int i = 1; i <= kThresholds; ++i) {
+    const double threshold = static_cast<double>(i) / (kThresholds + 1);
+    const auto iou = transparency_iou(map, glass, {}, {threshold});
+    if (iou && (!best || *iou > *best)) best = iou;
+  }
+  return best;
+}
+
 std::optional<double> transparency_mae(ImageView transparency, MaskView glass, MaskView mask) {
   check_transparency(transparency, glass, mask);
   const Sum sum = sum_pixels(glass.size(), mask, [&](int x, int y) {

@@ -28,6 +28,10 @@ std::optional<double> transparency_iou(
     const TransparencyProtocol& protocol = {}
 );
 
+// The highest IoU that any threshold in 0.05, 0.10, ..., 0.95 gives: what a map that was not made
+// to be one of transparency (a specularity, say) could tell of the glass, at best.
+std::optional<double> best_threshold_iou(ImageView map, MaskView glass);
+
 // Mean |transparency - glass|, glass being 0 or 1; empty when no pixel counts. Errors as above.
 std::optional<double> transparency_mae(ImageView transparency, MaskView glass, MaskView mask = {});
 

@@ -39,6 +39,7 @@ void adam_block(
 }  // namespace
 
 float position_rate(const SurfelRates& rates, int step) {
+  if (!(rates.means > 0 && rates.means_final > 0)) return 0;
   const float t =
       std::clamp(static_cast<float>(step) / static_cast<float>(rates.means_steps), 0.0f, 1.0f);
   return std::exp((1 - t) * std::log(rates.means) + t * std::log(rates.means_final));

@@ -17,6 +17,19 @@ struct SurfelRates {
   float scale = 0.005f;
   float rotation = 0.001f;
   float extra = 0.01f;
+
+  template <class V>
+  void visit(V&& v) {
+    v("rate_position", means, "learning rate of positions, of the scene's extent");
+    v("rate_position_final", means_final, "the same after position_steps");
+    v("position_steps", means_steps, "published steps over which positions slow down");
+    v("rate_color", sh_dc, "learning rate of colour");
+    v("rate_sh", sh_rest, "learning rate of view-dependent colour");
+    v("rate_opacity", opacity, "learning rate of opacity");
+    v("rate_scale", scale, "learning rate of log scales");
+    v("rate_rotation", rotation, "learning rate of quaternions");
+    v("rate_extra", extra, "learning rate of transparency and specularity");
+  }
 };
 
 // Rate of the positions at a step, before the factor of the scene's extent.

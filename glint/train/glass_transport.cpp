@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/glass_transport.h"
 
+#include <algorithm>
+
 #include "glint/core/parallel.h"
 #include "glint/render/blend.h"
 #include "glint/render/transport.h"
@@ -55,9 +57,16 @@ Rays camera_rays(const Camera& camera) {
   return rays;
 }
 
+void copy_color(const Image& features, Image& color) {
+  fit(color, features.size(), 3);
+  for (std::size_t i = 0; i < color.num_pixels(); ++i)
+    std::copy_n(features.data() + i * features.channels(), 3, color.data() + 3 * i);
+}
+
 const GlassBuffer&
 GlassTransport::read_interface(const Camera& camera, const RasterOutput& interface) {
   const ImageSize size = camera.size();
+  const auto channels = static_cast<std::size_t>(interface.features.channels());
   for (Image* image :
        {&buffer_.depth,
         &buffer_.transparency,
@@ -70,7 +79,7 @@ GlassTransport::read_interface(const Camera& camera, const RasterOutput& interfa
   const Mat3f rotation = cast<float>(camera.rotation_cam_from_world);
   const Vec3f eye = cast<float>(camera.center());
   parallel_for(size.num_pixels(), kGrain, [&](std::size_t i) {
-    const float* features = interface.features.data() + kInterfaceChannels * i;
+    const float* features = interface.features.data() + channels * i;
     const float alpha = interface.alpha.data()[i];
     const float z = expected_depth(interface.depth_sum.data()[i], alpha);
     const Vec3f raw = get3(interface.normal, i);
@@ -78,14 +87,15 @@ GlassTransport::read_interface(const Camera& camera, const RasterOutput& interfa
     const bool hit = z > 0 && norm > kLeastNormal;
     const Vec3f n = hit ? (1 / norm) * raw : Vec3f{};
     const PixelRay ray = pixel_ray(camera, i);
-    const float fresnel = schlick(options_.f0, -dot(n, ray.unit()));
+    const float specular = features[channels - 1];
+    const float fresnel = keep(options_.fresnel, schlick(options_.f0, -dot(n, ray.unit())));
     buffer_.depth.data()[i] = z;
     put3(buffer_.normal, i, n);
     buffer_.transparency.data()[i] = options_.transmission ? features[kTransparencyChannel] : 0.0f;
-    buffer_.specular.data()[i] = features[kSpecularChannel];
+    buffer_.specular.data()[i] = specular;
     buffer_.fresnel.data()[i] = fresnel;
     buffer_.mirrored.data()[i] =
-        keep(hit && options_.reflection, mirrored_share(features[kSpecularChannel], fresnel));
+        keep(hit && options_.reflection, mirrored_share(specular, fresnel));
     const Vec3f w = hit ? mirrored_direction(ray.unit(), n) : Vec3f{};
     put3(buffer_.reflected.origins, i, eye + transpose_times(rotation, z * ray.in_cam));
     put3(buffer_.reflected.directions, i, transpose_times(rotation, w));
@@ -137,20 +147,24 @@ void GlassTransport::interface_vjp(
     const Image& dL_dtransparency,
     RasterOutputGradient& dL_dinterface
 ) const {
+  const auto channels = static_cast<std::size_t>(dL_dinterface.features.channels());
+  const bool has_transparency = channels == kInterfaceChannels;
   const Mat3f rotation = cast<float>(camera.rotation_cam_from_world);
   parallel_for(buffer_.depth.num_pixels(), kGrain, [&](std::size_t i) {
-    float* dL_dfeatures = dL_dinterface.features.data() + kInterfaceChannels * i;
+    float* dL_dfeatures = dL_dinterface.features.data() + channels * i;
     for (int c = 0; c < 3; ++c) dL_dfeatures[c] += dL_dlayers_.interface.data()[3 * i + c];
-    dL_dfeatures[kTransparencyChannel] += dL_dtransparency_.data()[i];
-    if (!dL_dtransparency.empty()) dL_dfeatures[kTransparencyChannel] += dL_dtransparency.data()[i];
+    if (has_transparency) dL_dfeatures[kTransparencyChannel] += dL_dtransparency_.data()[i];
+    if (has_transparency && !dL_dtransparency.empty())
+      dL_dfeatures[kTransparencyChannel] += dL_dtransparency.data()[i];
     const Vec3f n = get3(buffer_.normal, i);
     if (!options_.reflection || length2(n) == 0) return;
     const PixelRay ray = pixel_ray(camera, i);
     const float s = buffer_.specular.data()[i], fresnel = buffer_.fresnel.data()[i];
     float dL_dfresnel = 0;
     mirrored_share_vjp(
-        s, fresnel, dL_dmirrored_.data()[i], dL_dfeatures[kSpecularChannel], dL_dfresnel
+        s, fresnel, dL_dmirrored_.data()[i], dL_dfeatures[channels - 1], dL_dfresnel
     );
+    dL_dfresnel = keep(options_.fresnel, dL_dfresnel);
     Vec3f dL_dn = -schlick_vjp(options_.f0, -dot(n, ray.unit()), dL_dfresnel) * ray.unit();
     if (dL_drays != nullptr) {
       const Vec3f dL_dw = rotation * get3(dL_drays->directions, i);

@@ -8,14 +8,15 @@
 
 namespace glint {
 
-// Extra feature channels of the interface set, behind the three of its colour.
-inline constexpr int kTransparencyChannel = 3, kSpecularChannel = 4, kInterfaceChannels = 5;
+// Feature channels of the interface set: its colour, t, s. A set without t has its s last, too.
+inline constexpr int kTransparencyChannel = 3, kInterfaceChannels = 5;
 
 struct GlassOptions {
-  float f0 = 0.04f;
+  float f0 = 0.04f;             // of Fresnel's term
   bool transmission = true;     // off: t counts as 0
   bool reflection = true;       // off: k_s counts as 0
   bool detach_origins = false;  // no gradient from reflections to the interface's depth
+  bool fresnel = true;          // off: k_s = s, for methods without it
 };
 
 // What the interface says about each pixel.
@@ -37,11 +38,15 @@ struct GlassLayers {
 // Camera rays with camera-space z = 1: t is planar depth.
 Rays camera_rays(const Camera& camera);
 
+// The colour channels of a rasterised interface.
+void copy_color(const Image& features, Image& color);
+
 class GlassTransport {
  public:
   explicit GlassTransport(GlassOptions options = {}) : options_(options) {}
+  void set_options(GlassOptions options) { options_ = options; }
 
-  // From the interface set rasterised with kInterfaceChannels features.
+  // From the interface set rasterised with its colour, t (not without transmission) and s.
   const GlassBuffer& read_interface(const Camera& camera, const RasterOutput& interface);
   // The picture [H][W][3]. Images of layers that are switched off may be empty.
   const Image& compose(const GlassLayers& layers);

@@ -50,16 +50,17 @@ double NormalPriorLoss::evaluate(
   });
   if (num_priors == 0) return 0;
   const T tau = static_cast<T>(min_cosine), scale = weight / static_cast<T>(num_priors);
+  const T along_axes = static_cast<T>(l1);
   const double sum = sum_over_pixels(normal.size(), [&](int x, int y) {
     const Vec3<T> target = load3<T>(prior, x, y), composited = load3<T>(normal, x, y);
     if (!(length2(target) > 0)) return 0.0;
     const T factor = pixel_weight.empty() ? T(1) : static_cast<T>(pixel_weight.at(x, y));
     const Vec3<T> unit = unit_normal(composited);
     Vec3<T> dL_dunit{}, gradient = load3<T>(dL_dnormal, x, y);
-    gated_cosine_loss_vjp(unit, target, tau, scale * factor, dL_dunit);
+    gated_normal_loss_vjp(unit, target, tau, along_axes, scale * factor, dL_dunit);
     unit_normal_vjp(composited, dL_dunit, gradient);
     store3(dL_dnormal, x, y, gradient);
-    return static_cast<double>(factor * gated_cosine_loss(unit, target, tau));
+    return static_cast<double>(factor * gated_normal_loss(unit, target, tau, along_axes));
   });
   return sum / num_priors;
 }

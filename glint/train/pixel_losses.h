@@ -37,17 +37,20 @@ GLINT_HD void unit_normal_vjp(Vec3<T> composited, Vec3<T> dL_dunit, Vec3<T>& dL_
   dL_dcomposited += select(norm > T(kMinNormalLength), g, Vec3<T>{});
 }
 
-// 1 - <n, prior>, or 0 where the cosine is below the gate. The gate is a constant: no gradient.
+// 1 - <n, prior> + l1 |n - prior|_1, or 0 where the cosine is below the gate. The gate is a
+// constant: no gradient.
 template <class T>
-GLINT_HD T gated_cosine_loss(Vec3<T> unit, Vec3<T> prior, T min_cosine) {
+GLINT_HD T gated_normal_loss(Vec3<T> unit, Vec3<T> prior, T min_cosine, T l1) {
   const T cosine = dot(unit, prior);
-  return keep(cosine >= min_cosine, T(1) - cosine);
+  return keep(cosine >= min_cosine, T(1) - cosine + l1 * l1_norm(unit - prior));
 }
 template <class T>
-GLINT_HD void gated_cosine_loss_vjp(
-    Vec3<T> unit, Vec3<T> prior, T min_cosine, T dL_dloss, Vec3<T>& dL_dunit
+GLINT_HD void gated_normal_loss_vjp(
+    Vec3<T> unit, Vec3<T> prior, T min_cosine, T l1, T dL_dloss, Vec3<T>& dL_dunit
 ) {
-  dL_dunit += keep(dot(unit, prior) >= min_cosine, -dL_dloss) * prior;
+  const Vec3<T> off = unit - prior;
+  const Vec3<T> slope = Vec3<T>{sign_of(off.x), sign_of(off.y), sign_of(off.z)};
+  dL_dunit += keep(dot(unit, prior) >= min_cosine, dL_dloss) * (l1 * slope - prior);
 }
 
 // exp(-sharpness mean_c |a_c - b_c|) of two neighbours' colours: small across an image edge.

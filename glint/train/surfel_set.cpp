@@ -18,13 +18,39 @@ SurfelSet::SurfelSet(
 }
 
 const RasterOutput& SurfelSet::forward(
+    const Camera& camera,
+    int sh_degree,
+    const RasterSettings& settings,
+    ImageView near_limit,
+    RasterPass& pass
+) const {
+  activate(cloud_, cast<float>(camera.center()), sh_degree, pass.activated);
+  RasterInput input = raster_input(cloud_, pass.activated);
+  input.near_limit = near_limit;
+  pass.rasterizer.forward(input, camera, settings, pass.output);
+  return pass.output;
+}
+
+void SurfelSet::backward(
+    const Camera& camera,
+    int sh_degree,
+    const RasterSettings& settings,
+    const RasterOutputGradient& dL_doutput,
+    ImageView near_limit,
+    RasterPass& pass
+) {
+  RasterInput input = raster_input(cloud_, pass.activated);
+  input.near_limit = near_limit;
+  pass.rasterizer.backward(input, camera, settings, pass.output, dL_doutput, pass.gradient);
+  activate_vjp(
+      cloud_, cast<float>(camera.center()), sh_degree, pass.activated, pass.gradient, gradient_
+  );
+}
+
+const RasterOutput& SurfelSet::forward(
     const Camera& camera, int sh_degree, const RasterSettings& settings, ImageView near_limit
 ) {
-  activate(cloud_, cast<float>(camera.center()), sh_degree, activated_);
-  RasterInput input = raster_input(cloud_, activated_);
-  input.near_limit = near_limit;
-  rasterizer_.forward(input, camera, settings, output_);
-  return output_;
+  return forward(camera, sh_degree, settings, near_limit, pass_);
 }
 
 void SurfelSet::backward(
@@ -34,20 +60,15 @@ void SurfelSet::backward(
     const RasterOutputGradient& dL_doutput,
     ImageView near_limit
 ) {
-  RasterInput input = raster_input(cloud_, activated_);
-  input.near_limit = near_limit;
-  rasterizer_.backward(input, camera, settings, output_, dL_doutput, raster_gradient_);
-  activate_vjp(
-      cloud_, cast<float>(camera.center()), sh_degree, activated_, raster_gradient_, gradient_
-  );
-  densifier_.observe(output_, raster_gradient_);
+  backward(camera, sh_degree, settings, dL_doutput, near_limit, pass_);
+  densifier_.observe(pass_.output, pass_.gradient);
 }
 
 const TraceOutput& SurfelSet::trace(
     const Rays& rays, int sh_degree, const TraceSettings& settings
 ) {
-  activate_geometry(cloud_, activated_);
-  tracer_.forward(trace_input(cloud_, activated_, sh_degree), rays, settings, trace_output_);
+  activate_geometry(cloud_, traced_);
+  tracer_.forward(trace_input(cloud_, traced_, sh_degree), rays, settings, trace_output_);
   return trace_output_;
 }
 
@@ -58,39 +79,30 @@ const Rays& SurfelSet::trace_backward(
     const TraceOutputGradient& dL_doutput
 ) {
   tracer_.backward(
-      trace_input(cloud_, activated_, sh_degree),
+      trace_input(cloud_, traced_, sh_degree),
       rays,
       settings,
       trace_output_,
       dL_doutput,
       trace_gradient_
   );
-  trace_activate_vjp(activated_, trace_gradient_, gradient_);
+  trace_activate_vjp(traced_, trace_gradient_, gradient_);
   densifier_.observe(trace_gradient_, rays.origins.height());
   return trace_gradient_.rays;
 }
 
-DensifyCounts SurfelSet::update(int step) {
-  adam_.step(cloud_, gradient_, rates_, extent_);
-  const DensifyCounts counts = densifier_.update(step, cloud_, adam_);
-  gradient_.resize(cloud_.size());  // zero after every step
-  return counts;
+void SurfelSet::freeze_geometry() {
+  frozen_geometry_ = true;
+  rates_.means = rates_.means_final = 0;
+  rates_.scale = rates_.rotation = rates_.opacity = 0;
 }
 
-PointCloud initial_points(const Scene& scene, std::size_t count, std::uint64_t seed) {
-  if (!scene.points.positions.empty()) return scene.points;
-  Rng rng(seed, hash_name("initial points"));
-  PointCloud points;
-  for (std::size_t i = 0; i < count; ++i) {
-    Vec3f p, color;
-    for (int axis = 0; axis < 3; ++axis) {
-      p[axis] = rng.uniform(scene.bounds_min[axis], scene.bounds_max[axis]);
-      color[axis] = rng.uniform();
-    }
-    points.positions.push_back(p);
-    points.colors.push_back(color);
-  }
-  return points;
+DensifyCounts SurfelSet::update(int step) {
+  adam_.step(cloud_, gradient_, rates_, extent_);
+  const DensifyCounts counts =
+      frozen_geometry_ ? DensifyCounts{} : densifier_.update(step, cloud_, adam_);
+  gradient_.resize(cloud_.size());  // zero after every step
+  return counts;
 }
 
 void check_finite(const SurfelCloud& cloud, const std::string& set_name) {
@@ -113,6 +125,31 @@ void expected_depth_map(const RasterOutput& output, Image& depth) {
     depth = Image(output.alpha.width(), output.alpha.height(), 1);
   for (std::size_t i = 0; i < depth.num_pixels(); ++i)
     depth.data()[i] = expected_depth(output.depth_sum.data()[i], output.alpha.data()[i]);
+}
+
+void expected_depth_map_vjp(
+    const RasterOutput& output, const Image& dL_ddepth, RasterOutputGradient& dL_doutput
+) {
+  for (std::size_t i = 0; i < dL_ddepth.num_pixels(); ++i)
+    expected_depth_vjp(
+        output.depth_sum.data()[i],
+        output.alpha.data()[i],
+        dL_ddepth.data()[i],
+        dL_doutput.depth_sum.data()[i],
+        dL_doutput.alpha.data()[i]
+    );
+}
+
+void clear_gradient(ImageSize size, int features, RasterOutputGradient& dL_doutput) {
+  const auto clear = [&](Image& image, int channels) {
+    if (image.size() != size || image.channels() != channels)
+      image = Image(size.width, size.height, channels);
+    std::fill(image.values().begin(), image.values().end(), 0.0f);
+  };
+  clear(dL_doutput.features, features);
+  clear(dL_doutput.normal, 3);
+  clear(dL_doutput.alpha, 1);
+  clear(dL_doutput.depth_sum, 1);
 }
 
 Image unit_normals(const Image& normal) {

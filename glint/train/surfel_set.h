@@ -11,6 +11,14 @@
 
 namespace glint {
 
+// Buffers of one rasterisation of a set.
+struct RasterPass {
+  ActivatedSurfels activated;
+  Rasterizer rasterizer;
+  RasterOutput output;
+  RasterGradient gradient;
+};
+
 class SurfelSet {
  public:
   SurfelSet() = default;
@@ -30,6 +38,23 @@ class SurfelSet {
       const RasterOutputGradient& dL_doutput,
       ImageView near_limit = {}
   );
+  // A further rasterisation within a step, with buffers of its own: its gradient is added, its
+  // statistics do not count for densification.
+  const RasterOutput& forward(
+      const Camera& camera,
+      int sh_degree,
+      const RasterSettings& settings,
+      ImageView near_limit,
+      RasterPass& pass
+  ) const;
+  void backward(
+      const Camera& camera,
+      int sh_degree,
+      const RasterSettings& settings,
+      const RasterOutputGradient& dL_doutput,
+      ImageView near_limit,
+      RasterPass& pass
+  );
   // The same for rays; trace_backward returns the rays' gradient, valid until the next call.
   const TraceOutput& trace(const Rays& rays, int sh_degree, const TraceSettings& settings);
   const Rays& trace_backward(
@@ -38,38 +63,41 @@ class SurfelSet {
       const TraceSettings& settings,
       const TraceOutputGradient& dL_doutput
   );
+  // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.
+  void freeze_geometry();
   // Optimiser step and, when due, densification. `step` counts from 1.
   DensifyCounts update(int step);
 
   SurfelCloud& cloud() { return cloud_; }
   const SurfelCloud& cloud() const { return cloud_; }
   const SurfelCloud& gradient() const { return gradient_; }
-  const ActivatedSurfels& activated() const { return activated_; }  // of the last pass
-  std::size_t num_pairs() const { return rasterizer_.num_pairs(); }
+  std::size_t num_pairs() const { return pass_.rasterizer.num_pairs(); }
 
  private:
   SurfelCloud cloud_, gradient_;
   SurfelRates rates_;
   float extent_ = 1;
+  bool frozen_geometry_ = false;
   SurfelAdam adam_;
   Densifier densifier_{{}, 1, 0};
-  ActivatedSurfels activated_;
-  Rasterizer rasterizer_;
-  RasterOutput output_;
-  RasterGradient raster_gradient_;
+  RasterPass pass_;
+  ActivatedSurfels traced_;
   Tracer tracer_;
   TraceOutput trace_output_;
   TraceGradient trace_gradient_;
 };
-
-// The scene's points, or `count` uniform random ones in its bounds where it has none.
-PointCloud initial_points(const Scene& scene, std::size_t count, std::uint64_t seed);
 
 // Errors (kBadPrediction): a parameter is not finite; names set, array and surfel.
 void check_finite(const SurfelCloud& cloud, const std::string& set_name);
 
 // Expected depth of a rasterised set, [H][W][1]; 0: nothing hit.
 void expected_depth_map(const RasterOutput& output, Image& depth);
+// Adds to the gradients of depth_sum and alpha.
+void expected_depth_map_vjp(
+    const RasterOutput& output, const Image& dL_ddepth, RasterOutputGradient& dL_doutput
+);
+// Zeros of the shapes of a rasterised set with so many features.
+void clear_gradient(ImageSize size, int features, RasterOutputGradient& dL_doutput);
 // Camera-space unit normals; zero: nothing hit.
 Image unit_normals(const Image& normal);
 

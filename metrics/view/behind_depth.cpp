@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Depth of the first opaque surface behind glass, scored on glass pixels only.
+// Depth of the first opaque surface behind glass, scored on glass pixels only. A method with one
+// layer is scored by its one depth, which may be that of the surface behind.
 #include "metrics/depth.h"
 #include "metrics/metric.h"
 
@@ -8,12 +9,12 @@ namespace {
 
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   std::vector<MetricValues> values;
-  if (pair.behind_depth.empty() || pair.true_behind_depth.empty() || pair.glass.empty())
-    return values;
+  const ImageView depth = pair.behind_depth.empty() ? pair.depth : pair.behind_depth;
+  if (depth.empty() || pair.true_behind_depth.empty() || pair.glass.empty()) return values;
   for (const Region& region : regions) {
     MetricValues row(1);
     if (region.name.empty())
-      if (const auto e = depth_errors(pair.behind_depth, pair.true_behind_depth, pair.glass))
+      if (const auto e = depth_errors(depth, pair.true_behind_depth, pair.glass))
         row[0] = e->absrel;
     values.push_back(row);
   }
@@ -25,6 +26,7 @@ std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region>
 MetricFamily behind_depth() {
   Json protocol = config_to_json(DepthProtocol{});
   protocol["pixels"] = "glass";
+  protocol["without_second_layer"] = "depth";
   return {{{"behind-absrel", "", Direction::kLowerIsBetter, 3, protocol}}, evaluate};
 }
 

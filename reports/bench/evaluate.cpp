@@ -40,6 +40,7 @@ Scores score_view(const fs::path& folder, const View& view) {
   const Image depth = read_map(folder / "depth.exr", 1, size);
   const Image normal = read_map(folder / "normal.exr", 3, size);
   const Image transparency = read_map(folder / "transparency.exr", 1, size);
+  const Image specularity = read_map(folder / "specularity.exr", 1, size);
   const Image behind_depth = read_map(folder / "behind_depth.exr", 1, size);
   const Image transmitted = read_map(folder / "transmitted.exr", 3, size);
   const Image reflected = read_map(folder / "reflected.exr", 3, size);
@@ -49,6 +50,7 @@ Scores score_view(const fs::path& folder, const View& view) {
   pair.depth = view_of(depth);
   pair.normal = view_of(normal);
   pair.transparency = view_of(transparency);
+  pair.specularity = view_of(specularity);
   pair.behind_depth = view_of(behind_depth);
   pair.transmitted = view_of(transmitted);
   pair.reflected = view_of(reflected);

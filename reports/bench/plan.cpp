@@ -25,7 +25,7 @@ bool any_matches(const std::vector<std::string>& patterns, const CellKey& cell) 
 
 // The resolved configuration: defaults that change with the code change the hash too.
 std::string config_hash_of(const PlanCell& cell, int iterations) {
-  const Json resolved = find_method(cell.cell.method).create(cell.config)->config();
+  const Json resolved = create_method(cell.cell.method, cell.config)->config();
   const Json identity = {
       {"method", cell.cell.method},
       {"config", resolved},

@@ -42,7 +42,7 @@ std::unique_ptr<Method> load_trained(const RunSpec& spec) {
       "{}: training has not finished here; run `glint-bench train` first",
       spec.folder.string()
   );
-  auto method = find_method(spec.method).create(spec.config);
+  auto method = create_method(spec.method, spec.config);
   with_exit_code(ExitCode::kBadPrediction, [&] { method->load(spec.folder.string()); });
   return method;
 }

@@ -50,7 +50,7 @@ TrainOptions train_options(const RunSpec& spec) {
 
 std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
   clear_run_folder(spec.folder);
-  auto method = find_method(spec.method).create(spec.config);
+  auto method = create_method(spec.method, spec.config);
   write_run_spec(spec, method->config());
   reset_peak_memory();
   InterruptibleMethod interruptible(*method);

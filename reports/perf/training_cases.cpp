@@ -92,7 +92,7 @@ PerfCase step_case(const MethodSpec& spec, const PerfOptions& options) {
   };
   const auto s = std::make_shared<State>();
   s->scene = perf_scene(options);
-  s->method = spec.create(Json{{"densify_until", 0}});
+  s->method = create_method(spec.id, Json{{"densify_until", 0}});
   s->method->initialize(s->scene, {30000, 0});
   const fs::path folder = fs::temp_directory_path() / fmt::format("glint_perf_{}", ::getpid());
   write_perf_sets(*s->method, folder, options);

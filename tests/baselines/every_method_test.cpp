@@ -6,38 +6,19 @@
 
 #include <cmath>
 
-#include "datasets/dataset.h"
-#include "datasets/glassroom/glassroom.h"
 #include "glint/core/parallel.h"
-#include "glint/core/progress.h"
 #include "glint/method.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/small_room.h"
 
 using namespace glint;
 using namespace glint::test;
 
 namespace {
 
-// A room of 64x36 pixels, made once.
-const Scene& small_room() {
-  static const TempFolder folder;
-  static const Scene scene = [] {
-    set_quiet(true);
-    GlassRoomOptions options;
-    options.width = 64;
-    options.height = 36;
-    options.views = 16;
-    options.spp = 8;
-    make_glassroom(options, folder.path() / "room_1");
-    return load_scene(folder.path() / "room_1", {});
-  }();
-  return scene;
-}
-
 std::unique_ptr<Method> trained(
     const MethodSpec& spec, int iterations, std::vector<double>* losses
 ) {
-  auto method = spec.create(spec.overrides);
+  auto method = create_method(spec.id);
   RunOptions options;
   options.iterations = iterations;
   method->initialize(small_room(), options);
@@ -102,7 +83,7 @@ TEST_CASE("Every method renders the same bytes after saving and loading") {
     const TempFolder folder;
     const auto method = trained(spec, 60, nullptr);
     method->save(folder.path().string());
-    const auto loaded = spec.create(spec.overrides);
+    const auto loaded = create_method(spec.id);
     loaded->load(folder.path().string());
     const Camera& camera = small_room().test.front().camera;
     const RenderOutput a = method->render(camera), b = loaded->render(camera);
@@ -130,13 +111,28 @@ TEST_CASE("Every method names an unknown config field and lists the known ones")
   for (const auto& [id, spec] : method_registry()) {
     INFO(id);
     try {
-      spec.create(Json{{"lambda_typo", 1}});
+      create_method(id, Json{{"lambda_typo", 1}});
       FAIL("accepted an unknown field");
     } catch (const Error& error) {
       CHECK(error.code() == ExitCode::kUsage);
       CHECK(std::string(error.what()).find("lambda_typo") != std::string::npos);
       CHECK(std::string(error.what()).find("known fields") != std::string::npos);
     }
+  }
+}
+
+TEST_CASE("A variant differs from its method in what it overrides, and the user has the last word"
+) {
+  for (const auto& [id, spec] : method_registry()) {
+    INFO(id);
+    const Json config = create_method(id)->config();
+    const std::size_t slash = id.find('/');
+    CHECK(spec.overrides.empty() == (slash == std::string::npos));
+    if (slash == std::string::npos) continue;
+    CHECK(config != create_method(id.substr(0, slash))->config());
+    for (const auto& entry : spec.overrides.items())
+      CHECK(config.at(entry.key()) == create_method(id, spec.overrides)->config().at(entry.key()));
+    CHECK(create_method(id, {{"min_opacity", 0.25}})->config().at("min_opacity") == 0.25);
   }
 }
 

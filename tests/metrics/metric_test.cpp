@@ -103,6 +103,7 @@ TEST_CASE("every metric of the protocol is registered once, with direction and p
         "depth-delta1-release",
         "transparency-iou",
         "transparency-mae",
+        "glass-iou-best",
         "behind-absrel",
         "trans-psnr",
         "refl-psnr"})
@@ -131,7 +132,33 @@ TEST_CASE("evaluate_view gives what the functions give, for the image and each r
   CHECK(scores.at("behind-absrel") == scores.at("depth-absrel@glass"));
   CHECK(scores.at("transparency-iou") == Approx(100.0 / (kWidth * kHeight)));
   CHECK(scores.at("transparency-mae@glass") == 0.25);
+  CHECK(scores.at("glass-iou-best") == scores.at("transparency-iou"));
   CHECK(scores.count("transparency-iou@glass") == 0);
+}
+
+TEST_CASE("a method with one layer is scored by its depth behind glass, too") {
+  const Maps maps;
+  ViewPair pair = maps.pair();
+  const Image behind(kWidth, kHeight, 1, 3.0f);
+  pair.behind_depth = {};
+  pair.true_behind_depth = behind;
+  CHECK(
+      evaluate_view(pair).at("behind-absrel") ==
+      depth_errors(maps.depth, behind, maps.glass)->absrel
+  );
+}
+
+TEST_CASE("glass may be found in a specularity, where there is no transparency") {
+  const Maps maps;
+  ViewPair pair = maps.pair();
+  pair.transparency = {};
+  CHECK(evaluate_view(pair).count("glass-iou-best") == 0);
+  Image faint(kWidth, kHeight, 1, 0.06f);
+  for (int y = 10; y < 20; ++y)
+    for (int x = 10; x < 20; ++x) faint.at(x, y) = 0.12f;
+  pair.specularity = faint;
+  CHECK(evaluate_view(pair).at("glass-iou-best") == 1);
+  CHECK(evaluate_view(pair).count("transparency-iou") == 0);
 }
 
 TEST_CASE("the release's depth scale is fitted on the whole view, whatever the region") {

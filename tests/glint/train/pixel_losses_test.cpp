@@ -33,11 +33,11 @@ TEST_CASE("No normal stays no normal, without gradient") {
 TEST_CASE("The cosine loss has no value and no gradient below its gate") {
   const Vec3d prior{0, 0, -1}, unit{0.8, 0, -0.6};
   Vec3d g{};
-  CHECK(gated_cosine_loss(unit, prior, 0.5) == Approx(0.4));
-  CHECK(gated_cosine_loss(unit, prior, 0.7) == 0);
-  gated_cosine_loss_vjp(unit, prior, 0.7, 1.0, g);
+  CHECK(gated_normal_loss(unit, prior, 0.5, 0.0) == Approx(0.4));
+  CHECK(gated_normal_loss(unit, prior, 0.7, 0.0) == 0);
+  gated_normal_loss_vjp(unit, prior, 0.7, 0.0, 1.0, g);
   CHECK(g.z == 0);
-  gated_cosine_loss_vjp(unit, prior, 0.5, 2.0, g);
+  gated_normal_loss_vjp(unit, prior, 0.5, 0.0, 2.0, g);
   CHECK(g.z == 2);
 }
 
@@ -78,4 +78,22 @@ TEST_CASE("Entropies have their closed-form values and stay finite at 0 and 1") 
 TEST_CASE("An image edge's weight is the exponential of its mean contrast") {
   CHECK(edge_weight(Vec3d{0.1, 0.2, 0.3}, Vec3d{0.1, 0.2, 0.3}, 5.0) == 1);
   CHECK(edge_weight(Vec3d{1, 0, 0}, Vec3d{0, 0.5, 0}, 2.0) == Approx(std::exp(-1.0)));
+}
+
+TEST_CASE("The normal loss has the gradient of its differences, with and without its L1 part") {
+  for (const double l1 : {0.0, 1.0})
+    check_vjp(
+        {0.5, 0.3, -0.8},
+        [=](const Vector& x) {
+          return Vector{gated_normal_loss(Vec3d{x[0], x[1], x[2]}, Vec3d{0.1, 0.7, -0.7}, 0.2, l1)};
+        },
+        [=](const Vector& x, const Vector& dL_dy) {
+          Vec3d g{};
+          gated_normal_loss_vjp(
+              Vec3d{x[0], x[1], x[2]}, Vec3d{0.1, 0.7, -0.7}, 0.2, l1, dL_dy[0], g
+          );
+          return Vector{g.x, g.y, g.z};
+        }
+    );
+  CHECK(gated_normal_loss(Vec3d{1, 0, 0}, Vec3d{0, 0, -1}, -2.0, 0.5) == Approx(2));
 }

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Settings of GLINT [Na26]. Defaults follow the paper's text; what it leaves open is chosen here,
+// with what the choices did in docs/GLINT_NOTES.md. Iterations are of the published 60,000 and
+// scale with the run.
+#pragma once
+
+#include <string>
+
+#include "glint/train/densify.h"
+#include "glint/train/geometry_losses.h"
+#include "glint/train/initial_points.h"
+#include "glint/train/mirror_cutoffs.h"
+#include "glint/train/transmission_losses.h"
+
+namespace glint {
+
+struct GlintConfig {
+  // Radiance transport.
+  bool with_transmission = true, with_reflection = true;
+  std::string transmission = "raster";
+  float f0 = 0.04f;
+  bool detach_origins = false;
+  float secondary_near = 0;
+  MirrorCutoffs mirror;
+  // Initial sets.
+  float initial_transparency = 0.1f, initial_specular = 1e-3f;
+  int random_points = 30000;
+  ReflectionGrid grid;
+  // Phases.
+  int transmission_from = 5000, reflection_from = 5000, freeze_from = 40000, sh_interval = 1000;
+  std::string freeze = "all";
+  // Losses.
+  float l1_weight = 0.8f, ssim_weight = 0.2f;
+  GeometryLossConfig geometry;
+  TransmissionLossConfig transmission_losses;
+  // Density control.
+  DensifyConfig densify;
+  float reflection_gradient = 1e-4f;
+  int secondary_densify_interval = 100, secondary_reset_interval = 3000;
+  // Opacity resets of the secondary sets. Off: their gradient is weighted by t and k_s, so most of
+  // their surfels would not recover before the next pruning.
+  bool reset_secondary = false;
+  SurfelRates rates;
+
+  GlintConfig();
+
+  template <class V>
+  void visit(V&& v) {
+    v("with_transmission", with_transmission, "false: t counts as 0");
+    v("with_reflection", with_reflection, "false: k_s counts as 0");
+    v("transmission", transmission, "raster or trace");
+    v("f0", f0, "reflectance at normal incidence");
+    v("detach_origins", detach_origins, "no gradient from reflections to the interface's depth");
+    v("secondary_near", secondary_near, "metres behind the interface where transmission starts");
+    mirror.visit(v);
+    v("initial_transparency", initial_transparency, "t of the interface's initial surfels");
+    v("initial_specular", initial_specular, "s of the interface's initial surfels");
+    v("random_points", random_points, "initial surfels of scenes without points");
+    grid.visit(v);
+    v("transmission_from", transmission_from, "first iteration of transmission (of 60,000)");
+    v("reflection_from", reflection_from, "first iteration of reflection (of 60,000)");
+    v("freeze_from", freeze_from, "first iteration with a frozen interface (of 60,000)");
+    v("freeze", freeze, "what is frozen of the interface: all, geometry or nothing");
+    v("sh_interval", sh_interval, "iterations per SH degree (of 60,000)");
+    v("l1_weight", l1_weight, "weight of L1");
+    v("ssim_weight", ssim_weight, "weight of 1 - SSIM");
+    geometry.visit(v);
+    transmission_losses.visit(v);
+    densify.visit(v);
+    rates.visit(v);
+    v("reflection_gradient", reflection_gradient, "densification threshold of the reflection set");
+    v("secondary_densify_interval", secondary_densify_interval, "steps, of secondary sets");
+    v("secondary_reset_interval", secondary_reset_interval, "steps, of secondary sets");
+    v("reset_secondary", reset_secondary, "opacity resets of transmission and reflection too");
+  }
+
+  static constexpr int kPublishedIterations = 60000;
+  // With the windows of a run of so many iterations.
+  GlintConfig scaled_to(int iterations) const;
+  // Errors (kUsage): a word that is none of the known ones.
+  void check() const;
+};
+
+// What the official code does beyond or instead of the paper, without its mistakes.
+Json glint_release_overrides();
+
+}  // namespace glint

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// GLINT's three sets of surfels and the way from them to a picture and back [Na26 Eq. 5-9]: the
+// interface rasterised to a G-buffer, transmission seen straight through it, reflection traced
+// along mirrored rays.
+#pragma once
+
+#include "glint/glint_config.h"
+#include "glint/method.h"
+#include "glint/train/glass_transport.h"
+#include "glint/train/surfel_set.h"
+
+namespace glint {
+
+// What of the model takes part, and at which SH degree.
+struct GlintPhase {
+  bool transmission = true, reflection = true;
+  int interface_degree = 3, transmission_degree = 3, reflection_degree = 3;
+};
+
+class GlintModel {
+ public:
+  SurfelSet interface, transmission, reflection;
+
+  // The picture [H][W][3]; it and the buffers below stay valid until the next call.
+  const Image& forward(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
+  // Back through the last forward call, to all sets that took part. dL_dinterface holds, and is
+  // added to, the gradient of losses on the interface's maps; dL_dtransparency that of t (may be
+  // empty). `interface_too` off: the interface stays as it is.
+  void backward(
+      const Camera& camera,
+      const GlintConfig& config,
+      const Image& dL_dimage,
+      const Image& dL_dtransparency,
+      bool interface_too,
+      RasterOutputGradient& dL_dinterface
+  );
+  const RasterOutput& interface_output() const { return *interface_output_; }
+  const GlassBuffer& buffer() const { return transport_.buffer(); }
+  const GlassLayers& layers() const { return layers_; }
+
+  // All maps of a view (docs/RECORDS.md).
+  RenderOutput render(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
+  // The same surfels with fresh buffers.
+  GlintModel copy() const;
+
+ private:
+  void render_transmission(const Camera& camera, const GlintConfig& config);
+  void transmission_vjp(const Camera& camera, const GlintConfig& config, const Image& dL_dradiance);
+  Image behind_depth(const Camera& camera) const;
+  void add_components(RenderOutput& out) const;
+
+  GlintPhase phase_;
+  GlassTransport transport_;
+  const RasterOutput* interface_output_ = nullptr;
+  GlassLayers layers_;
+  Image near_limit_;
+  Rays through_;
+  RasterOutputGradient dL_dtransmission_;
+  TraceOutputGradient dL_dtrace_;
+};
+
+}  // namespace glint

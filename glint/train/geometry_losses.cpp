@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/geometry_losses.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "glint/train/surfel_set.h"
+#include "glint/train/trainer.h"
+
+namespace glint {
+
+void require_prior(
+    const Scene& scene,
+    Image Priors::*prior,
+    const char* prior_name,
+    const char* loss_name,
+    const std::string& method,
+    float& weight,
+    std::vector<std::string>& warnings
+) {
+  const auto lacks = [&](const View& view) { return (view.priors.*prior).empty(); };
+  const auto missing = std::count_if(scene.train.begin(), scene.train.end(), lacks);
+  if (weight == 0 || missing == 0) return;
+  weight = 0;
+  warnings.push_back(fmt::format(
+      "{}: {} has no {} prior for {} of {} training views; {} is off",
+      method,
+      scene.name,
+      prior_name,
+      missing,
+      scene.train.size(),
+      loss_name
+  ));
+}
+
+Json prior_control(int published_iterations) {
+  Json overrides = Json::object();
+  overrides["lambda_depth"] = GlintPriors::kLambdaDepth;
+  overrides["lambda_normal"] = GlintPriors::kLambdaNormal;
+  overrides["min_cosine"] = GlintPriors::kMinCosine;
+  overrides["gate_from"] =
+      scaled_step(GlintPriors::kGateFrom, published_iterations, 1, GlintPriors::kIterations);
+  overrides["normal_l1"] = 0;
+  overrides["near_first"] = false;
+  return overrides;
+}
+
+std::vector<std::string> GeometryLosses::set_up(
+    const GeometryLossConfig& config, const Scene& scene, const std::string& method
+) {
+  config_ = config;
+  depth_prior_.gradient_scales = config.depth_gradient_scales;
+  normal_prior_.l1 = config.normal_l1;
+  std::vector<std::string> warnings;
+  require_prior(scene, &Priors::depth, "depth", "L_depth", method, config_.lambda_depth, warnings);
+  require_prior(
+      scene, &Priors::normal, "normal", "L_normal", method, config_.lambda_normal, warnings
+  );
+  return warnings;
+}
+
+void GeometryLosses::add_normal_prior(
+    const View& view,
+    const RasterOutput& output,
+    const Image& depth,
+    Image& dL_dnormal,
+    StepStats& stats
+) {
+  const float weight = config_.lambda_normal;
+  const Image pixel_weight = config_.near_first ? inverse_depth_weight(depth) : Image{};
+  stats.terms["normal"] =
+      static_cast<double>(weight) *
+      normal_prior_.evaluate(output.normal, view.priors.normal, pixel_weight, weight, dL_dnormal);
+}
+
+void GeometryLosses::add(
+    const View& view,
+    int iteration,
+    const RasterOutput& output,
+    const Image& depth,
+    RasterOutputGradient& dL_doutput,
+    StepStats& stats
+) {
+  if (dL_ddepth_.size() != depth.size()) dL_ddepth_ = Image(depth.width(), depth.height(), 1);
+  std::fill(dL_ddepth_.values().begin(), dL_ddepth_.values().end(), 0.0f);
+  const auto record = [&](const char* name, float weight, double loss) {
+    stats.terms[name] = static_cast<double>(weight) * loss;
+  };
+  const float depth_weight = config_.lambda_depth, consistency = config_.lambda_consistency;
+  if (depth_weight > 0)
+    record(
+        "depth",
+        depth_weight,
+        depth_prior_.evaluate(depth, view.priors.depth, {}, depth_weight, dL_ddepth_)
+    );
+  normal_prior_.min_cosine =
+      iteration >= config_.gate_from ? config_.min_cosine : NormalPriorLoss::kNoGate;
+  if (config_.lambda_normal > 0) add_normal_prior(view, output, depth, dL_doutput.normal, stats);
+  if (consistency > 0 && iteration >= config_.consistency_from)
+    record(
+        "consistency",
+        consistency,
+        consistency_.evaluate(
+            view.camera,
+            output.normal,
+            depth,
+            output.alpha,
+            consistency,
+            dL_doutput.normal,
+            dL_ddepth_
+        )
+    );
+  if (config_.lambda_smooth > 0 && iteration >= config_.smooth_from)
+    record(
+        "smooth",
+        config_.lambda_smooth,
+        smoothness_.evaluate(output.normal, view.rgb, config_.lambda_smooth, dL_doutput.normal)
+    );
+  expected_depth_map_vjp(output, dL_ddepth_, dL_doutput);
+}
+
+}  // namespace glint

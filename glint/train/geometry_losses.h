@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Losses on the depth and normal maps of one rasterised set, each with its weight and the iteration
+// from which it counts: depth and normal priors, normal consistency, smoothness of normals. Shared,
+// so that a method and the control with the same priors differ in nothing else.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glint/method.h"
+#include "glint/render/rasterize.h"
+#include "glint/train/depth_prior.h"
+#include "glint/train/normal_consistency.h"
+#include "glint/train/normal_prior.h"
+#include "glint/train/normal_smoothness.h"
+
+namespace glint {
+
+struct GeometryLossConfig {
+  float lambda_depth = 0, lambda_normal = 0, lambda_consistency = 0, lambda_smooth = 0;
+  int consistency_from = 0, gate_from = 10000, smooth_from = 0;
+  float min_cosine = 0.3f;
+  float normal_l1 = 0;
+  bool near_first = false;
+  int depth_gradient_scales = 0;
+
+  template <class V>
+  void visit(V&& v) {
+    v("lambda_depth", lambda_depth, "weight of the depth prior");
+    v("lambda_normal", lambda_normal, "weight of the normal prior");
+    v("lambda_consistency", lambda_consistency, "weight of normal consistency");
+    v("lambda_smooth", lambda_smooth, "weight of edge-aware normal smoothness");
+    v("consistency_from", consistency_from, "first published iteration of normal consistency");
+    v("gate_from", gate_from, "first published iteration of the normal prior's gate");
+    v("smooth_from", smooth_from, "first published iteration of normal smoothness");
+    v("min_cosine", min_cosine, "tau_n: the gate of the normal prior");
+    v("normal_l1", normal_l1, "|n - prior|_1 beside 1 - cosine in the normal prior");
+    v("near_first", near_first, "the normal prior weighs near pixels more");
+    v("depth_gradient_scales", depth_gradient_scales, "scales of the depth prior's gradient term");
+  }
+  // Published windows to this run's iterations.
+  template <class F>
+  void scale(F&& scaled) {
+    for (int* window : {&consistency_from, &gate_from, &smooth_from})
+      *window = *window > 0 ? scaled(*window) : 0;
+  }
+};
+
+// GLINT's priors [Na26 Sec. 4]. Weights and starts that the paper does not give:
+// docs/GLINT_NOTES.md.
+struct GlintPriors {
+  static constexpr float kLambdaDepth = 0.1f, kLambdaNormal = 0.1f, kMinCosine = 0.3f;
+  static constexpr int kGateFrom = 10000, kIterations = 60000;
+};
+
+class GeometryLosses {
+ public:
+  // `config` with windows of this run. A loss is off when a training view lacks its prior; returns
+  // a warning for each.
+  std::vector<std::string> set_up(
+      const GeometryLossConfig& config, const Scene& scene, const std::string& method
+  );
+  // depth: expected_depth_map() of `output`. Adds the gradients of the normal, depth_sum and alpha
+  // images to dL_doutput, and each weighted loss to stats.terms.
+  void add(
+      const View& view,
+      int iteration,
+      const RasterOutput& output,
+      const Image& depth,
+      RasterOutputGradient& dL_doutput,
+      StepStats& stats
+  );
+
+ private:
+  void add_normal_prior(
+      const View& view,
+      const RasterOutput& output,
+      const Image& depth,
+      Image& dL_dnormal,
+      StepStats& stats
+  );
+
+  GeometryLossConfig config_;
+  DepthPriorLoss depth_prior_;
+  NormalPriorLoss normal_prior_;
+  NormalConsistencyLoss consistency_;
+  NormalSmoothnessLoss smoothness_;
+  Image dL_ddepth_;
+};
+
+// Overrides that give a baseline of so many published iterations the priors of GLINT: same losses,
+// weights and gate, at the same share of the run.
+Json prior_control(int published_iterations);
+
+// Warns, and sets `weight` to 0, where it is not 0 and a training view lacks the prior.
+void require_prior(
+    const Scene& scene,
+    Image Priors::*prior,
+    const char* prior_name,
+    const char* loss_name,
+    const std::string& method,
+    float& weight,
+    std::vector<std::string>& warnings
+);
+
+}  // namespace glint

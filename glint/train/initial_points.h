@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Where surfels start: the scene's points, random ones, or a grid through its bounds.
+#pragma once
+
+#include <cstdint>
+
+#include "glint/scene/scene.h"
+
+namespace glint {
+
+// The scene's points, or `count` uniform random ones in its bounds where it has none. Errors
+// (kBadReference): no point lies in front of any training camera.
+PointCloud initial_points(const Scene& scene, std::size_t count, std::uint64_t seed);
+
+// The initial cloud of sets that mirrored rays are traced into [EnvGS; Na26 supplement]: uniform
+// points in each of cells^3 equal boxes of the scene's bounds, random colours.
+struct ReflectionGrid {
+  int cells = 32, points_per_cell = 5;
+  // Deviation: 32^3 cells are meant for images of 480x270; smaller ones start with as many points a
+  // pixel, for more could not be told apart by so few rays. Larger images keep `cells`.
+  float points_per_pixel = 1.264f;
+
+  template <class V>
+  void visit(V&& v) {
+    v("reflection_cells", cells, "most cells of the reflection grid along each axis");
+    v("points_per_cell", points_per_cell, "initial reflection surfels of each cell");
+    v("reflection_points_per_pixel", points_per_pixel, "fewer cells in small images");
+  }
+  int cells_for(ImageSize size) const;
+  PointCloud points(const Scene& scene, std::uint64_t seed) const;
+};
+
+}  // namespace glint

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/transmission_losses.h"
+
+#include <algorithm>
+
+#include "glint/core/error.h"
+
+namespace glint {
+
+std::vector<std::string> TransmissionLosses::set_up(
+    const TransmissionLossConfig& config, const Scene& scene, const std::string& method
+) {
+  GLINT_CHECK(
+      config.guidance == "paper" || config.guidance == "release",
+      kUsage,
+      "{}: guidance is '{}', expected paper or release",
+      method,
+      config.guidance
+  );
+  config_ = config;
+  const bool release = config.guidance == "release";
+  guidance_ = release ? TransparencyGuidance::release() : TransparencyGuidance::paper();
+  guidance_.depth_threshold = config.depth_threshold;
+  guidance_.low_albedo = config.low_albedo;
+  std::vector<std::string> warnings;
+  float& weight = config_.lambda_transparency;
+  require_prior(scene, &Priors::albedo, "albedo", "L_trans", method, weight, warnings);
+  if (release)
+    require_prior(scene, &Priors::basecolor, "basecolor", "L_trans", method, weight, warnings);
+  return warnings;
+}
+
+TransparencyCues TransmissionLosses::cues(
+    const View& view, const RasterOutput& interface, const GlassBuffer& buffer
+) {
+  TransparencyCues cues;
+  cues.interface_depth = buffer.depth;
+  cues.transmission_depth = direct_depth_;
+  cues.albedo = view.priors.albedo;
+  if (guidance_.kind == GuidanceKind::kL1) return cues;
+  cues.basecolor = view.priors.basecolor;
+  cosine_ = viewing_cosines(view.camera, interface.normal);
+  cues.cosine = cosine_;
+  return cues;
+}
+
+// The release's plausibility: on opaque pixels, the set seen on its own is the interface.
+void TransmissionLosses::add_plausible(
+    const View& view, const RasterOutput& out, const GlassBuffer& buffer, StepStats& stats
+) {
+  if (masks_.opaque.empty()) return;
+  const float weight = config_.lambda_plausible;
+  dL_ddepth_ = Image(out.alpha.width(), out.alpha.height(), 1);
+  const double loss =
+      depth_.evaluate(direct_depth_, buffer.depth, masks_.opaque, weight, dL_ddepth_) +
+      normal_.evaluate(out.normal, view.priors.normal, masks_.opaque, weight, dL_ddirect_.normal);
+  expected_depth_map_vjp(out, dL_ddepth_, dL_ddirect_);
+  stats.terms["plausible"] = static_cast<double>(weight) * loss;
+}
+
+void TransmissionLosses::add_direct(
+    const View& view,
+    int iteration,
+    int sh_degree,
+    PhotometricWeights weights,
+    const GlassBuffer& buffer,
+    SurfelSet& transmission,
+    StepStats& stats
+) {
+  const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
+  if (config_.lambda_direct <= 0 && !plausible) return;
+  clear_gradient(view.camera.size(), 3, dL_ddirect_);
+  if (config_.lambda_direct > 0) {
+    const PhotometricWeights direct{
+        config_.lambda_direct * weights.l1, config_.lambda_direct * weights.ssim};
+    const PhotometricTerms terms =
+        photometric_.evaluate(pass_.output.features, view.rgb, direct, dL_ddirect_.features);
+    stats.terms["direct"] = terms.weighted(direct);
+  }
+  if (plausible) add_plausible(view, pass_.output, buffer, stats);
+  transmission.backward(view.camera, sh_degree, {}, dL_ddirect_, {}, pass_);
+}
+
+void TransmissionLosses::add(
+    const View& view,
+    int iteration,
+    int sh_degree,
+    PhotometricWeights weights,
+    const RasterOutput& interface,
+    const GlassBuffer& buffer,
+    SurfelSet& transmission,
+    Image& dL_dtransparency,
+    StepStats& stats
+) {
+  const bool guided = config_.lambda_transparency > 0 && iteration >= config_.transparency_from;
+  const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
+  if (guided || plausible || config_.lambda_direct > 0) {
+    expected_depth_map(transmission.forward(view.camera, sh_degree, {}, {}, pass_), direct_depth_);
+    masks_ =
+        guided || plausible ? guidance_.masks(cues(view, interface, buffer)) : TransparencyMasks{};
+    add_direct(view, iteration, sh_degree, weights, buffer, transmission, stats);
+  }
+  if (guided)
+    stats.terms["transparency"] =
+        static_cast<double>(config_.lambda_transparency) *
+        guidance_.evaluate(
+            buffer.transparency, masks_, config_.lambda_transparency, dL_dtransparency
+        );
+  const float prior = config_.lambda_transparency_prior;
+  if (prior > 0 && iteration >= config_.transparency_prior_from)
+    stats.terms["transparency prior"] =
+        static_cast<double>(prior) *
+        transparency_prior_.evaluate(buffer.transparency, view.rgb, prior, dL_dtransparency);
+}
+
+}  // namespace glint

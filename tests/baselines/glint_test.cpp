@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// What is particular to GLINT: its phases, what it is without glass, its maps.
+#include <catch2/catch.hpp>
+
+#include "glint/glint_model.h"
+#include "glint/scene/ply.h"
+#include "tests/support/small_room.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+constexpr int kIterations = 60;
+
+std::unique_ptr<Method> started(Json overrides) {
+  auto method = create_method("glint", overrides);
+  RunOptions options;
+  options.iterations = kIterations;
+  method->initialize(small_room(), options);
+  return method;
+}
+
+SurfelCloud cloud_of(const Method& method, const char* name) {
+  const TempFolder folder;
+  method.save(folder.path().string());
+  return read_surfel_ply(folder.path() / name);
+}
+
+// Whether an array differs between two clouds of one size.
+bool same(const SurfelCloud& a, const SurfelCloud& b, const std::string& array) {
+  std::vector<std::vector<float>> values;
+  for (const SurfelCloud* cloud : {&a, &b})
+    cloud->for_each_array([&](const char* name, const std::vector<float>& data, std::size_t) {
+      if (array == name) values.push_back(data);
+    });
+  REQUIRE(values.size() == 2);
+  return values[0] == values[1];
+}
+
+// Before and after the last 20 of 60 steps, frozen from step 40 on.
+std::pair<SurfelCloud, SurfelCloud> frozen_run(const char* freeze, const char* file) {
+  const auto method = started({{"freeze", freeze}, {"freeze_from", 40000}, {"densify_until", 0}});
+  for (int i = 0; i < 40; ++i) method->step(i);
+  const SurfelCloud before = cloud_of(*method, file);
+  for (int i = 40; i < kIterations; ++i) method->step(i);
+  return {before, cloud_of(*method, file)};
+}
+
+float largest_difference(const Image& a, const Image& b) {
+  float largest = 0;
+  for (std::size_t i = 0; i < a.values().size(); ++i)
+    largest = std::max(largest, std::abs(a.values()[i] - b.values()[i]));
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("A frozen interface keeps its bytes while the other sets train on") {
+  const auto [before, after] = frozen_run("all", "interface.ply");
+  for (const char* array : {"means", "log_scales", "rotations", "opacity_logits", "sh_dc"})
+    CHECK(same(before, after, array));
+  const auto [early, late] = frozen_run("all", "reflection.ply");
+  CHECK_FALSE(same(early, late, "sh_dc"));
+}
+
+TEST_CASE("With frozen geometry only colour, t and s of the interface train on") {
+  const auto [before, after] = frozen_run("geometry", "interface.ply");
+  for (const char* array : {"means", "log_scales", "rotations", "opacity_logits"})
+    CHECK(same(before, after, array));
+  CHECK_FALSE(same(before, after, "sh_dc"));
+  CHECK_FALSE(same(before, after, "extra_logits"));
+}
+
+TEST_CASE("Before the joint phase the secondary sets stay as they were") {
+  const auto method = started({{"transmission_from", 30000}, {"reflection_from", 30000}});
+  const SurfelCloud transmission = cloud_of(*method, "transmission.ply");
+  const SurfelCloud reflection = cloud_of(*method, "reflection.ply");
+  for (int i = 0; i < 30; ++i) method->step(i);
+  CHECK(same(transmission, cloud_of(*method, "transmission.ply"), "sh_dc"));
+  CHECK(same(reflection, cloud_of(*method, "reflection.ply"), "sh_dc"));
+  method->step(30);
+  CHECK_FALSE(same(transmission, cloud_of(*method, "transmission.ply"), "sh_dc"));
+  CHECK_FALSE(same(reflection, cloud_of(*method, "reflection.ply"), "sh_dc"));
+}
+
+TEST_CASE("Without glass GLINT trains as 2DGS does") {
+  // No t, no k_s, no priors, the schedules of 2DGS: the same steps, up to the unused channels.
+  const auto glint = started(
+      {{"with_transmission", false},
+       {"with_reflection", false},
+       {"lambda_depth", 0.0},
+       {"lambda_normal", 0.0},
+       {"lambda_smooth", 0.0},
+       {"consistency_from", 14000},
+       {"sh_interval", 2000},
+       {"freeze", "nothing"},
+       {"position_steps", 60000},
+       {"densify_from", 1000}}
+  );
+  const auto two_dgs = create_method("2dgs");
+  RunOptions options;
+  options.iterations = kIterations;
+  two_dgs->initialize(small_room(), options);
+  for (int i = 0; i < kIterations; ++i) {
+    const StepStats a = glint->step(i), b = two_dgs->step(i);
+    CHECK(a.loss == Approx(b.loss).epsilon(1e-4));
+  }
+  const Camera& camera = small_room().test.front().camera;
+  CHECK(largest_difference(glint->render(camera).rgb, two_dgs->render(camera).rgb) < 0.02f);
+}
+
+TEST_CASE("The picture is the sum of what the maps say of it") {
+  const auto method = started({});
+  for (int i = 0; i < kIterations; ++i) method->step(i);
+  const RenderOutput out = method->render(small_room().test.front().camera);
+  Image sum = out.layers.at("transmitted");
+  for (std::size_t i = 0; i < sum.values().size(); ++i) {
+    const float t = out.layers.at("transparency").values()[i / 3];
+    const float k = out.layers.at("specularity").values()[i / 3];
+    sum.values()[i] += (1 - k) * (1 - t) * out.layers.at("interface").values()[i] +
+                       out.layers.at("reflected").values()[i];
+  }
+  CHECK(largest_difference(sum, out.rgb) < 1e-5f);
+}
+
+TEST_CASE("Ablated sets leave no map behind") {
+  for (const auto& [id, layer] :
+       {std::pair{"glint/no-trans", "transmission"}, {"glint/no-refl", "reflection"}}) {
+    const auto method = create_method(id);
+    RunOptions options;
+    options.iterations = kIterations;
+    method->initialize(small_room(), options);
+    for (int i = 0; i < kIterations; ++i) method->step(i);
+    const RenderOutput out = method->render(small_room().test.front().camera);
+    CHECK(out.layers.count(layer) == 0);
+  }
+}
+
+TEST_CASE("Words that GLINT does not know are refused") {
+  for (const char* field : {"transmission", "freeze", "guidance"}) {
+    Json overrides = Json::object();
+    overrides[field] = "sideways";
+    CHECK_THROWS_WITH(started(overrides), Catch::Matchers::Contains("sideways"));
+  }
+}

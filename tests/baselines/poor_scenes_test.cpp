@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Every registered method on scenes that lack something: a run that makes sense and says what it
+// did without, or a clear error.
+#include <catch2/catch.hpp>
+
+#include "glint/method.h"
+#include "tests/support/small_room.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+std::vector<std::string> warnings_of_short_run(const MethodSpec& spec, const Scene& scene) {
+  const auto method = create_method(spec.id);
+  RunOptions options;
+  options.iterations = 40;
+  method->initialize(scene, options);
+  for (int i = 0; i < options.iterations; ++i) {
+    const StepStats stats = method->step(i);
+    CHECK(std::isfinite(stats.loss));
+  }
+  CHECK_NOTHROW(method->check_finite());
+  CHECK(method->num_surfels() > 0);
+  const RenderOutput out = method->render(scene.test.front().camera);
+  for (const float value : out.rgb.values()) REQUIRE(std::isfinite(value));
+  return method->warnings();
+}
+
+bool any_says(const std::vector<std::string>& warnings, const std::string& text) {
+  for (const std::string& warning : warnings)
+    if (warning.find(text) != std::string::npos) return true;
+  return false;
+}
+
+template <class Body>
+void for_every_method(Body&& body) {
+  for (const auto& [id, spec] : method_registry()) {
+    INFO(id);
+    body(spec);
+  }
+}
+
+// Whether a method's config weighs this prior.
+bool uses(const MethodSpec& spec, const char* weight) {
+  const Json config = create_method(spec.id)->config();
+  return config.contains(weight) && config.at(weight).get<double>() > 0;
+}
+
+}  // namespace
+
+TEST_CASE("Without points every method starts from random ones, and says so") {
+  Scene scene = small_room();
+  scene.points = {};
+  for_every_method([&](const MethodSpec& spec) {
+    CHECK(any_says(warnings_of_short_run(spec, scene), "has no points"));
+  });
+}
+
+TEST_CASE("Without priors every method trains, and names each loss that is off") {
+  Scene scene = small_room();
+  for (View& view : scene.train) view.priors = {};
+  for_every_method([&](const MethodSpec& spec) {
+    const auto warnings = warnings_of_short_run(spec, scene);
+    CHECK(any_says(warnings, "L_depth is off") == uses(spec, "lambda_depth"));
+    CHECK(any_says(warnings, "L_normal is off") == uses(spec, "lambda_normal"));
+  });
+}
+
+TEST_CASE("A prior that one view lacks is off for all, and the warning counts the views") {
+  Scene scene = small_room();
+  scene.train.front().priors.depth = {};
+  for_every_method([&](const MethodSpec& spec) {
+    if (!uses(spec, "lambda_depth")) return;
+    const std::string expected = "no depth prior for 1 of ";
+    CHECK(any_says(warnings_of_short_run(spec, scene), expected));
+  });
+}
+
+TEST_CASE("Without glass every method trains") {
+  Scene scene = small_room();
+  for (View& view : scene.train) {
+    for (float& value : view.priors.albedo.values()) value = 0.5f;
+    view.truth.glass = {};
+  }
+  for_every_method([&](const MethodSpec& spec) { warnings_of_short_run(spec, scene); });
+}
+
+TEST_CASE("One training view is enough for every method") {
+  Scene scene = small_room();
+  scene.train.resize(1);
+  set_extent(scene);
+  for_every_method([&](const MethodSpec& spec) { warnings_of_short_run(spec, scene); });
+}
+
+TEST_CASE("Points behind all cameras are an error that names what to look at") {
+  Scene scene = small_room();
+  for (Vec3f& point : scene.points.positions) point = {1e3f, 1e3f, -1e3f};
+  for (View& view : scene.train)
+    view.camera = look_at({0, 0, 0}, {-1, -1, 1}, {0, 0, 1}, view.camera.size(), 60);
+  for_every_method([&](const MethodSpec& spec) {
+    try {
+      create_method(spec.id)->initialize(scene, {});
+      FAIL("accepted points that no camera sees");
+    } catch (const Error& error) {
+      CHECK(error.code() == ExitCode::kBadReference);
+      CHECK(std::string(error.what()).find("in front of any") != std::string::npos);
+    }
+  });
+}

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/geometry_losses.h"
+
+#include <catch2/catch.hpp>
+
+#include "glint/train/surfel_set.h"
+#include "tests/support/random_scene.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+constexpr ImageSize kSize{12, 9};
+
+Image random_map(Rng& rng, int channels, float low, float high) {
+  Image image(kSize.width, kSize.height, channels);
+  for (float& value : image.values()) value = rng.uniform(low, high);
+  return image;
+}
+
+struct Fixture {
+  Scene scene;
+  RasterOutput output;
+  Image depth;
+
+  Fixture() {
+    Rng rng(5);
+    View view;
+    view.camera = random_camera(rng, kSize);
+    view.rgb = random_map(rng, 3, 0, 1);
+    view.priors.depth = random_map(rng, 1, 1, 2);
+    view.priors.normal = random_map(rng, 3, -1, 1);
+    scene.name = "test";
+    scene.train = {view};
+    output.alpha = random_map(rng, 1, 0.5f, 1);
+    output.depth_sum = random_map(rng, 1, 1, 2);
+    output.normal = random_map(rng, 3, -1, 1);
+    expected_depth_map(output, depth);
+  }
+  // Terms at an iteration, and the gradient.
+  StepStats terms(const GeometryLossConfig& config, int iteration, RasterOutputGradient& g) {
+    GeometryLosses losses;
+    CHECK(losses.set_up(config, scene, "test").empty());
+    clear_gradient(kSize, 3, g);
+    StepStats stats;
+    losses.add(scene.train.front(), iteration, output, depth, g, stats);
+    return stats;
+  }
+};
+
+double norm(const Image& image) {
+  double sum = 0;
+  for (const float value : image.values()) sum += static_cast<double>(value * value);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("Each loss on the maps counts from its iteration on, with its weight") {
+  Fixture f;
+  RasterOutputGradient g;
+  GeometryLossConfig config;
+  CHECK(f.terms(config, 100000, g).terms.empty());
+  CHECK(norm(g.normal) + norm(g.alpha) + norm(g.depth_sum) == 0);
+  config.lambda_depth = config.lambda_normal = config.lambda_consistency = config.lambda_smooth =
+      0.5f;
+  config.consistency_from = 20;
+  config.smooth_from = 30;
+  CHECK(f.terms(config, 10, g).terms.size() == 2);
+  CHECK(f.terms(config, 20, g).terms.size() == 3);
+  const auto half = f.terms(config, 30, g).terms;
+  REQUIRE(half.size() == 4);
+  config.lambda_depth = config.lambda_normal = config.lambda_consistency = config.lambda_smooth = 1;
+  for (const auto& [name, value] : f.terms(config, 30, g).terms)
+    CHECK(value == Approx(2 * half.at(name)));
+}
+
+TEST_CASE("The depth prior reaches both the depth sum and alpha, the normal prior the normal") {
+  Fixture f;
+  RasterOutputGradient g;
+  GeometryLossConfig config;
+  config.lambda_depth = 1;
+  f.terms(config, 0, g);
+  CHECK(norm(g.depth_sum) > 0);
+  CHECK(norm(g.alpha) > 0);
+  CHECK(norm(g.normal) == 0);
+  config.lambda_depth = 0;
+  config.lambda_normal = 1;
+  f.terms(config, 0, g);
+  CHECK(norm(g.depth_sum) == 0);
+  CHECK(norm(g.normal) > 0);
+}
+
+TEST_CASE("The gate of the normal prior closes at its iteration") {
+  Fixture f;
+  RasterOutputGradient g;
+  GeometryLossConfig config;
+  config.lambda_normal = 1;
+  config.gate_from = 50;
+  const double open = f.terms(config, 49, g).terms.at("normal");
+  CHECK(f.terms(config, 50, g).terms.at("normal") < open);
+}
+
+TEST_CASE("A prior that a view lacks switches its loss off, with a warning") {
+  Fixture f;
+  f.scene.train.push_back(f.scene.train.front());
+  f.scene.train.back().priors.depth = {};
+  GeometryLossConfig config;
+  config.lambda_depth = config.lambda_normal = 1;
+  GeometryLosses losses;
+  const auto warnings = losses.set_up(config, f.scene, "test");
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0] == "test: test has no depth prior for 1 of 2 training views; L_depth is off");
+  RasterOutputGradient g;
+  clear_gradient(kSize, 3, g);
+  StepStats stats;
+  losses.add(f.scene.train.front(), 0, f.output, f.depth, g, stats);
+  CHECK(stats.terms.count("depth") == 0);
+  CHECK(stats.terms.count("normal") == 1);
+}
+
+TEST_CASE("The control of a baseline has GLINT's priors at the same share of its run") {
+  const Json overrides = prior_control(30000);
+  CHECK(overrides.at("lambda_depth") == GlintPriors::kLambdaDepth);
+  CHECK(overrides.at("lambda_normal") == GlintPriors::kLambdaNormal);
+  CHECK(overrides.at("gate_from") == 5000);
+}

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/transmission_losses.h"
+
+#include <catch2/catch.hpp>
+
+#include "glint/core/error.h"
+#include "tests/support/random_scene.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+constexpr ImageSize kSize{12, 9};
+constexpr PhotometricWeights kWeights{0.8f, 0.2f};
+
+Image constant(int channels, float value) {
+  return Image(kSize.width, kSize.height, channels, value);
+}
+
+// A wall two metres away as interface, t = 0.5 everywhere; a transmission wall at `behind` metres.
+struct Fixture {
+  Scene scene;
+  RasterOutput interface;
+  GlassBuffer buffer;
+  SurfelSet transmission;
+  Image dL_dtransparency = constant(1, 0);
+
+  explicit Fixture(float behind = 3) {
+    View view;
+    view.camera = look_at({0, 0, 0}, {0, 0, 1}, {0, -1, 0}, kSize, 60);
+    view.rgb = constant(3, 0.3f);
+    view.priors.albedo = constant(3, 0.01f);
+    scene.name = "test";
+    scene.train = {view};
+    interface.normal = constant(3, 0);
+    for (std::size_t i = 0; i < kSize.num_pixels(); ++i) interface.normal.data()[3 * i + 2] = -1;
+    buffer.depth = constant(1, 2);
+    buffer.transparency = constant(1, 0.5f);
+    SurfelCloud wall;
+    wall.resize(1);
+    wall.means = {0, 0, behind};
+    wall.log_scales = {3, 3};
+    wall.rotations = {1, 0, 0, 0};
+    wall.opacity_logits = {3};
+    transmission = SurfelSet(wall, {}, {}, 1, 0);
+  }
+  StepStats add(const TransmissionLossConfig& config, int iteration) {
+    TransmissionLosses losses;
+    CHECK(losses.set_up(config, scene, "test").empty());
+    StepStats stats;
+    losses.add(
+        scene.train[0],
+        iteration,
+        0,
+        kWeights,
+        interface,
+        buffer,
+        transmission,
+        dL_dtransparency,
+        stats
+    );
+    return stats;
+  }
+};
+
+double norm(std::span<const float> values) {
+  double sum = 0;
+  for (const float value : values) sum += static_cast<double>(value * value);
+  return sum;
+}
+
+TransmissionLossConfig only_guidance() {
+  TransmissionLossConfig config;
+  config.transparency_from = 10;
+  return config;
+}
+
+}  // namespace
+
+TEST_CASE("Guidance draws t to 1 where the layers lie apart, from its iteration on") {
+  Fixture f;
+  CHECK(f.add(only_guidance(), 9).terms.empty());
+  const StepStats stats = f.add(only_guidance(), 10);
+  CHECK(stats.terms.at("transparency") == Approx(0.1 * 0.5));
+  CHECK(f.dL_dtransparency.at(6, 4) < 0);
+  CHECK(norm(f.transmission.gradient().means) == 0);  // the depths are constants
+}
+
+TEST_CASE("Guidance draws t to 0 where the layers coincide") {
+  Fixture f(2);
+  f.add(only_guidance(), 10);
+  CHECK(f.dL_dtransparency.at(6, 4) > 0);
+}
+
+TEST_CASE("Direct supervision is the photometric loss of the set on its own, times its weight") {
+  Fixture f;
+  TransmissionLossConfig config;
+  config.lambda_transparency = 0;
+  config.lambda_direct = 2;
+  const StepStats stats = f.add(config, 0);
+  PhotometricLoss loss;
+  RasterOutputGradient g;
+  clear_gradient(kSize, 3, g);
+  Fixture other;
+  const RasterOutput& out = other.transmission.forward(other.scene.train[0].camera, 0, {});
+  const PhotometricWeights doubled{1.6f, 0.4f};
+  const double expected =
+      loss.evaluate(out.features, other.scene.train[0].rgb, doubled, g.features).weighted(doubled);
+  other.transmission.backward(other.scene.train[0].camera, 0, {}, g);
+  CHECK(stats.terms.at("direct") == Approx(expected));
+  CHECK(norm(f.transmission.gradient().sh_dc) > 0);
+  CHECK(f.transmission.gradient().sh_dc == other.transmission.gradient().sh_dc);
+}
+
+TEST_CASE("Plausibility moves the set to the interface where it is opaque, and only there") {
+  for (const bool opaque : {false, true}) {
+    Fixture f(2.5f);
+    View& view = f.scene.train[0];
+    view.priors.basecolor = constant(3, 0.5f);
+    view.priors.albedo = constant(3, opaque ? 0.5f : 0.01f);
+    view.priors.normal = constant(3, 0);
+    for (std::size_t i = 0; i < kSize.num_pixels(); ++i)
+      view.priors.normal.data()[3 * i] = -1;  // across
+    for (std::size_t i = 0; i < kSize.num_pixels(); ++i)
+      f.buffer.depth.data()[i] = 1.8f + 0.01f * static_cast<float>(i % 12);
+    TransmissionLossConfig config;
+    config.guidance = "release";
+    config.lambda_transparency = 0;
+    config.lambda_plausible = 1;
+    config.plausible_from = 0;
+    const StepStats stats = f.add(config, 0);
+    CHECK((stats.terms.at("plausible") > 0) == opaque);
+    CHECK((norm(f.transmission.gradient().rotations) > 0) == opaque);
+  }
+}
+
+TEST_CASE("The prior on t needs no rasterisation of the set") {
+  Fixture f;
+  TransmissionLossConfig config;
+  config.lambda_transparency = 0;
+  config.lambda_transparency_prior = 1;
+  config.transparency_prior_from = 0;
+  const StepStats stats = f.add(config, 0);
+  CHECK(stats.terms.at("transparency prior") == Approx(std::log(2.0) + 0.5));
+}
+
+TEST_CASE("Guidance is off, with a warning, where a view lacks the prior it needs") {
+  Fixture f;
+  TransmissionLossConfig config;
+  config.guidance = "release";
+  TransmissionLosses losses;
+  const auto warnings = losses.set_up(config, f.scene, "test");
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], Catch::Contains("no basecolor prior"));
+  config.guidance = "sideways";
+  CHECK_THROWS_WITH(losses.set_up(config, f.scene, "test"), Catch::Contains("sideways"));
+}
