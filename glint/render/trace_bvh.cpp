@@ -4,11 +4,13 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
+#include "glint/render/blend.h"
 
 namespace glint {
 
@@ -16,7 +18,6 @@ namespace {
 
 constexpr float kMargin = 1e-4f;  // of the extent: rounding of bounds and of Embree's box tests
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kFarthest = std::numeric_limits<float>::max();
 constexpr std::size_t kLanes = Float8::kLanes;
 
 // Eight surfels of consecutive slots, the fields of TracedSurfel up to max_rho; lanes behind the
@@ -36,9 +37,6 @@ struct Context {
   NearestHits* hits;
 };
 
-// Hits behind this do not matter; ties with the last place do.
-float farthest(const NearestHits& hits) { return hits.full() ? hit_t(hits.last().key) : kFarthest; }
-
 SurfelFields<Float8> cluster_fields(const SurfelCluster& c) {
   const Float8* f = c.fields;
   return {{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}, f[9], f[10]};
@@ -51,20 +49,11 @@ void offer_cluster(const Context& context, unsigned cluster) {
   const SurfelFields<Float8> s = cluster_fields(c);
   const PlaneHit<Float8> hit = meet(s, context.origin, context.direction);
   const Float8 rho = squared_radius(hit);
-  const Mask8 near_enough =
-      (hit.t >= Float8(hit_t(hits.after))) & (hit.t <= Float8(farthest(hits)));
-  const Mask8 met = (rho <= s.max_rho) & near_enough;
+  const Mask8 met =
+      (rho <= s.max_rho) & (hit.t >= Float8(hits.after_t())) & (hit.t <= Float8(hits.last_t()));
   if (!any(met)) return;
   const Float8 alpha = splat_alpha(s.opacity, min_of(rho, s.max_rho)).alpha;
-  for (unsigned bits = lane_bits(met & (alpha >= Float8(hits.min_alpha))); bits != 0;
-       bits &= bits - 1) {
-    const int i = std::countr_zero(bits);
-    hits.insert(
-        {hit_key(hit.t[i], c.surfel[i]),
-         static_cast<std::uint32_t>(kLanes) * cluster + static_cast<std::uint32_t>(i),
-         alpha[i]}
-    );
-  }
+  hits.add(hit.t, alpha, met, c.surfel, static_cast<std::uint32_t>(kLanes) * cluster);
 }
 
 void offer_surfel(const Context& context, std::uint32_t slot) {
@@ -74,21 +63,22 @@ void offer_surfel(const Context& context, std::uint32_t slot) {
   const PlaneHit<float> hit =
       meet(s.fields, first_lane(context.origin), first_lane(context.direction));
   const float rho = squared_radius(hit);
-  if (!(rho <= s.fields.max_rho && hit.t >= hit_t(hits.after) && hit.t <= farthest(hits))) return;
-  const float alpha = splat_alpha(s.fields.opacity, rho).alpha;
-  if (alpha >= hits.min_alpha) hits.insert({hit_key(hit.t, s.surfel), slot, alpha});
+  if (!(rho <= s.fields.max_rho && hit.t <= hits.last_t())) return;
+  hits.add({hit.t, s.surfel, slot, splat_alpha(s.fields.opacity, rho).alpha});
 }
 
-// Where Embree may stop looking; ties with the last place still have to be seen.
-float ray_end(const NearestHits& hits) {
-  return hits.full() ? std::nextafter(farthest(hits), kInfinity) : kInfinity;
+// Tells Embree where to stop looking, if anywhere; ties with the last place still have to be seen.
+bool shorten(RTCRay& ray, const NearestHits& hits) {
+  if (hits.last_t() == NearestHits::kFarthest) return false;
+  ray.tfar = std::bit_cast<float>(std::bit_cast<std::uint32_t>(hits.last_t()) + 1);
+  return true;
 }
 
 void intersect_cluster(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
   auto& context = *reinterpret_cast<Context*>(args->context);
   offer_cluster(context, args->primID);
-  reinterpret_cast<RTCRayHit*>(args->rayhit)->ray.tfar = ray_end(*context.hits);
+  shorten(reinterpret_cast<RTCRayHit*>(args->rayhit)->ray, *context.hits);
 }
 
 // Rejects every triangle hit after having looked at its surfel; a hit is accepted only to shorten
@@ -97,10 +87,7 @@ void filter_triangle(const RTCFilterFunctionNArguments* args) {
   auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
   auto& context = *reinterpret_cast<Context*>(args->context);
   offer_surfel(context, reinterpret_cast<const RTCHit*>(args->hit)->primID / 2);
-  if (context.hits->full())
-    ray.tfar = ray_end(*context.hits);
-  else
-    args->valid[0] = 0;
+  if (!shorten(ray, *context.hits)) args->valid[0] = 0;
 }
 
 float reach(const SurfelFields<float>& s, int axis) {
@@ -188,16 +175,6 @@ std::vector<std::uint32_t> morton_order(std::span<const float> means) {
   std::vector<std::uint32_t> order(keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) order[i] = static_cast<std::uint32_t>(keys[i]);
   return order;
-}
-
-void NearestHits::insert(FoundHit hit) {
-  if (hit.key <= after || (full() && hit.key >= last().key)) return;
-  int place = full() ? kCapacity - 1 : count;
-  while (place > 0 && hit.key < hits[place - 1].key) --place;
-  if (place > 0 && hits[place - 1].key == hit.key) return;  // the second triangle of a quad
-  for (int i = std::min(count, kCapacity - 1); i > place; --i) hits[i] = hits[i - 1];
-  hits[place] = hit;
-  count = std::min(count + 1, kCapacity);
 }
 
 struct SurfelBvh::Impl {
@@ -326,7 +303,6 @@ void SurfelBvh::nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const 
   context.origin = all_lanes(origin);
   context.direction = all_lanes(direction);
   context.hits = &hits;
-  hits.count = 0;
   RTCRayHit ray{};
   ray.ray.org_x = origin.x;
   ray.ray.org_y = origin.y;
@@ -335,7 +311,7 @@ void SurfelBvh::nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const 
   ray.ray.dir_y = direction.y;
   ray.ray.dir_z = direction.z;
   // Boxes are tested a little before the last hit: theirs and ours round differently.
-  ray.ray.tnear = (1 - kMargin) * hit_t(hits.after);
+  ray.ray.tnear = (1 - kMargin) * hits.after_t();
   ray.ray.tfar = kInfinity;
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;

@@ -71,7 +71,7 @@ struct RaySums {
 
 Vec3f lane_sum(Vec3<Float8> v) { return {lane_sum(v.x), lane_sum(v.y), lane_sum(v.z)}; }
 
-// Weights of the hits in order. Returns false when the ray has stopped.
+// Weights of the hits in order, at most `most`. Returns false when the ray has stopped.
 bool weigh(
     const TraceSettings& settings,
     const TraceSaved& saved,
@@ -80,16 +80,16 @@ bool weigh(
     RayState& ray,
     WeightedHits& hits
 ) {
-  for (int i = 0; i < nearest.count && hits.count < most; ++i) {
-    const FoundHit& hit = nearest.hits[i];
+  for (int i = 0; i < nearest.count() && hits.count < most; ++i) {
+    const FoundHit& hit = nearest[i];
     const BlendStep<float> step =
         blend_step(ray.transmittance, hit.alpha, settings.min_transmittance);
     ray.transmittance = step.transmittance;
     if (step.transmittance < 0) return false;
     prefetch_hit(saved, hit.slot);
-    hits.push(hit.slot, step.weight, hit_t(hit.key));
+    hits.push(hit.slot, step.weight, hit.t);
   }
-  return nearest.full() && hits.count < most;
+  return hits.count < most;
 }
 
 // Adds eight hits.
@@ -124,19 +124,18 @@ void trace_ray(
     std::vector<std::uint32_t>& slots,
     RaySums& sums
 ) {
-  NearestHits nearest;
-  nearest.after = hit_key(std::max(settings.near, 0.0f), ~0u);
-  nearest.min_alpha = settings.min_alpha;
+  NearestHits nearest(settings.near, settings.min_alpha, settings.min_transmittance);
   auto left = static_cast<std::size_t>(std::max(settings.max_hits, 0));
   for (bool more = left > 0; more;) {
+    nearest.start(ray.transmittance);
     saved.bvh.nearest(ray.origin, ray.direction, nearest);
+    more = nearest.finish();
     WeightedHits hits;
-    more = weigh(settings, saved, nearest, left, ray, hits);
+    more = weigh(settings, saved, nearest, left, ray, hits) && more;
     slots.insert(slots.end(), hits.slots, hits.slots + hits.count);
     left -= hits.count;
     hits.pad();
     for (std::size_t i = 0; i < hits.count; i += kHitsAtOnce) shade(saved, ray, hits, i, sums);
-    if (more) nearest.after = nearest.last().key;
   }
 }
 
