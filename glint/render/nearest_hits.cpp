@@ -114,7 +114,7 @@ void NearestHits::sort_ties() {
   for (int i = 0; i < count_; ++i) sorted_[i] = hit(i);
   std::sort(sorted_, sorted_ + count_);
   // A surfel comes twice where a ray meets both triangles of a quad.
-  count_ = static_cast<int>(std::unique(sorted_, sorted_ + count_) - sorted_);
+  keep_first(static_cast<int>(std::unique(sorted_, sorted_ + count_) - sorted_));
 }
 
 // Hits behind the one that stops the ray do not matter, whatever else is found in front of it.
@@ -126,7 +126,11 @@ void NearestHits::shorten() {
     transmittance =
         blend_step(transmittance, sorted_[keep++].alpha, min_transmittance_).transmittance;
   if (transmittance > 0 && count_ >= kCapacity) keep = kCapacity / 2;
-  if (keep < count_ || transmittance < 0) keep_first(keep);
+  if (keep < count_ || transmittance < 0) {
+    keep_first(keep);
+    last_ = sorted_[keep - 1];
+    cut_ = true;
+  }
   next_look_ = std::min(count_ + kLookInterval, kCapacity);
 }
 
@@ -138,8 +142,6 @@ void NearestHits::keep_first(int count) {
     slots_[i] = sorted_[i].slot;
   }
   count_ = count;
-  last_ = sorted_[count - 1];
-  cut_ = true;
 }
 
 }  // namespace glint

@@ -149,7 +149,7 @@ TEST_CASE("trace follows its cut-offs") {
 TEST_CASE("coincident surfels count once each, more of them than one traversal returns") {
   Rng rng(5);
   TraceArrays arrays;
-  constexpr int kClones = 80;
+  constexpr int kClones = 200;
   for (int i = 0; i < kClones; ++i) arrays.add({0, 0, 1}, {0.5, 0.5}, {1, 0, 0, 0}, 0.02, rng);
   Rays rays = empty_rays(1, 1);
   set_ray(rays, 0, {0, 0, 0}, {0, 0, 1});
