@@ -11,8 +11,8 @@ namespace glint {
 
 namespace {
 
-constexpr std::size_t kSlices = 8;  // of the rays
-constexpr std::size_t kSurfelGrain = 512;
+// Slices of the rays: more of them cost memory and sums, fewer leave processors idle.
+constexpr std::size_t kHitsPerSlice = std::size_t{1} << 17, kMinSlices = 4, kMaxSlices = 16;
 constexpr std::size_t kAhead = 16;  // hits that memory is asked for in advance
 
 Vec3f at3(const Image& image, std::size_t i) { return image.empty() ? Vec3f{} : pixel3(image, i); }
@@ -281,14 +281,31 @@ void backward_block(
   }
 }
 
-void backward_slice(
-    const BackwardCall& call, std::size_t slice, TraceSaved& saved, TraceGradient& out
+// Blocks [ends[i - 1], ends[i]) of each slice, of about as many hits each.
+std::vector<std::size_t> slice_ends(const TraceSaved& saved, std::size_t num_hits) {
+  const std::size_t slices = std::clamp(num_hits / kHitsPerSlice, kMinSlices, kMaxSlices);
+  std::vector<std::size_t> ends;
+  std::size_t hits = 0;
+  for (std::size_t block = 0; block < saved.blocks.size(); ++block) {
+    hits += saved.blocks[block].size();
+    if (hits * slices >= num_hits * (ends.size() + 1)) ends.push_back(block + 1);
+  }
+  ends.resize(slices, saved.blocks.size());
+  ends.back() = saved.blocks.size();
+  return ends;
+}
+
+void backward_blocks(
+    const BackwardCall& call,
+    std::size_t begin,
+    std::size_t end,
+    const TraceSaved& saved,
+    GradientSlice& slice,
+    TraceGradient& out
 ) {
-  const std::size_t blocks = saved.blocks.size();
-  GradientSlice& sums = saved.slices[slice];
-  sums.row_of_slot.resize(saved.surfels.size(), GradientSlice::kNone);
-  for (std::size_t b = slice * blocks / kSlices; b < (slice + 1) * blocks / kSlices; ++b)
-    backward_block(call, b, saved, sums, out);
+  slice.row_of_slot.resize(saved.surfels.size(), GradientSlice::kNone);
+  for (std::size_t block = begin; block < end; ++block)
+    backward_block(call, block, saved, slice, out);
 }
 
 // ---- surfels
@@ -358,12 +375,17 @@ void Tracer::backward(
   check_trace_arguments(input, rays);
   fit_gradient(input, rays.origins.size(), gradient);
   const BackwardCall call{input, rays, output, dL_doutput};
-  saved_->slices.resize(kSlices);
-  parallel_for(kSlices, 1, [&](std::size_t slice) {
-    backward_slice(call, slice, *saved_, gradient);
+  const std::vector<std::size_t> ends = slice_ends(*saved_, num_hits());
+  saved_->slices.resize(ends.size());
+  parallel_for(ends.size(), 1, [&](std::size_t i) {
+    const std::size_t begin = i == 0 ? 0 : ends[i - 1];
+    backward_blocks(call, begin, ends[i], *saved_, saved_->slices[i], gradient);
   });
-  parallel_for(input.count, kSurfelGrain, [&](std::size_t slot) {
-    surfel_vjp(input, saved_->surfel_of_slot[slot], collect(slot, saved_->slices), gradient);
+  parallel_for(input.count, kSurfelGrain, [&](std::size_t i) {
+    const auto& slots = saved_->slot_of_surfel;
+    const std::uint32_t ahead = slots[std::min(i + kSurfelsAhead, input.count - 1)];
+    for (const GradientSlice& slice : saved_->slices) prefetch_sum(slice, ahead);
+    surfel_vjp(input, i, collect(slots[i], saved_->slices), gradient);
   });
   for (GradientSlice& slice : saved_->slices) slice.rows.clear();
 }

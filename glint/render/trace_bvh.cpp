@@ -163,7 +163,7 @@ Extent extent_of(std::span<const float> means) {
 
 }  // namespace
 
-std::vector<std::uint32_t> morton_order(std::span<const float> means) {
+std::vector<std::uint32_t> morton_slots(std::span<const float> means) {
   const Extent extent = extent_of(means);
   std::vector<std::uint64_t> keys(means.size() / 3);
   parallel_for(keys.size(), 4096, [&](std::size_t i) {
@@ -172,9 +172,10 @@ std::vector<std::uint32_t> morton_order(std::span<const float> means) {
     keys[i] = std::uint64_t{code} << 32 | i;
   });
   std::sort(keys.begin(), keys.end());
-  std::vector<std::uint32_t> order(keys.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) order[i] = static_cast<std::uint32_t>(keys[i]);
-  return order;
+  std::vector<std::uint32_t> slots(keys.size());
+  for (std::size_t slot = 0; slot < keys.size(); ++slot)
+    slots[keys[slot] & ~0u] = static_cast<std::uint32_t>(slot);
+  return slots;
 }
 
 struct SurfelBvh::Impl {

@@ -16,9 +16,9 @@
 
 namespace glint {
 
-// Slots of surfels at `means` [N][3]: surfel_of_slot[N], along a Morton curve. Means that are not
-// finite come last.
-std::vector<std::uint32_t> morton_order(std::span<const float> means);
+// Slots [N] of surfels at `means` [N][3], along a Morton curve. Means that are not finite come
+// last.
+std::vector<std::uint32_t> morton_slots(std::span<const float> means);
 
 // Where a surfel meets a ray; the same operations for one surfel and for eight.
 template <class T>

@@ -13,7 +13,6 @@ namespace glint {
 
 namespace {
 
-constexpr std::size_t kSurfelGrain = 512;
 constexpr int kRebuildInterval = 16;  // updates; order and bounds loosen as surfels move
 
 // ---- surfels
@@ -24,10 +23,7 @@ bool is_finite(const SurfelFields<float>& s) {
   return std::isfinite(sum.x + sum.y + sum.z);
 }
 
-TracedSurfel traced_surfel(
-    const TraceInput& input, const TraceSettings& settings, std::uint32_t surfel
-) {
-  const std::size_t i = surfel;
+TracedSurfel traced_surfel(const TraceInput& input, const TraceSettings& settings, std::size_t i) {
   const Mat3f r = rotation_matrix(rotation_at(input, i));
   const float opacity = input.opacities[i];
   const float faintest = 2 * std::log(std::max(opacity, 1e-12f) / settings.min_alpha) + 1e-4f;
@@ -38,7 +34,7 @@ TracedSurfel traced_surfel(
   s.fields.opacity = opacity;
   s.fields.max_rho = is_finite(s.fields) ? std::min(settings.max_rho, faintest) : -1.0f;
   s.normal = column(r, 2);
-  s.surfel = surfel;
+  s.surfel = static_cast<std::uint32_t>(i);
   return s;
 }
 
@@ -168,13 +164,14 @@ void prepare(
   const std::size_t n = input.count;
   const bool refit = saved.surfels.size() == n && ++saved.updates % kRebuildInterval != 0;
   if (!refit) {
-    saved.surfel_of_slot = morton_order(input.means);
+    saved.slot_of_surfel = morton_slots(input.means);
     saved.updates = 0;
   }
   saved.surfels.resize(n);
   saved.sh.resize(n);
-  parallel_for(n, kSurfelGrain, [&](std::size_t slot) {
-    const std::uint32_t i = saved.surfel_of_slot[slot];
+  parallel_for(n, kSurfelGrain, [&](std::size_t i) {
+    prefetch_hit(saved, saved.slot_of_surfel[std::min(i + kSurfelsAhead, n - 1)]);
+    const std::uint32_t slot = saved.slot_of_surfel[i];
     saved.surfels[slot] = traced_surfel(input, settings, i);
     saved.sh[slot] = ShRow::pack(&input.sh_dc[3 * i], &input.sh_rest[45 * i]);
   });
@@ -184,11 +181,6 @@ void prepare(
 }
 
 }  // namespace
-
-Vec4f rotation_at(const TraceInput& input, std::size_t surfel) {
-  const float* q = &input.rotations[4 * surfel];
-  return {q[0], q[1], q[2], q[3]};
-}
 
 // Coefficients above the degree in use count as zero.
 RayState ray_at(const Rays& rays, int sh_degree, std::size_t i) {

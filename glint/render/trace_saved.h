@@ -14,6 +14,8 @@
 namespace glint {
 
 inline constexpr std::size_t kRaysPerBlock = 64;
+inline constexpr std::size_t kSurfelGrain = 512;
+inline constexpr std::size_t kSurfelsAhead = 8;  // that memory is asked for in advance
 inline constexpr std::size_t kHitsAtOnce = Float8::kLanes;
 
 // Gradient of one surfel.
@@ -34,9 +36,9 @@ struct GradientSlice {
 };
 
 struct TraceSaved {
-  std::vector<std::uint32_t> surfel_of_slot;
-  std::vector<TracedSurfel> surfels;  // by slot
-  std::vector<ShRow> sh;              // by slot
+  std::vector<std::uint32_t> slot_of_surfel;  // [N]
+  std::vector<TracedSurfel> surfels;          // by slot
+  std::vector<ShRow> sh;                      // by slot
   SurfelBvh bvh;
   int updates = 0;
   std::vector<std::vector<std::uint32_t>> blocks;  // slots of the hits of each block of rays
@@ -60,6 +62,10 @@ inline void put3(float* p, Vec3f v) {
   p[2] = v.z;
 }
 
+inline Vec4f rotation_at(const TraceInput& input, std::size_t surfel) {
+  const float* q = &input.rotations[4 * surfel];
+  return {q[0], q[1], q[2], q[3]};
+}
 RayState ray_at(const Rays& rays, int sh_degree, std::size_t i);
 
 // Colours of eight surfels along a ray.
@@ -78,7 +84,6 @@ inline void prefetch_hit(const TraceSaved& saved, std::uint32_t slot) {
 }
 
 void check_trace_arguments(const TraceInput& input, const Rays& rays);
-Vec4f rotation_at(const TraceInput& input, std::size_t surfel);
 void fit(Image& image, ImageSize size, int channels);
 
 }  // namespace glint
