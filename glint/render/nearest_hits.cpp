@@ -14,7 +14,7 @@ namespace glint {
 namespace {
 
 constexpr std::uint32_t kLastSurfel = 0x7fffffff;
-constexpr int kLookInterval = 32;  // hits
+constexpr int kLookInterval = 16;  // hits
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // For each set of lanes, its members in order: a permutation that moves them to the front.
@@ -96,18 +96,26 @@ void NearestHits::add(const FoundHit& hit) {
 
 // A hit's rank is the number of nearer ones. Equal t show in the sum of the ranks.
 void NearestHits::sort() {
-  std::fill_n(ts_ + count_, Float8::kLanes, kInfinity);
-  std::int32_t sum = 0;
-  for (int i = 0; i < count_; i += Float8::kLanes) {
-    const Float8 t = Float8::load(ts_ + i);
-    Mask8::Lanes rank{};
-    for (int k = 0; k < count_; ++k) rank -= (Float8(ts_[k]) < t).lanes;
-    for (int lane = 0; lane < std::min(Float8::kLanes, count_ - i); ++lane) {
-      sorted_[rank[lane]] = hit(i + lane);
-      sum += rank[lane];
+  constexpr int kAtOnce = 2 * Float8::kLanes;
+  std::fill_n(ts_ + count_, kAtOnce, kInfinity);
+  alignas(32) std::uint32_t ranks[kSize];
+  for (int i = 0; i < count_; i += kAtOnce) {
+    const Float8 low = Float8::load(ts_ + i), high = Float8::load(ts_ + i + Float8::kLanes);
+    Mask8::Lanes low_rank{}, high_rank{};
+    for (int k = 0; k < count_; ++k) {
+      const Float8 t(ts_[k]);
+      low_rank -= (t < low).lanes;
+      high_rank -= (t < high).lanes;
     }
+    store_integers(low_rank, ranks + i);
+    store_integers(high_rank, ranks + i + Float8::kLanes);
   }
-  if (2 * sum != count_ * (count_ - 1)) sort_ties();
+  unsigned sum = 0;
+  for (int i = 0; i < count_; ++i) {
+    sorted_[ranks[i]] = hit(i);
+    sum += ranks[i];
+  }
+  if (2 * sum != static_cast<unsigned>(count_ * (count_ - 1))) sort_ties();
 }
 
 void NearestHits::sort_ties() {
@@ -117,19 +125,32 @@ void NearestHits::sort_ties() {
   keep_first(static_cast<int>(std::unique(sorted_, sorted_ + count_) - sorted_));
 }
 
-// Hits behind the one that stops the ray do not matter, whatever else is found in front of it.
-void NearestHits::shorten() {
-  sort();
+// Bounds the transmittance behind all hits found so far from above, but for rounding.
+bool NearestHits::may_stop() {
+  std::fill_n(alphas_ + count_, Float8::kLanes, 0.0f);
+  Float8 clear(1.0f);
+  for (int i = 0; i < count_; i += Float8::kLanes)
+    clear = clear * (Float8(1.0f) - Float8::load(alphas_ + i));
   float transmittance = transmittance_;
-  int keep = 0;
-  while (keep < count_ && transmittance > 0)
-    transmittance =
-        blend_step(transmittance, sorted_[keep++].alpha, min_transmittance_).transmittance;
-  if (transmittance > 0 && count_ >= kCapacity) keep = kCapacity / 2;
-  if (keep < count_ || transmittance < 0) {
-    keep_first(keep);
-    last_ = sorted_[keep - 1];
-    cut_ = true;
+  for (int lane = 0; lane < Float8::kLanes; ++lane) transmittance *= clear[lane];
+  return transmittance < min_transmittance_;
+}
+
+// Hits behind the one that stops the ray do not matter, whatever else is found in front of it.
+int NearestHits::hits_until_stop() const {
+  float transmittance = transmittance_;
+  for (int i = 0; i < count_; ++i) {
+    transmittance = blend_step(transmittance, sorted_[i].alpha, min_transmittance_).transmittance;
+    if (transmittance < 0) return i + 1;
+  }
+  return count_;
+}
+
+void NearestHits::shorten() {
+  if (count_ >= kCapacity || may_stop()) {
+    sort();
+    const int until_stop = hits_until_stop();
+    cut_after(until_stop < kCapacity ? until_stop : kCapacity / 2);
   }
   next_look_ = std::min(count_ + kLookInterval, kCapacity);
 }
@@ -142,6 +163,12 @@ void NearestHits::keep_first(int count) {
     slots_[i] = sorted_[i].slot;
   }
   count_ = count;
+}
+
+void NearestHits::cut_after(int count) {
+  keep_first(count);
+  last_ = sorted_[count - 1];
+  cut_ = true;
 }
 
 }  // namespace glint

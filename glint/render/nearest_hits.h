@@ -58,9 +58,12 @@ class NearestHits {
   void sort();
   void sort_ties();
   void shorten();
+  bool may_stop();
+  int hits_until_stop() const;
   void keep_first(int count);
+  void cut_after(int count);
 
-  static constexpr int kSize = kCapacity + 2 * Float8::kLanes;  // whole vectors are appended
+  static constexpr int kSize = kCapacity + 3 * Float8::kLanes;  // whole vectors are appended
   FoundHit after_, last_;
   float min_alpha_, min_transmittance_, transmittance_ = 1;
   int count_ = 0;
