@@ -24,7 +24,7 @@ struct RayGradient {
   Vec3f color, normal;
   float alpha, depth;
   float remaining;
-  Vec3<Float8> mean = all_lanes(Vec3f{}), direction = all_lanes(Vec3f{});
+  Vec3<Float8> mean{}, direction{};
   ShBasis basis{0.0f, 0.0f};
 };
 
@@ -92,58 +92,80 @@ struct HitGradients {
   Vec3<Float8> sh_sum;
 };
 
-HitGradients group_vjp(const HitGroup& group, RayState& ray, RayGradient& g) {
-  const Float8 zero(0.0f);
+// Eight hits, composited.
+struct HitLanes {
+  PlaneHit<Float8> plane;
+  SplatAlpha<Float8> alpha;
+  Float8 transmittance;  // before
+  Float8 weight;         // 0 in lanes not in use
+  HitColors color;
+  Mask8 in_use, away;  // away: the normal points along the ray
+};
+
+HitLanes composite(const HitGroup& group, RayState& ray) {
   const SurfelFields<Float8>& s = group.surfels.fields;
-  const Mask8 in_use = lane_indices<Float8>() < Float8(static_cast<float>(group.count));
-  const Vec3<Float8> origin = all_lanes(ray.origin), direction = all_lanes(ray.direction);
-  const PlaneHit<Float8> hit = meet(s, origin, direction);
-  const SplatAlpha<Float8> alpha = splat_alpha(s.opacity, min_of(squared_radius(hit), s.max_rho));
-  const Float8 before = transmittances(group, alpha.alpha, ray);
-  const Float8 weight = keep(in_use, alpha.alpha * before);
-  const HitColors color = hit_colors(ray.basis, group.sh);
-  const Mask8 away = dot(group.surfels.normal, direction) > zero;
-  const Vec3<Float8> normal = select(away, -group.surfels.normal, group.surfels.normal);
+  const Vec3<Float8> direction = all_lanes(ray.direction);
+  HitLanes hits;
+  hits.plane = meet(s, all_lanes(ray.origin), direction);
+  hits.alpha = splat_alpha(s.opacity, squared_radius(hits.plane));
+  hits.transmittance = transmittances(group, hits.alpha.alpha, ray);
+  hits.in_use = lane_indices<Float8>() < Float8(static_cast<float>(group.count));
+  hits.weight = keep(hits.in_use, hits.alpha.alpha * hits.transmittance);
+  hits.color = hit_colors(ray.basis, group.sh);
+  hits.away = dot(group.surfels.normal, direction) > Float8(0.0f);
+  return hits;
+}
 
-  const Float8 value = dot(all_lanes(g.color), color.colors) + dot(all_lanes(g.normal), normal) +
-                       Float8(g.depth) * hit.t + Float8(g.alpha);
-  const Float8 remaining = remainders(group, weight * value, g);
-  const Float8 dL_dalpha = keep(in_use, blend_alpha_vjp(before, alpha.alpha, value, remaining));
+Float8 alpha_vjp(const HitGroup& group, const HitLanes& hits, RayGradient& g) {
+  const Vec3<Float8> n = group.surfels.normal;
+  const Float8 value = dot(all_lanes(g.color), hits.color.colors) +
+                       dot(all_lanes(g.normal), select(hits.away, -n, n)) +
+                       Float8(g.depth) * hits.plane.t + Float8(g.alpha);
+  const Float8 remaining = remainders(group, hits.weight * value, g);
+  return keep(hits.in_use, blend_alpha_vjp(hits.transmittance, hits.alpha.alpha, value, remaining));
+}
 
-  HitGradients out;
-  out.weight = weight;
-  out.mean = out.h0 = out.h1 = all_lanes(Vec3f{});
-  out.opacity = zero;
-  Float8 dL_drho = zero;
-  splat_alpha_vjp(s.opacity, alpha, dL_dalpha, out.opacity, dL_drho);
-  RayPlane<Float8> dL_dplane{all_lanes(Vec3f{}), zero};
-  const Float8 two_drho = dL_drho + dL_drho;
-  intersect_vjp(
-      hit,
-      two_drho * hit.u,
-      two_drho * hit.v,
-      weight * Float8(g.depth),
-      dL_dplane.zeta,
-      dL_dplane.det
-  );
+void plane_vjp(
+    const SurfelFields<Float8>& s,
+    const RayState& ray,
+    const PlaneHit<Float8>& hit,
+    Float8 dL_drho,
+    Float8 dL_dt,
+    HitGradients& out,
+    RayGradient& g
+) {
+  const Float8 dL_dsquare = dL_drho + dL_drho;
+  RayPlane<Float8> dL_dplane{};
+  intersect_vjp(hit, dL_dsquare * hit.u, dL_dsquare * hit.v, dL_dt, dL_dplane.zeta, dL_dplane.det);
   ray_plane_vjp(
       s.h0,
       s.h1,
       cross(s.h0, s.h1),
-      s.mean - origin,
-      direction,
+      s.mean - all_lanes(ray.origin),
+      all_lanes(ray.direction),
       dL_dplane,
       out.h0,
       out.h1,
       out.mean,
       g.direction
   );
+}
+
+HitGradients group_vjp(const HitGroup& group, RayState& ray, RayGradient& g) {
+  const SurfelFields<Float8>& s = group.surfels.fields;
+  const HitLanes hits = composite(group, ray);
+  HitGradients out{};
+  Float8 dL_drho(0.0f);
+  splat_alpha_vjp(s.opacity, hits.alpha, alpha_vjp(group, hits, g), out.opacity, dL_drho);
+  plane_vjp(s, ray, hits.plane, dL_drho, hits.weight * Float8(g.depth), out, g);
   g.mean += out.mean;
-  out.half_depth = (Float8(0.5f) * hit.t) * out.mean;
-  const Vec3<Float8> dL_dnormal = select(away, -weight, weight) * all_lanes(g.normal);
+  out.half_depth = (Float8(0.5f) * hits.plane.t) * out.mean;
+  out.weight = hits.weight;
+  const Vec3<Float8> dL_dnormal =
+      select(hits.away, -hits.weight, hits.weight) * all_lanes(g.normal);
   out.normal = {dot(dL_dnormal, s.h0), dot(dL_dnormal, s.h1)};
   for (int c = 0; c < 3; ++c)
-    out.sh_sum[c] = sh_color_vjp(color.sums[c], weight * Float8(g.color[c]));
+    out.sh_sum[c] = sh_color_vjp(hits.color.sums[c], hits.weight * Float8(g.color[c]));
   return out;
 }
 

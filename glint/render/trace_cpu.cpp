@@ -61,7 +61,7 @@ struct WeightedHits {
 
 // Sums over a ray's hits, hit i in lane i % 8.
 struct RaySums {
-  Vec3<Float8> color = all_lanes(Vec3f{}), normal = all_lanes(Vec3f{});
+  Vec3<Float8> color{}, normal{};
   Float8 depth{0.0f};
 };
 
