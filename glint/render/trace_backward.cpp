@@ -348,6 +348,11 @@ SurfelGradient collect(std::size_t slot, std::vector<GradientSlice>& slices) {
   return sum;
 }
 
+// A surfel without extent meets no ray.
+float along_tangent(float along_scaled, float scale) {
+  return scale > 0 ? along_scaled / scale : 0.0f;
+}
+
 // From the gradient of the fields back to the parameters.
 void surfel_vjp(
     const TraceInput& input, std::size_t i, const SurfelGradient& g, TraceGradient& out
@@ -358,7 +363,8 @@ void surfel_vjp(
   out.scales[2 * i] = dot(g.h0, column(r, 0));
   out.scales[2 * i + 1] = dot(g.h1, column(r, 1));
   out.opacities[i] = g.opacity;
-  const Vec3f dL_dnormal = (g.normal.x / su) * column(r, 0) + (g.normal.y / sv) * column(r, 1);
+  const Vec3f dL_dnormal =
+      along_tangent(g.normal.x, su) * column(r, 0) + along_tangent(g.normal.y, sv) * column(r, 1);
   Vec4f dL_dq{};
   rotation_matrix_vjp(
       rotation_at(input, i), transpose(Mat3f{{su * g.h0, sv * g.h1, dL_dnormal}}), dL_dq

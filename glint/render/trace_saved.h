@@ -26,6 +26,7 @@ struct alignas(64) SurfelGradient {
   float opacity, weight;
   ShRow sh;
 };
+static_assert(sizeof(SurfelGradient) == (kSurfelFloats + 3 * ShRow::kCoefficients) * sizeof(float));
 
 // Gradients of the surfels that a slice of the rays meets. Each slice is summed by one thread in
 // the order of its rays, and slices in their order: the same sums for any number of threads.
