@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The 45 higher SH coefficients of a surfel, [15][3] with the colour fastest, in six vectors: rays
-// evaluate them at every hit, so the plain loops of spherical_harmonics.h would dominate trace().
-// The last vector starts at 37 and overlaps the one before by three lanes, where bases are zero.
+// The spherical harmonics of a surfel as rays read them: three cache lines, one a colour, so that a
+// colour is two vector products with the basis.
 #pragma once
 
 #include "glint/core/simd.h"
@@ -9,77 +8,66 @@
 
 namespace glint {
 
-struct ShLanes {
-  static constexpr int kVectors = 6, kFloats = 8 * kVectors, kCoefficients = 45;
-  static constexpr int kOffset[kVectors] = {0, 8, 16, 24, 32, 37};
-  static constexpr int kOverlap = 3;
-  Float8 v[kVectors];
+struct alignas(64) ShRow {
+  static constexpr int kCoefficients = 16;
+  float colors[3][kCoefficients];
 
-  static ShLanes zero() {
-    const Float8 zero(0.0f);
-    return {{zero, zero, zero, zero, zero, zero}};
-  }
-  static ShLanes load(const float* coefficients) {
-    ShLanes lanes;
-    for (int i = 0; i < kVectors; ++i) lanes.v[i] = Float8::load(coefficients + kOffset[i]);
-    return lanes;
-  }
-  // The overlapping lanes come from the fifth vector.
-  void store(float* coefficients) const {
-    v[kVectors - 1].store(coefficients + kOffset[kVectors - 1]);
-    for (int i = 0; i + 1 < kVectors; ++i) v[i].store(coefficients + kOffset[i]);
-  }
-};
-
-// basis[16] of a direction as it multiplies the coefficients, [48] floats.
-inline void expand_basis(const float basis[16], float* expanded) {
-  for (int i = 0; i < ShLanes::kVectors; ++i)
-    for (int lane = 0; lane < 8; ++lane) {
-      const bool overlap = i + 1 == ShLanes::kVectors && lane < ShLanes::kOverlap;
-      expanded[8 * i + lane] = overlap ? 0.0f : basis[1 + (ShLanes::kOffset[i] + lane) / 3];
+  // dc [3], rest [15][3], as clouds store them.
+  static ShRow pack(const float* dc, const float* rest) {
+    ShRow row;
+    for (int c = 0; c < 3; ++c) {
+      row.colors[c][0] = dc[c];
+      for (int k = 1; k < kCoefficients; ++k) row.colors[c][k] = rest[3 * (k - 1) + c];
     }
-}
-inline ShLanes load_expanded(const float* expanded) {
-  ShLanes lanes;
-  for (int i = 0; i < ShLanes::kVectors; ++i) lanes.v[i] = Float8::load(expanded + 8 * i);
-  return lanes;
-}
-
-// A colour repeated over the lanes: pattern[i % 3] fits vector i.
-struct ColorPattern {
-  Float8 pattern[3];
+    return row;
+  }
+  void unpack(float* dc, float* rest) const {
+    for (int c = 0; c < 3; ++c) {
+      dc[c] = colors[c][0];
+      for (int k = 1; k < kCoefficients; ++k) rest[3 * (k - 1) + c] = colors[c][k];
+    }
+  }
 };
-inline ColorPattern repeat(Vec3f c) {
-  return {
-      {Float8::Lanes{c.x, c.y, c.z, c.x, c.y, c.z, c.x, c.y},
-       Float8::Lanes{c.z, c.x, c.y, c.z, c.x, c.y, c.z, c.x},
-       Float8::Lanes{c.y, c.z, c.x, c.y, c.z, c.x, c.y, c.z}}};
+
+// basis[16] of a direction, or its gradient.
+struct ShBasis {
+  Float8 low, high;
+};
+GLINT_SIMD_INLINE ShBasis load_basis(const float* basis) {
+  return {Float8::load(basis), Float8::load(basis + 8)};
 }
 
-// sum_k basis_k coefficient_k of each colour, without k = 0.
-inline Vec3f sh_dot(const ShLanes& basis, const ShLanes& coefficients) {
-  alignas(32) float sums[24];
-  for (int i = 0; i < 3; ++i)
-    fma_of(basis.v[i + 3], coefficients.v[i + 3], basis.v[i] * coefficients.v[i])
-        .store(sums + 8 * i);
-  Vec3f sum{};
-  for (int i = 0; i < 24; i += 3) sum += Vec3f{sums[i], sums[i + 1], sums[i + 2]};
-  return sum;
+// sum_k basis_k coefficient_k of each colour, for eight surfels seen along one ray.
+GLINT_SIMD_INLINE Vec3<Float8> sh_sums(const ShBasis& basis, const ShRow* const rows[8]) {
+  Vec3<Float8> sums;
+  for (int c = 0; c < 3; ++c) {
+    Float8 products[8];
+    for (int i = 0; i < 8; ++i)
+      products[i] = fma_of(
+          basis.high,
+          Float8::load(rows[i]->colors[c] + 8),
+          basis.low * Float8::load(rows[i]->colors[c])
+      );
+    sums[c] = lane_sums(products);
+  }
+  return sums;
 }
 
-// lanes += color (x) other, the outer product that both vjps of sh_dot need.
-inline void add_scaled(ShLanes& lanes, const ColorPattern& color, const ShLanes& other) {
-  for (int i = 0; i < ShLanes::kVectors; ++i)
-    lanes.v[i] = fma_of(color.pattern[i % 3], other.v[i], lanes.v[i]);
+// The two products that sh_sums' vjp needs, for one surfel: with dL/dsum of its colours.
+GLINT_SIMD_INLINE void add_basis_vjp(const ShRow& row, Vec3f dL_dsum, ShBasis& dL_dbasis) {
+  for (int c = 0; c < 3; ++c) {
+    const Float8 g(dL_dsum[c]);
+    dL_dbasis.low = fma_of(g, Float8::load(row.colors[c]), dL_dbasis.low);
+    dL_dbasis.high = fma_of(g, Float8::load(row.colors[c] + 8), dL_dbasis.high);
+  }
 }
-
-// dL/dbasis from its 48 lanes; basis[0] is left alone.
-inline void collect_basis(const ShLanes& lanes, float basis[16]) {
-  alignas(32) float expanded[ShLanes::kFloats];
-  for (int i = 0; i < ShLanes::kVectors; ++i) lanes.v[i].store(expanded + 8 * i);
-  for (int i = 0; i < ShLanes::kVectors; ++i)
-    for (int lane = i + 1 == ShLanes::kVectors ? ShLanes::kOverlap : 0; lane < 8; ++lane)
-      basis[1 + (ShLanes::kOffset[i] + lane) / 3] += expanded[8 * i + lane];
+GLINT_SIMD_INLINE void add_coefficients_vjp(const ShBasis& basis, Vec3f dL_dsum, ShRow& dL_drow) {
+  for (int c = 0; c < 3; ++c) {
+    const Float8 g(dL_dsum[c]);
+    float* to = dL_drow.colors[c];
+    fma_of(g, basis.low, Float8::load(to)).store(to);
+    fma_of(g, basis.high, Float8::load(to + 8)).store(to + 8);
+  }
 }
 
 }  // namespace glint

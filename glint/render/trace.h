@@ -22,7 +22,7 @@
 namespace glint {
 
 struct TraceSettings {
-  float near = 0;  // ray parameter
+  float near = 0;  // ray parameter; below 0 counts as 0
   float max_rho = kMaxRho;
   float min_alpha = kMinAlpha;
   float min_transmittance = kMinTransmittance;

@@ -4,101 +4,178 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "glint/core/error.h"
+#include "glint/core/parallel.h"
+#include "glint/render/blend.h"
 
 namespace glint {
 
 namespace {
 
-constexpr int kRebuildInterval = 16;  // updates; bounds of a refitted tree loosen as surfels move
-constexpr float kMargin = 1e-4f;      // of the extent: rounding of bounds and of Embree's box tests
+constexpr float kMargin = 1e-4f;  // of the extent: rounding of bounds and of Embree's box tests
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kLanes = Float8::kLanes;
+
+// Eight surfels of consecutive slots, the fields of TracedSurfel up to max_rho; lanes behind the
+// last surfel count nowhere.
+struct alignas(64) SurfelCluster {
+  static constexpr int kFields = 11;
+  Float8 fields[kFields];
+  std::uint32_t surfel[kLanes];
+};
 
 // What a callback needs beside Embree's own arguments.
 struct Context {
   RTCIntersectContext embree;
-  const std::vector<TracedSurfel>* surfels;
-  Vec3f origin, direction;
+  const SurfelCluster* clusters;
+  const TracedSurfel* surfels;
+  Vec3<Float8> origin, direction;
   NearestHits* hits;
 };
 
-// Offers a surfel to the list. Returns the ray parameter beyond which nothing is of interest.
-float offer(Context& context, std::uint32_t surfel, float t_far) {
-  const TracedSurfel& s = (*context.surfels)[surfel];
-  const PlaneHit<float> hit = meet(s, context.origin, context.direction);
-  const float rho = fma_of(hit.u, hit.u, hit.v * hit.v);
-  const HitKey key{hit.t, surfel};
-  if (!(rho <= s.max_rho) || !(hit.t < kInfinity) || !(context.hits->after < key)) return t_far;
-  if (!context.hits->insert(key)) return t_far;
-  // Ties with the last place still have to be seen.
-  return std::nextafter(context.hits->hits[NearestHits::kCapacity - 1].t, kInfinity);
+SurfelFields<Float8> cluster_fields(const SurfelCluster& c) {
+  const Float8* f = c.fields;
+  return {{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}, f[9], f[10]};
 }
 
-void intersect_surfel(const RTCIntersectFunctionNArguments* args) {
+// Offers eight surfels to the list.
+void offer_cluster(const Context& context, unsigned cluster) {
+  const SurfelCluster& c = context.clusters[cluster];
+  NearestHits& hits = *context.hits;
+  const SurfelFields<Float8> s = cluster_fields(c);
+  const PlaneHit<Float8> hit = meet(s, context.origin, context.direction);
+  const Float8 rho = squared_radius(hit);
+  const Mask8 met =
+      (rho <= s.max_rho) & (hit.t >= Float8(hits.after_t())) & (hit.t <= Float8(hits.last_t()));
+  if (!any(met)) return;
+  const Float8 alpha = splat_alpha(s.opacity, min_of(rho, s.max_rho)).alpha;
+  hits.add(hit.t, alpha, met, c.surfel, static_cast<std::uint32_t>(kLanes) * cluster);
+}
+
+void offer_surfel(const Context& context, std::uint32_t slot) {
+  const TracedSurfel& s = context.surfels[slot];
+  NearestHits& hits = *context.hits;
+  const auto first_lane = [](Vec3<Float8> v) { return Vec3f{v.x[0], v.y[0], v.z[0]}; };
+  const PlaneHit<float> hit =
+      meet(s.fields, first_lane(context.origin), first_lane(context.direction));
+  const float rho = squared_radius(hit);
+  if (!(rho <= s.fields.max_rho && hit.t <= hits.last_t())) return;
+  hits.add({hit.t, s.surfel, slot, splat_alpha(s.fields.opacity, rho).alpha});
+}
+
+// Tells Embree where to stop looking, if anywhere; ties with the last place still have to be seen.
+bool shorten(RTCRay& ray, const NearestHits& hits) {
+  if (hits.last_t() == NearestHits::kFarthest) return false;
+  ray.tfar = std::bit_cast<float>(std::bit_cast<std::uint32_t>(hits.last_t()) + 1);
+  return true;
+}
+
+void intersect_cluster(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
-  auto& ray = *reinterpret_cast<RTCRayHit*>(args->rayhit);
-  ray.ray.tfar = offer(*reinterpret_cast<Context*>(args->context), args->primID, ray.ray.tfar);
+  auto& context = *reinterpret_cast<Context*>(args->context);
+  offer_cluster(context, args->primID);
+  shorten(reinterpret_cast<RTCRayHit*>(args->rayhit)->ray, *context.hits);
 }
 
 // Rejects every triangle hit after having looked at its surfel; a hit is accepted only to shorten
 // the ray, which is the one way to do so.
 void filter_triangle(const RTCFilterFunctionNArguments* args) {
   auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-  const auto& hit = *reinterpret_cast<RTCHit*>(args->hit);
-  const float t_far = offer(*reinterpret_cast<Context*>(args->context), hit.primID / 2, kInfinity);
-  if (t_far < kInfinity)
-    ray.tfar = t_far;
-  else
-    args->valid[0] = 0;
+  auto& context = *reinterpret_cast<Context*>(args->context);
+  offer_surfel(context, reinterpret_cast<const RTCHit*>(args->hit)->primID / 2);
+  if (!shorten(ray, *context.hits)) args->valid[0] = 0;
 }
 
-float reach(const TracedSurfel& s, int axis) {
-  return std::sqrt(std::max(s.max_rho, 0.0f) * (s.h0[axis] * s.h0[axis] + s.h1[axis] * s.h1[axis]));
+float reach(const SurfelFields<float>& s, int axis) {
+  return std::sqrt(s.max_rho * (s.h0[axis] * s.h0[axis] + s.h1[axis] * s.h1[axis]));
 }
 
-bool is_finite(const TracedSurfel& s) {
-  const Vec3f sum = s.mean + s.h0 + s.h1;
-  return std::isfinite(sum.x + sum.y + sum.z) && s.max_rho > 0;
-}
-
-// The box of a surfel's disc; inverted (skipped by Embree) where it counts nowhere.
-void surfel_bounds(const RTCBoundsFunctionArguments* args) {
+// The box of a cluster's discs; inverted (skipped by Embree) where none counts anywhere.
+void cluster_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& surfels = *static_cast<const std::vector<TracedSurfel>*>(args->geometryUserPtr);
-  const TracedSurfel& s = surfels[args->primID];
-  float low[3], high[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const float half = reach(s, axis) * (1 + kMargin) + kMargin * std::abs(s.mean[axis]) * 0.01f;
-    low[axis] = is_finite(s) ? s.mean[axis] - half : kInfinity;
-    high[axis] = is_finite(s) ? s.mean[axis] + half : -kInfinity;
+  float low[3] = {kInfinity, kInfinity, kInfinity};
+  float high[3] = {-kInfinity, -kInfinity, -kInfinity};
+  const std::size_t begin = kLanes * args->primID;
+  for (std::size_t i = begin; i < std::min(begin + kLanes, surfels.size()); ++i) {
+    const SurfelFields<float>& s = surfels[i].fields;
+    if (!(s.max_rho > 0)) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float half = reach(s, axis) * (1 + kMargin) + kMargin * std::abs(s.mean[axis]) * 0.01f;
+      low[axis] = std::min(low[axis], s.mean[axis] - half);
+      high[axis] = std::max(high[axis], s.mean[axis] + half);
+    }
   }
   *args->bounds_o = {low[0], low[1], low[2], 0, high[0], high[1], high[2], 0};
 }
 
 // Corners of a quad at the surfel's reach along both axes, in the order (-,+), (-,-), (+,+), (+,-).
-void write_quad(const TracedSurfel& s, float* corners) {
-  const float k = is_finite(s) ? std::sqrt(s.max_rho) * (1 + kMargin) : 0.0f;
+void write_quad(const SurfelFields<float>& s, float* corners) {
+  const bool counts = s.max_rho > 0;
+  const float k = counts ? std::sqrt(s.max_rho) * (1 + kMargin) : 0.0f;
   const float signs[4][2] = {{-1, 1}, {-1, -1}, {1, 1}, {1, -1}};
   for (int i = 0; i < 4; ++i)
     for (int axis = 0; axis < 3; ++axis)
       corners[3 * i + axis] =
-          is_finite(s) ? s.mean[axis] + k * (signs[i][0] * s.h0[axis] + signs[i][1] * s.h1[axis])
-                       : std::numeric_limits<float>::quiet_NaN();  // Embree skips such triangles
+          counts ? s.mean[axis] + k * (signs[i][0] * s.h0[axis] + signs[i][1] * s.h1[axis])
+                 : std::numeric_limits<float>::quiet_NaN();  // Embree skips such triangles
+}
+
+// Bits of a coordinate two places apart.
+std::uint32_t spread_bits(std::uint32_t v) {
+  v = (v | v << 16) & 0x030000ff;
+  v = (v | v << 8) & 0x0300f00f;
+  v = (v | v << 4) & 0x030c30c3;
+  return (v | v << 2) & 0x09249249;
+}
+
+struct Extent {
+  Vec3f low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+};
+
+// Place on the curve through 1024^3 cells.
+std::uint32_t morton_code(const float* mean, const Extent& extent) {
+  std::uint32_t code = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float width = std::max(extent.high[axis] - extent.low[axis], 1e-30f);
+    const float cell = std::min(1023.0f, 1024 * ((mean[axis] - extent.low[axis]) / width));
+    code |= spread_bits(static_cast<std::uint32_t>(std::max(0.0f, cell))) << axis;
+  }
+  return code;
+}
+
+bool is_finite(const float* mean) { return std::isfinite(mean[0] + mean[1] + mean[2]); }
+
+Extent extent_of(std::span<const float> means) {
+  Extent extent;
+  for (std::size_t i = 0; i < means.size(); i += 3) {
+    if (!is_finite(&means[i])) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      extent.low[axis] = std::min(extent.low[axis], means[i + static_cast<std::size_t>(axis)]);
+      extent.high[axis] = std::max(extent.high[axis], means[i + static_cast<std::size_t>(axis)]);
+    }
+  }
+  return extent;
 }
 
 }  // namespace
 
-bool NearestHits::insert(HitKey hit) {
-  if (full() && !(hit < hits[kCapacity - 1])) return false;
-  int place = full() ? kCapacity - 1 : count;
-  while (place > 0 && hit < hits[place - 1]) --place;
-  if (place > 0 && hits[place - 1] == hit) return false;  // the second triangle of a quad
-  for (int i = std::min(count, kCapacity - 1); i > place; --i) hits[i] = hits[i - 1];
-  hits[place] = hit;
-  count = std::min(count + 1, kCapacity);
-  return full();
+std::vector<std::uint32_t> morton_slots(std::span<const float> means) {
+  const Extent extent = extent_of(means);
+  std::vector<std::uint64_t> keys(means.size() / 3);
+  parallel_for(keys.size(), 4096, [&](std::size_t i) {
+    const float* mean = &means[3 * i];
+    const std::uint32_t code = is_finite(mean) ? morton_code(mean, extent) : ~0u;
+    keys[i] = std::uint64_t{code} << 32 | i;
+  });
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::uint32_t> slots(keys.size());
+  for (std::size_t slot = 0; slot < keys.size(); ++slot)
+    slots[keys[slot] & ~0u] = static_cast<std::uint32_t>(slot);
+  return slots;
 }
 
 struct SurfelBvh::Impl {
@@ -106,9 +183,9 @@ struct SurfelBvh::Impl {
   RTCScene scene = nullptr;
   RTCGeometry geometry = nullptr;
   const std::vector<TracedSurfel>* surfels = nullptr;
+  std::vector<SurfelCluster> clusters;
   std::size_t count = 0;
   bool triangles = false;
-  int updates = 0;
 
   void check(const char* what) const {
     const RTCError error = rtcGetDeviceError(device);
@@ -120,10 +197,27 @@ struct SurfelBvh::Impl {
     if (scene != nullptr) rtcReleaseScene(scene);
     scene = nullptr;
   }
+  void write_clusters() {
+    clusters.resize((count + kLanes - 1) / kLanes);
+    parallel_for(clusters.size(), 256, [&](std::size_t i) {
+      TracedSurfel nowhere{};
+      nowhere.fields.max_rho = -1;
+      const float* rows[kLanes];
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const std::size_t slot = kLanes * i + lane;
+        const TracedSurfel& s = slot < count ? (*surfels)[slot] : nowhere;
+        rows[lane] = s.floats();
+        clusters[i].surfel[lane] = s.surfel;
+      }
+      RowLanes columns;
+      load_columns(rows, columns);
+      std::copy_n(columns, SurfelCluster::kFields, clusters[i].fields);
+    });
+  }
   void write_corners() const {
     auto* corners =
         static_cast<float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
-    for (std::size_t i = 0; i < count; ++i) write_quad((*surfels)[i], corners + 12 * i);
+    for (std::size_t i = 0; i < count; ++i) write_quad((*surfels)[i].fields, corners + 12 * i);
   }
   void add_triangles() {
     geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -140,10 +234,10 @@ struct SurfelBvh::Impl {
   }
   void add_discs() {
     geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(clusters.size()));
     rtcSetGeometryUserData(geometry, const_cast<std::vector<TracedSurfel>*>(surfels));
-    rtcSetGeometryBoundsFunction(geometry, surfel_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, intersect_surfel);
+    rtcSetGeometryBoundsFunction(geometry, cluster_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersect_cluster);
   }
   void rebuild() {
     release_scene();
@@ -159,7 +253,6 @@ struct SurfelBvh::Impl {
     rtcReleaseGeometry(geometry);  // the scene keeps it
     rtcCommitScene(scene);
     check("building the tree");
-    updates = 0;
   }
   void refit() {
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
@@ -190,13 +283,14 @@ SurfelBvh::~SurfelBvh() {
   rtcReleaseDevice(impl_->device);
 }
 
-void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool triangles) {
+void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool triangles, bool refit) {
   const bool same =
       impl_->scene != nullptr && impl_->count == surfels.size() && impl_->triangles == triangles;
   impl_->surfels = &surfels;
   impl_->count = surfels.size();
   impl_->triangles = triangles;
-  if (same && ++impl_->updates % kRebuildInterval != 0)
+  if (!triangles) impl_->write_clusters();
+  if (same && refit)
     impl_->refit();
   else
     impl_->rebuild();
@@ -205,11 +299,11 @@ void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool triangles)
 void SurfelBvh::nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const {
   Context context;
   rtcInitIntersectContext(&context.embree);
-  context.surfels = impl_->surfels;
-  context.origin = origin;
-  context.direction = direction;
+  context.clusters = impl_->clusters.data();
+  context.surfels = impl_->surfels->data();
+  context.origin = all_lanes(origin);
+  context.direction = all_lanes(direction);
   context.hits = &hits;
-  hits.count = 0;
   RTCRayHit ray{};
   ray.ray.org_x = origin.x;
   ray.ray.org_y = origin.y;
@@ -218,7 +312,7 @@ void SurfelBvh::nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const 
   ray.ray.dir_y = direction.y;
   ray.ray.dir_z = direction.z;
   // Boxes are tested a little before the last hit: theirs and ours round differently.
-  ray.ray.tnear = std::max(0.0f, hits.after.t - kMargin * std::abs(hits.after.t));
+  ray.ray.tnear = (1 - kMargin) * hits.after_t();
   ray.ray.tfar = kInfinity;
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;

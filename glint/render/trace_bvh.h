@@ -1,50 +1,35 @@
 // SPDX-License-Identifier: MIT
-// Finds the surfels that a ray meets, nearest first, on an Embree BVH.
+// Finds the surfels that a ray meets, nearest first, on an Embree BVH. Surfels are kept in an order
+// in which neighbours in space are neighbours in memory; their place in it is called slot. Eight in
+// a row are one primitive of the tree and tested at once, one a lane.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "glint/core/vec.h"
 #include "glint/render/intersect.h"
+#include "glint/render/nearest_hits.h"
+#include "glint/render/surfel_lanes.h"
 
 namespace glint {
 
-// A surfel as rays see it.
-struct TracedSurfel {
-  Vec3f mean, h0, h1, e3;  // e3 = h0 x h1
-  Vec3f normal;            // unit, either side
-  float opacity;
-  float max_rho;  // squared radius in sigma beyond which it does not count; not positive: nowhere
-};
+// Slots [N] of surfels at `means` [N][3], along a Morton curve. Means that are not finite come
+// last.
+std::vector<std::uint32_t> morton_slots(std::span<const float> means);
 
-inline PlaneHit<float> meet(const TracedSurfel& s, Vec3f origin, Vec3f direction) {
-  const RayPlane<float> plane = ray_plane(s.h0, s.h1, s.e3, s.mean - origin, direction);
+// Where a surfel meets a ray; the same operations for one surfel and for eight.
+template <class T>
+PlaneHit<T> meet(const SurfelFields<T>& s, Vec3<T> origin, Vec3<T> direction) {
+  const RayPlane<T> plane = ray_plane(s.h0, s.h1, cross(s.h0, s.h1), s.mean - origin, direction);
   return intersect(plane.zeta, plane.det);
 }
-
-// Place of a hit on its ray: t, ties by surfel.
-struct HitKey {
-  float t;
-  std::uint32_t surfel;
-  bool operator<(const HitKey& other) const {
-    return t < other.t || (t == other.t && surfel < other.surfel);
-  }
-  bool operator==(const HitKey& other) const { return t == other.t && surfel == other.surfel; }
-};
-
-// The nearest hits strictly behind `after`, sorted.
-struct NearestHits {
-  static constexpr int kCapacity = 32;
-  HitKey after;
-  int count = 0;
-  HitKey hits[kCapacity];
-
-  bool full() const { return count == kCapacity; }
-  // Returns whether the last place changed while full.
-  bool insert(HitKey hit);
-};
+template <class T>
+T squared_radius(const PlaneHit<T>& hit) {
+  return fma_of(hit.u, hit.u, hit.v * hit.v);
+}
 
 class SurfelBvh {
  public:
@@ -53,9 +38,11 @@ class SurfelBvh {
   SurfelBvh(const SurfelBvh&) = delete;
   SurfelBvh& operator=(const SurfelBvh&) = delete;
 
-  // Keeps a reference to `surfels`. Refits while their number stays, with a rebuild now and then.
+  // Keeps a reference to `surfels`, in slot order. `refit`: the tree of the last call may be kept;
+  // for surfels that are the same ones in the same slots.
   // Errors (kEnvironment): Embree fails.
-  void update(const std::vector<TracedSurfel>& surfels, bool triangles);
+  void update(const std::vector<TracedSurfel>& surfels, bool triangles, bool refit);
+  // Adds the hits behind hits.after().
   void nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const;
 
  private:

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
 #include <memory>
 
 #include "glint/core/rng.h"
+#include "glint/render/activations.h"
 #include "glint/render/trace.h"
 #include "reports/perf/perf_scene.h"
 
@@ -9,53 +14,132 @@ namespace glint {
 
 namespace {
 
-constexpr std::size_t kSurfels = 100000;  // as in the published measurement of bare traversals
-
-// One ray a pixel, from random points in the middle of the room, in random directions: as
-// incoherent as mirrored rays get.
-struct TraceState {
+struct TraceScene {
   SurfelCloud cloud;
-  ActivatedSurfels activated;
   Rays rays;
+};
+
+// 32,400 rays (240x135) from random points in the middle of a room of 100,000 surfels, in random
+// directions: as incoherent as mirrored rays get.
+TraceScene incoherent(PerfOptions options, float overlap) {
+  options.surfels = 100000;
+  options.overlap = overlap;
+  TraceScene scene{
+      perf_cloud(options),
+      {Image(options.width, options.height, 3), Image(options.width, options.height, 3)}};
+  Rng rng(3);
+  for (float& value : scene.rays.origins.values()) value = rng.uniform(-0.8f, 0.8f);
+  for (float& value : scene.rays.directions.values()) value = rng.normal();
+  return scene;
+}
+
+constexpr float kFogRoom[3] = {6, 6, 3};  // metres
+constexpr int kFogCells = 15;             // along each axis
+
+// What mirrored rays meet early in GLINT's training: faint surfels of any orientation in every cell
+// of the room, about as large as their distances.
+SurfelCloud fog_cloud() {
+  constexpr std::size_t kPerCell = 5, kCount = kPerCell * kFogCells * kFogCells * kFogCells;
+  const float spacing = std::cbrt(kFogRoom[0] * kFogRoom[1] * kFogRoom[2] / float{kCount});
+  Rng rng(5);
+  SurfelCloud cloud;
+  cloud.resize(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    std::size_t cell = i / kPerCell;
+    for (std::size_t k = 0; k < 3; ++k, cell /= kFogCells) {
+      const float place = (static_cast<float>(cell % kFogCells) + rng.uniform()) / kFogCells;
+      cloud.means[3 * i + k] = kFogRoom[k] * (place - 0.5f);
+      cloud.sh_dc[3 * i + k] = rng.uniform(-1, 1);
+    }
+    for (std::size_t k = 0; k < 4; ++k) cloud.rotations[4 * i + k] = rng.normal();
+    for (std::size_t k = 0; k < 2; ++k) cloud.log_scales[2 * i + k] = std::log(0.6f * spacing);
+    for (std::size_t k = 0; k < 45; ++k) cloud.sh_rest[45 * i + k] = 0.05f * rng.normal();
+    cloud.opacity_logits[i] = logit(0.1f);
+  }
+  return cloud;
+}
+
+// The ray of one pixel of a camera in the fog room, mirrored where it meets a wall.
+void mirror_ray(Vec3f direction, float* origin, float* mirrored) {
+  const Vec3f eye{-0.5f, -1.8f, 0.2f};
+  float t = std::numeric_limits<float>::max();
+  int axis = 0;
+  for (int k = 0; k < 3; ++k) {
+    const float wall = (std::copysign(0.5f * kFogRoom[k], direction[k]) - eye[k]) / direction[k];
+    if (wall < t) t = wall, axis = k;
+  }
+  for (int k = 0; k < 3; ++k) {
+    origin[k] = eye[k] + t * direction[k];
+    mirrored[k] = k == axis ? -direction[k] : direction[k];
+  }
+}
+
+// 14,400 rays (160x90), neighbours alike.
+TraceScene mirrored_fog() {
+  constexpr int kWidth = 160, kHeight = 90;
+  TraceScene scene{fog_cloud(), {Image(kWidth, kHeight, 3), Image(kWidth, kHeight, 3)}};
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const auto i = static_cast<std::size_t>(3 * (y * kWidth + x));
+      const float right = static_cast<float>(x) + 0.5f - 0.5f * kWidth;
+      const float down = static_cast<float>(y) + 0.5f - 0.5f * kHeight;
+      mirror_ray(
+          normalize(Vec3f{right / 100, 1, -down / 100}),
+          scene.rays.origins.data() + i,
+          scene.rays.directions.data() + i
+      );
+    }
+  return scene;
+}
+
+struct TraceState {
+  TraceScene scene;
+  ActivatedSurfels activated;
   Tracer tracer;
   TraceOutput output;
   TraceOutputGradient dL_doutput;
   TraceGradient gradient;
   TraceSettings settings;
 
-  TraceState(PerfOptions options, bool triangles) {
-    options.surfels = kSurfels;
-    cloud = perf_cloud(options);
-    activate_geometry(cloud, activated);
-    rays = {Image(options.width, options.height, 3), Image(options.width, options.height, 3)};
-    Rng rng(3);
-    for (float& value : rays.origins.values()) value = rng.uniform(-0.8f, 0.8f);
-    for (float& value : rays.directions.values()) value = rng.normal();
-    dL_doutput.color = Image(options.width, options.height, 3, 1e-4f);
+  TraceState(TraceScene traced, bool triangles) : scene(std::move(traced)) {
+    activate_geometry(scene.cloud, activated);
+    const Image& rays = scene.rays.origins;
+    dL_doutput.color = Image(rays.width(), rays.height(), 3, 1e-4f);
     settings.triangles = triangles;
+    forward();  // for hits_per_ray() and backward()
   }
-  void forward() { tracer.forward(trace_input(cloud, activated, 3), rays, settings, output); }
-  void backward() {
-    tracer.backward(trace_input(cloud, activated, 3), rays, settings, output, dL_doutput, gradient);
+  TraceInput input() const { return trace_input(scene.cloud, activated, 3); }
+  void forward() { tracer.forward(input(), scene.rays, settings, output); }
+  void backward() { tracer.backward(input(), scene.rays, settings, output, dL_doutput, gradient); }
+  double hits() const { return static_cast<double>(tracer.num_hits()); }
+  double hits_per_ray() const {
+    return hits() / static_cast<double>(scene.rays.origins.num_pixels());
   }
 };
+
+void add_cases(
+    const std::string& name, const std::shared_ptr<TraceState>& s, std::vector<PerfCase>& cases
+) {
+  const std::string forward = fmt::format("trace {} {:.1f} hits/ray", name, s->hits_per_ray());
+  const auto hits = [s] { return s->hits(); };
+  cases.push_back({forward, "hits", hits, [s] { s->forward(); }, {}});
+  if (s->settings.triangles) return;
+  cases.push_back({forward + " backward", "hits", hits, [s] { s->backward(); }, {}});
+}
 
 }  // namespace
 
 std::vector<PerfCase> trace_cases(const PerfOptions& options) {
-  const auto discs = std::make_shared<TraceState>(options, false);
-  const auto triangles = std::make_shared<TraceState>(options, true);
-  const auto hits = [](const std::shared_ptr<TraceState>& s) {
-    return [s] { return static_cast<double>(s->tracer.num_hits()); };
+  std::vector<PerfCase> cases;
+  const auto add = [&](const char* name, TraceScene scene, bool triangles) {
+    add_cases(name, std::make_shared<TraceState>(std::move(scene), triangles), cases);
   };
-  return {
-      {"trace forward, 100k surfels", "hits", hits(discs), [s = discs] { s->forward(); }, {}},
-      {"trace forward + backward",
-       "hits",
-       hits(discs),
-       [s = discs] { s->forward(), s->backward(); },
-       {}},
-      {"trace forward, triangles", "hits", hits(triangles), [s = triangles] { s->forward(); }, {}}};
+  add("100k", incoherent(options, options.overlap), false);
+  // As many hits as in the published measurement of bare traversals.
+  add("100k", incoherent(options, 1.75f), false);
+  add("triangles", incoherent(options, options.overlap), true);
+  add("fog", mirrored_fog(), false);
+  return cases;
 }
 
 }  // namespace glint

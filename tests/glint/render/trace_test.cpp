@@ -149,7 +149,7 @@ TEST_CASE("trace follows its cut-offs") {
 TEST_CASE("coincident surfels count once each, more of them than one traversal returns") {
   Rng rng(5);
   TraceArrays arrays;
-  constexpr int kClones = 80;
+  constexpr int kClones = 200;
   for (int i = 0; i < kClones; ++i) arrays.add({0, 0, 1}, {0.5, 0.5}, {1, 0, 0, 0}, 0.02, rng);
   Rays rays = empty_rays(1, 1);
   set_ray(rays, 0, {0, 0, 0}, {0, 0, 1});
@@ -342,6 +342,24 @@ TEST_CASE("surfels that are not finite or invisible reach no ray") {
     tracer.forward(arrays.view(), random_rays(10, 10, rng), settings, out);
     CHECK(tracer.num_hits() == 0);
   }
+}
+
+TEST_CASE("a surfel without extent has no gradient") {
+  Rng rng(17);
+  TraceArrays arrays = random_arrays(9, rng);
+  arrays.surfels.scales[0] = 0;
+  const Rays rays = random_rays(10, 10, rng);
+  Tracer tracer;
+  TraceOutput out;
+  tracer.forward(arrays.view(), rays, {}, out);
+  REQUIRE(tracer.num_hits() > 0);
+  TraceOutputGradient g;
+  g.color = Image(10, 10, 3, 1.0f);
+  g.normal = Image(10, 10, 3, 1.0f);
+  TraceGradient gradient;
+  tracer.backward(arrays.view(), rays, {}, out, g, gradient);
+  for (std::size_t k = 0; k < 4; ++k) CHECK(gradient.rotations[k] == 0.0f);
+  CHECK(gradient.opacities[0] == 0.0f);
 }
 
 TEST_CASE("forward and backward give the same bytes for any number of threads") {

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// What Tracer keeps between calls, and what its forward and backward passes share.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "glint/render/sh_lanes.h"
+#include "glint/render/spherical_harmonics.h"
+#include "glint/render/surfel_lanes.h"
+#include "glint/render/trace.h"
+#include "glint/render/trace_bvh.h"
+
+namespace glint {
+
+inline constexpr std::size_t kRaysPerBlock = 64;
+inline constexpr std::size_t kSurfelGrain = 512;
+inline constexpr std::size_t kSurfelsAhead = 8;  // that memory is asked for in advance
+inline constexpr std::size_t kHitsAtOnce = Float8::kLanes;
+
+// Gradient of one surfel.
+struct alignas(64) SurfelGradient {
+  Vec3f mean, h0, h1;
+  Vec3f half_depth;  // sum of dL/dmean t / 2
+  Vec2f normal;      // dL/dnormal along h0 and h1; the part along the normal turns nothing
+  float opacity, weight;
+  ShRow sh;
+};
+static_assert(sizeof(SurfelGradient) == (kSurfelFloats + 3 * ShRow::kCoefficients) * sizeof(float));
+
+// Gradients of the surfels that a slice of the rays meets. Each slice is summed by one thread in
+// the order of its rays, and slices in their order: the same sums for any number of threads.
+struct GradientSlice {
+  static constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::uint32_t> row_of_slot;  // [N] into `rows`, or kNone
+  std::vector<SurfelGradient> rows;
+};
+
+struct TraceSaved {
+  std::vector<std::uint32_t> slot_of_surfel;  // [N]
+  std::vector<TracedSurfel> surfels;          // by slot
+  std::vector<ShRow> sh;                      // by slot
+  SurfelBvh bvh;
+  int updates = 0;
+  std::vector<std::vector<std::uint32_t>> blocks;  // slots of the hits of each block of rays
+  std::vector<std::uint32_t> counts;               // [rays] hits
+  std::vector<GradientSlice> slices;
+};
+
+struct RayState {
+  Vec3f origin, direction;
+  ShBasis basis;
+  float transmittance = 1;
+};
+
+inline Vec3f pixel3(const Image& image, std::size_t i) {
+  const float* p = image.data() + 3 * i;
+  return {p[0], p[1], p[2]};
+}
+inline void put3(float* p, Vec3f v) {
+  p[0] = v.x;
+  p[1] = v.y;
+  p[2] = v.z;
+}
+
+inline Vec4f rotation_at(const TraceInput& input, std::size_t surfel) {
+  const float* q = &input.rotations[4 * surfel];
+  return {q[0], q[1], q[2], q[3]};
+}
+RayState ray_at(const Rays& rays, int sh_degree, std::size_t i);
+
+// Colours of eight surfels along a ray.
+struct HitColors {
+  Vec3<Float8> sums, colors;  // before and after sh_color()
+};
+GLINT_SIMD_INLINE HitColors hit_colors(const ShBasis& basis, const ShRow* const rows[8]) {
+  const Vec3<Float8> s = sh_sums(basis, rows);
+  return {s, {sh_color(s.x), sh_color(s.y), sh_color(s.z)}};
+}
+
+// Surfels and colours lie scattered in memory: asked for before they are needed.
+inline void prefetch_hit(const TraceSaved& saved, std::uint32_t slot) {
+  __builtin_prefetch(&saved.surfels[slot]);
+  for (const auto& color : saved.sh[slot].colors) __builtin_prefetch(color);
+}
+
+void check_trace_arguments(const TraceInput& input, const Rays& rays);
+void fit(Image& image, ImageSize size, int channels);
+
+}  // namespace glint
