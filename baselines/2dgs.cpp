@@ -56,7 +56,7 @@ struct TwoDgsConfig {
     // Fewer views than this would make the gradient statistic too noisy to grow by.
     densify.interval = scaled_step(densify.interval, iterations, 50);
     densify.reset_interval = scaled_step(densify.reset_interval, iterations, 300);
-    rates.means_steps = scaled_step(rates.means_steps, iterations);
+    rates = rates.for_shorter_run(30000.0 / iterations);
   }
 };
 

@@ -69,9 +69,9 @@ struct EnvGsConfig {
     const auto scaled = [&](int published, int at_least = 1) {
       return scaled_step(published, iterations, at_least, kPublishedIterations);
     };
-    for (int* window :
-         {&environment_from, &sh_interval, &densify.from, &densify.until, &rates.means_steps})
+    for (int* window : {&environment_from, &sh_interval, &densify.from, &densify.until})
       *window = scaled(*window);
+    rates = rates.for_shorter_run(static_cast<double>(kPublishedIterations) / iterations);
     geometry.scale(scaled);
     densify.interval = scaled(densify.interval, 50);
     environment_densify_interval = scaled(environment_densify_interval, 50);

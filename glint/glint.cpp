@@ -38,12 +38,19 @@ class Glint final : public Method {
     windows_ = config_.scaled_to(options.iterations);
     set_up_losses();
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
-    model_.interface = new_set(points, options.seed, true, windows_.densify);
+    InitialSurfels initial;
+    initial.seed = options.seed + 1;
     DensifyConfig densify = secondary_densify(options);
-    model_.transmission = new_set(points, options.seed + 1, false, densify);
+    model_.transmission = new_set(points, initial, densify);
     densify.gradient_threshold = config_.reflection_gradient;
-    model_.reflection =
-        new_set(config_.grid.points(scene, options.seed), options.seed + 2, false, densify);
+    initial.seed = options.seed + 2;
+    initial.opacity = config_.reflection_opacity;
+    model_.reflection = new_set(config_.grid.points(scene, options.seed), initial, densify);
+    initial = {};
+    initial.seed = options.seed;
+    initial.extra_names = {"transparency", "specular"};
+    initial.extra_values = {config_.initial_transparency, config_.initial_specular};
+    model_.interface = new_set(points, initial, windows_.densify);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
 
@@ -109,16 +116,14 @@ class Glint final : public Method {
 
  private:
   SurfelSet new_set(
-      const PointCloud& points, std::uint64_t seed, bool is_interface, const DensifyConfig& densify
+      const PointCloud& points, const InitialSurfels& initial, const DensifyConfig& densify
   ) const {
-    InitialSurfels initial;
-    initial.seed = seed;
-    if (is_interface) {
-      initial.extra_names = {"transparency", "specular"};
-      initial.extra_values = {config_.initial_transparency, config_.initial_specular};
-    }
     return SurfelSet(
-        surfels_from_points(points, initial), windows_.rates, densify, scene_->spatial_scale, seed
+        surfels_from_points(points, initial),
+        windows_.rates,
+        densify,
+        scene_->spatial_scale,
+        initial.seed
     );
   }
   DensifyConfig secondary_densify(const RunOptions& options) const {

@@ -15,7 +15,7 @@ GlintConfig::GlintConfig() {
   geometry.lambda_smooth = 0.01f;
   geometry.smooth_from = 5000;
   densify.until = 30000;
-  rates.extra = 0.05f;
+  rates.means_steps = kPublishedIterations;
 }
 
 GlintConfig GlintConfig::scaled_to(int iterations) const {
@@ -26,12 +26,14 @@ GlintConfig GlintConfig::scaled_to(int iterations) const {
   for (int* window :
        {&run.transmission_from,
         &run.reflection_from,
-        &run.freeze_from,
         &run.sh_interval,
         &run.densify.from,
-        &run.densify.until,
-        &run.rates.means_steps})
+        &run.densify.until})
     *window = scaled(*window);
+  // Deviation: in short runs the interface has not converged by two thirds of them, and freezing it
+  // there costs quality; it trains for as many steps as it takes, or to the end.
+  run.freeze_from = scaled(freeze_from, freeze_at_least);
+  run.rates = rates.for_shorter_run(static_cast<double>(kPublishedIterations) / iterations);
   run.geometry.scale(scaled);
   run.transmission_losses.scale(scaled);
   run.densify.interval = scaled(densify.interval, 50);
@@ -82,6 +84,7 @@ Json glint_release_overrides() {
       {"lambda_plausible", 0.05},
       {"lambda_transparency_prior", 0.01},
       {"densify_until", 21000},
+      {"position_steps", 30000},
       {"min_opacity", 0.08},
       {"reflection_gradient", 2e-4},
       {"secondary_densify_interval", 500},

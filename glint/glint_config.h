@@ -24,11 +24,13 @@ struct GlintConfig {
   MirrorCutoffs mirror;
   // Initial sets.
   float initial_transparency = 0.1f, initial_specular = 1e-3f;
+  float reflection_opacity = 0.1f;
   int random_points = 30000;
   ReflectionGrid grid;
   // Phases.
   int transmission_from = 5000, reflection_from = 5000, freeze_from = 40000, sh_interval = 1000;
   std::string freeze = "all";
+  int freeze_at_least = 10000;
   // Losses.
   float l1_weight = 0.8f, ssim_weight = 0.2f;
   GeometryLossConfig geometry;
@@ -55,12 +57,14 @@ struct GlintConfig {
     mirror.visit(v);
     v("initial_transparency", initial_transparency, "t of the interface's initial surfels");
     v("initial_specular", initial_specular, "s of the interface's initial surfels");
+    v("reflection_opacity", reflection_opacity, "opacity of the reflection set's initial surfels");
     v("random_points", random_points, "initial surfels of scenes without points");
     grid.visit(v);
     v("transmission_from", transmission_from, "first iteration of transmission (of 60,000)");
     v("reflection_from", reflection_from, "first iteration of reflection (of 60,000)");
     v("freeze_from", freeze_from, "first iteration with a frozen interface (of 60,000)");
     v("freeze", freeze, "what is frozen of the interface: all, geometry or nothing");
+    v("freeze_at_least", freeze_at_least, "steps of any run before anything is frozen");
     v("sh_interval", sh_interval, "iterations per SH degree (of 60,000)");
     v("l1_weight", l1_weight, "weight of L1");
     v("ssim_weight", ssim_weight, "weight of 1 - SSIM");

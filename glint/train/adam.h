@@ -6,8 +6,8 @@
 
 namespace glint {
 
-// Learning rates of the parameter arrays [Huang24, Kerbl23]. Positions: log-linear from `means` to
-// `means_final` over `means_steps` steps, both times the scene's extent.
+// Learning rates of the parameter arrays [Huang24, Kerbl23], extra channels by name. Positions:
+// log-linear from `means` to `means_final` over `means_steps` steps, both times the scene's extent.
 struct SurfelRates {
   float means = 1.6e-4f, means_final = 1.6e-6f;
   int means_steps = 30000;
@@ -16,7 +16,8 @@ struct SurfelRates {
   float opacity = 0.05f;
   float scale = 0.005f;
   float rotation = 0.001f;
-  float extra = 0.01f;
+  float transparency = 0.05f;  // [GLINT's release]
+  float specular = 0.01f;      // [Xie25; GLINT's release]
 
   template <class V>
   void visit(V&& v) {
@@ -28,8 +29,15 @@ struct SurfelRates {
     v("rate_opacity", opacity, "learning rate of opacity");
     v("rate_scale", scale, "learning rate of log scales");
     v("rate_rotation", rotation, "learning rate of quaternions");
-    v("rate_extra", extra, "learning rate of transparency and specularity");
+    v("rate_transparency", transparency, "learning rate of transparency, where a set has it");
+    v("rate_specular", specular, "learning rate of specularity, where a set has it");
   }
+
+  // Rates of a run that is `shortening` times shorter than the published one: position_steps
+  // shrink with it, and positions, colour, scales and rotations move faster by its fourth root (at
+  // least 1), the same rule for every method. Deviation: at published rates a short run ends before
+  // surfels have reached their place (docs/GLINT_NOTES.md).
+  SurfelRates for_shorter_run(double shortening) const;
 };
 
 // Rate of the positions at a step, before the factor of the scene's extent.

@@ -12,7 +12,7 @@ namespace glint {
 // (kBadReference): no point lies in front of any training camera.
 PointCloud initial_points(const Scene& scene, std::size_t count, std::uint64_t seed);
 
-// The initial cloud of sets that mirrored rays are traced into [EnvGS; Na26 supplement]: uniform
+// The initial cloud of sets that mirrored rays are traced into [Xie25; Na26 supplement]: uniform
 // points in each of cells^3 equal boxes of the scene's bounds, random colours.
 struct ReflectionGrid {
   int cells = 32, points_per_cell = 5;

@@ -13,7 +13,7 @@ struct NormalPriorLoss {
   // A gated pixel counts as 0; in the release it counts as 1 without gradient, which is a mistake
   // of the logged value only and is not copied.
   float min_cosine = kNoGate;
-  float l1 = 0;  // of |n - prior|_1 beside 1 - <n, prior> [EnvGS: 1], behind the same gate
+  float l1 = 0;  // of |n - prior|_1 beside 1 - <n, prior> [Xie25: 1], behind the same gate
 
   // normal: composited N [H][W][3], camera space; prior: [H][W][3] unit, camera space, zero where
   // missing; pixel_weight: [H][W][1] factors, or empty for 1. The mean divides by the number of

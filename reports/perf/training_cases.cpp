@@ -84,7 +84,9 @@ void write_perf_sets(const Method& method, const fs::path& folder, const PerfOpt
 
 // Whole steps of a method in mid-training (all sets and losses, SH degree 3), without
 // densification, every set with the same surfels as the ops.
-PerfCase step_case(const MethodSpec& spec, const PerfOptions& options) {
+PerfCase step_case(
+    const std::string& name, const std::string& id, Json config, const PerfOptions& options
+) {
   struct State {
     Scene scene;
     std::unique_ptr<Method> method;
@@ -92,18 +94,14 @@ PerfCase step_case(const MethodSpec& spec, const PerfOptions& options) {
   };
   const auto s = std::make_shared<State>();
   s->scene = perf_scene(options);
-  s->method = create_method(spec.id, Json{{"densify_until", 0}});
+  config["densify_until"] = 0;
+  s->method = create_method(id, config);
   s->method->initialize(s->scene, {30000, 0});
   const fs::path folder = fs::temp_directory_path() / fmt::format("glint_perf_{}", ::getpid());
   write_perf_sets(*s->method, folder, options);
   s->method->load(folder.string());
   fs::remove_all(folder);
-  return {
-      spec.id + " training step",
-      "steps",
-      [] { return 1.0; },
-      [s] { s->method->step(s->iteration++); },
-      {}};
+  return {name, "steps", [] { return 1.0; }, [s] { s->method->step(s->iteration++); }, {}};
 }
 
 PerfCase ssim_metric_case() {
@@ -122,7 +120,11 @@ std::vector<PerfCase> training_cases(const PerfOptions& options) {
   std::vector<PerfCase> cases = {
       photometric_case(options), normal_case(options), adam_case(options), ssim_metric_case()};
   for (const auto& [id, spec] : method_registry())
-    if (spec.overrides.empty()) cases.push_back(step_case(spec, options));
+    if (spec.overrides.empty())
+      cases.push_back(step_case(id + " training step", id, Json::object(), options));
+  cases.push_back(step_case(
+      "glint step, transmission traced", "glint", Json{{"transmission", "trace"}}, options
+  ));
   return cases;
 }
 

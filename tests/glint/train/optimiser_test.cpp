@@ -157,3 +157,16 @@ TEST_CASE("Growth stops at the cap") {
   densifier.update(1, cloud, adam);
   CHECK(cloud.size() == 12);
 }
+
+TEST_CASE("Shorter runs move faster by the fourth root, longer ones as published") {
+  const SurfelRates published;
+  const SurfelRates sixteenth = published.for_shorter_run(16);
+  CHECK(sixteenth.means == Approx(2 * published.means));
+  CHECK(sixteenth.means_final == Approx(2 * published.means_final));
+  CHECK(sixteenth.sh_rest == Approx(2 * published.sh_rest));
+  CHECK(sixteenth.opacity == published.opacity);
+  CHECK(sixteenth.means_steps == 30000 / 16);
+  CHECK(published.for_shorter_run(1).means == published.means);
+  CHECK(published.for_shorter_run(0.5).means == published.means);
+  CHECK(published.for_shorter_run(0.5).means_steps == 60000);
+}
