@@ -97,7 +97,7 @@ class EnvGs final : public Method {
     DensifyConfig densify = windows_.densify;
     densify.interval = windows_.environment_densify_interval;
     densify.gradient_threshold = config_.environment_gradient;
-    densify.reset_interval = options.iterations + 1;
+    densify.resets = false;
     initial = {};
     initial.seed = options.seed + 2;
     const PointCloud grid = config_.grid.points(scene, options.seed);

@@ -40,7 +40,7 @@ class Glint final : public Method {
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
     InitialSurfels initial;
     initial.seed = options.seed + 1;
-    DensifyConfig densify = secondary_densify(options);
+    DensifyConfig densify = secondary_densify();
     model_.transmission = new_set(points, initial, densify);
     densify.gradient_threshold = config_.reflection_gradient;
     initial.seed = options.seed + 2;
@@ -126,11 +126,11 @@ class Glint final : public Method {
         initial.seed
     );
   }
-  DensifyConfig secondary_densify(const RunOptions& options) const {
+  DensifyConfig secondary_densify() const {
     DensifyConfig densify = windows_.densify;
     densify.interval = windows_.secondary_densify_interval;
-    densify.reset_interval =
-        config_.reset_secondary ? windows_.secondary_reset_interval : options.iterations + 1;
+    densify.reset_interval = windows_.secondary_reset_interval;
+    densify.resets = config_.reset_secondary;
     return densify;
   }
   void set_up_losses() {

@@ -12,6 +12,7 @@ GlintConfig::GlintConfig() {
   geometry.min_cosine = GlintPriors::kMinCosine;
   geometry.gate_from = GlintPriors::kGateFrom;
   geometry.lambda_consistency = 0.05f;
+  geometry.consistency_from = 14000;  // the share of the run that [Huang24] leaves it off
   geometry.lambda_smooth = 0.01f;
   geometry.smooth_from = 5000;
   densify.until = 30000;
@@ -75,6 +76,7 @@ Json glint_release_overrides() {
       {"near_first", true},
       {"min_cosine", 0.5},
       {"lambda_consistency", 0.1},
+      {"consistency_from", 0},
       {"lambda_smooth", 0.05},
       {"guidance", "release"},
       {"lambda_transparency", 0.01},

@@ -86,13 +86,12 @@ void GlintModel::backward(
   interface.backward(camera, phase_.interface_degree, {}, dL_dinterface);
 }
 
-// Depth of the transmission set behind the interface; where nothing is, the interface's.
+// Median depth of the transmission set behind the interface, which a few faint surfels between the
+// layers do not move; where nothing is, the interface's.
 Image GlintModel::behind_depth(const Camera& camera) const {
   RasterPass pass;
-  Image depth;
-  expected_depth_map(
-      transmission.forward(camera, phase_.transmission_degree, {}, near_limit_, pass), depth
-  );
+  Image depth =
+      transmission.forward(camera, phase_.transmission_degree, {}, near_limit_, pass).depth_median;
   for (std::size_t i = 0; i < depth.num_pixels(); ++i)
     if (depth.data()[i] <= 0) depth.data()[i] = buffer().depth.data()[i];
   return depth;

@@ -124,7 +124,7 @@ DensifyCounts Densifier::update(int step, SurfelCloud& cloud, SurfelAdam& adam) 
     gradient_sum_.assign(cloud.size(), 0.0f);
     views_.assign(cloud.size(), 0);
   }
-  if (step % config_.reset_interval == 0) {
+  if (config_.resets && step % config_.reset_interval == 0) {
     const float ceiling = logit(config_.reset_opacity);
     for (float& value : cloud.opacity_logits) value = std::min(value, ceiling);
     std::fill(adam.first().opacity_logits.begin(), adam.first().opacity_logits.end(), 0.0f);

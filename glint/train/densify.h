@@ -17,6 +17,7 @@ namespace glint {
 struct DensifyConfig {
   int from = 500, until = 15000, interval = 100;  // steps; `until` is exclusive
   int reset_interval = 3000;                      // steps
+  bool resets = true;                // false: no opacity resets, all else as if there were
   float gradient_threshold = 2e-4f;  // mean norm of the NDC gradient, at reference_rows
   int reference_rows = 540;          // image height that the published threshold is for
   float clone_scale = 0.01f;         // x extent: larger surfels are split, not cloned
@@ -31,6 +32,7 @@ struct DensifyConfig {
     v("densify_until", until, "last step, exclusive");
     v("densify_interval", interval, "steps between densifications");
     v("opacity_reset_interval", reset_interval, "steps between opacity resets");
+    v("opacity_resets", resets, "whether there are opacity resets at all");
     v("densify_gradient", gradient_threshold, "mean NDC gradient that asks for more surfels");
     v("densify_reference_rows", reference_rows, "image height the threshold is meant for");
     v("clone_scale", clone_scale, "of the extent: larger surfels are split, smaller ones cloned");

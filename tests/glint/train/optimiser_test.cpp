@@ -170,3 +170,34 @@ TEST_CASE("Shorter runs move faster by the fourth root, longer ones as published
   CHECK(published.for_shorter_run(0.5).means == published.means);
   CHECK(published.for_shorter_run(0.5).means_steps == 60000);
 }
+
+TEST_CASE("Without opacity resets opacities stay, and large surfels go as they would with them") {
+  DensifyConfig config = every_step();
+  config.reset_interval = 2;
+  config.resets = false;
+  SurfelCloud cloud = cloud_of(2), gradient = cloud_of(2);
+  cloud.log_scales[0] = std::log(0.5f);
+  SurfelAdam adam;
+  adam.step(cloud, gradient, {}, 1);
+  const std::vector<float> before = cloud.opacity_logits;
+  Densifier densifier(config, 1, 0);
+  observe(densifier, {0, 0});
+  densifier.update(2, cloud, adam);
+  CHECK(cloud.opacity_logits == before);
+  observe(densifier, {0, 0});
+  CHECK(densifier.update(3, cloud, adam).pruned == 1);
+}
+
+TEST_CASE("Extra channels have the rates of their names") {
+  SurfelCloud cloud, gradient;
+  for (SurfelCloud* c : {&cloud, &gradient}) {
+    c->extra_names = {"transparency", "specular"};
+    c->resize(3);
+  }
+  std::fill(gradient.extra_logits.begin(), gradient.extra_logits.end(), 1.0f);
+  SurfelAdam().step(cloud, gradient, {}, 1);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(cloud.extra_logits[2 * i] == Approx(-0.05f));
+    CHECK(cloud.extra_logits[2 * i + 1] == Approx(-0.01f));
+  }
+}
