@@ -41,6 +41,7 @@ class Glint final : public Method {
     InitialSurfels initial;
     initial.seed = options.seed + 1;
     DensifyConfig densify = secondary_densify();
+    densify.gradient_threshold = config_.transmission_gradient;
     model_.transmission = new_set(points, initial, densify);
     densify.gradient_threshold = config_.reflection_gradient;
     initial.seed = options.seed + 2;

@@ -19,7 +19,7 @@ struct GlintConfig {
   bool with_transmission = true, with_reflection = true;
   std::string transmission = "raster";
   float f0 = 0.04f;
-  bool detach_origins = false;
+  bool detach_origins = true;
   float secondary_near = 0;
   MirrorCutoffs mirror;
   // Initial sets.
@@ -37,7 +37,7 @@ struct GlintConfig {
   TransmissionLossConfig transmission_losses;
   // Density control.
   DensifyConfig densify;
-  float reflection_gradient = 1e-4f;
+  float transmission_gradient = 2e-4f, reflection_gradient = 1e-4f;
   int secondary_densify_interval = 100, secondary_reset_interval = 3000;
   // Opacity resets of the secondary sets. Off: their gradient is weighted by t and k_s, so most of
   // their surfels would not recover before the next pruning.
@@ -72,6 +72,7 @@ struct GlintConfig {
     transmission_losses.visit(v);
     densify.visit(v);
     rates.visit(v);
+    v("transmission_gradient", transmission_gradient, "threshold of the transmission set");
     v("reflection_gradient", reflection_gradient, "densification threshold of the reflection set");
     v("secondary_densify_interval", secondary_densify_interval, "steps, of secondary sets");
     v("secondary_reset_interval", secondary_reset_interval, "steps, of secondary sets");

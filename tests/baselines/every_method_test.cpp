@@ -29,6 +29,14 @@ std::unique_ptr<Method> trained(
   return method;
 }
 
+// After 60 steps, trained once for all tests that only look.
+const Method& after_60_steps(const MethodSpec& spec) {
+  static std::map<std::string, std::unique_ptr<Method>> methods;
+  auto& method = methods[spec.id];
+  if (method == nullptr) method = trained(spec, 60, nullptr);
+  return *method;
+}
+
 double mean(const std::vector<double>& values, std::size_t begin, std::size_t end) {
   double sum = 0;
   for (std::size_t i = begin; i < end; ++i) sum += values[i];
@@ -56,9 +64,8 @@ TEST_CASE("Every method's loss falls and its parameters stay finite") {
 TEST_CASE("Every method renders colour, depth and unit normals that face the camera") {
   for (const auto& [id, spec] : method_registry()) {
     INFO(id);
-    const auto method = trained(spec, 60, nullptr);
     const View& view = small_room().test.front();
-    const RenderOutput out = method->render(view.camera);
+    const RenderOutput out = after_60_steps(spec).render(view.camera);
     REQUIRE(out.rgb.size() == view.camera.size());
     REQUIRE(out.rgb.channels() == 3);
     REQUIRE(out.depth.size() == view.camera.size());
@@ -81,15 +88,15 @@ TEST_CASE("Every method renders the same bytes after saving and loading") {
   for (const auto& [id, spec] : method_registry()) {
     INFO(id);
     const TempFolder folder;
-    const auto method = trained(spec, 60, nullptr);
-    method->save(folder.path().string());
+    const Method& method = after_60_steps(spec);
+    method.save(folder.path().string());
     const auto loaded = create_method(spec.id);
     loaded->load(folder.path().string());
     const Camera& camera = small_room().test.front().camera;
-    const RenderOutput a = method->render(camera), b = loaded->render(camera);
+    const RenderOutput a = method.render(camera), b = loaded->render(camera);
     CHECK(same_bytes(a.rgb, b.rgb));
     CHECK(same_bytes(a.depth, b.depth));
-    CHECK(loaded->num_surfels() == method->num_surfels());
+    CHECK(loaded->num_surfels() == method.num_surfels());
   }
 }
 
@@ -98,9 +105,9 @@ TEST_CASE("Every method trains to the same bytes with one and two threads") {
     INFO(id);
     const Camera& camera = small_room().test.front().camera;
     set_num_threads(1);
-    const RenderOutput one = trained(spec, 120, nullptr)->render(camera);
+    const RenderOutput one = trained(spec, 80, nullptr)->render(camera);
     set_num_threads(2);
-    const RenderOutput two = trained(spec, 120, nullptr)->render(camera);
+    const RenderOutput two = trained(spec, 80, nullptr)->render(camera);
     set_num_threads(0);
     CHECK(same_bytes(one.rgb, two.rgb));
     CHECK(same_bytes(one.depth, two.depth));
