@@ -58,6 +58,8 @@ GLINT_SIMD_INLINE BeamTest test(const Beam& beam, const EightSurfels& s) {
   return {counts & near_disc & near_ball & !behind, nearest * Float8(1 / kFurther), distance};
 }
 
+float smallest(const float* eight) { return *std::min_element(eight, eight + kLanes); }
+
 Vec3f ray_vector(const Rays& rays, int k, std::size_t i) {
   const float* p = (k == 0 ? rays.origins : rays.directions).data() + 3 * i;
   const Vec3f v{p[0], p[1], p[2]};
@@ -120,26 +122,135 @@ bool fits_beam(Vec3f origin, Vec3f direction) {
   return square > 1e-20f && square < 1e20f && length2(origin) < 1e20f;
 }
 
-void BeamSurfels::reserve(std::size_t count) {
-  const std::size_t needed = (count + 2 * kLanes) / kLanes * kLanes + kLanes;
-  if (needed <= stride_) return;
-  // An odd number of cache lines apart: columns of one surfel then fall into different sets.
-  stride_ = (needed + 15) / 32 * 32 + 48;
-  floats_ = std::make_unique_for_overwrite<float[]>(kColumns * stride_);
+// ---- lists of surfels
+
+void BeamSurfels::start(std::size_t most) {
+  const std::size_t size = most + kLanes;  // whole vectors are appended
+  if (slots_.size() < size) {
+    slots_.resize(size);
+    nearest_.resize(size);
+  }
+  count_ = 0;
 }
 
-EightSurfels BeamSurfels::load(std::size_t group) const {
-  const float* p = floats_.get() + kLanes * group;
+GLINT_SIMD_INLINE void BeamSurfels::append(Mask8::Lanes slots, Float8 nearest, unsigned lanes) {
+  const Mask8::Lanes order = kPackTable.order(lanes);
+  store_integers(__builtin_shuffle(slots, order), &slots_[count_]);
+  Float8(__builtin_shuffle(nearest.lanes, order)).store(&nearest_[count_]);
+  count_ += static_cast<std::size_t>(std::popcount(lanes));
+}
+
+// Fills the last group with a surfel that is there already; load() lets it count nowhere.
+void BeamSurfels::pad() {
+  store_integers(Mask8::Lanes{}, &slots_[count_]);
+  Float8(kInfinity).store(&nearest_[count_]);
+}
+
+GLINT_SIMD_INLINE EightSurfels
+BeamSurfels::load(std::size_t group, const std::vector<TracedSurfel>& surfels) const {
+  const std::uint32_t* slots = &slots_[kLanes * group];
+  const float* rows[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) rows[i] = surfels[slots[i]].floats();
+  RowLanes c;
+  load_columns(rows, c);
+  EightSurfels s{
+      surfel_lanes(c).fields,
+      {},
+      reinterpret_cast<Mask8::Lanes>(c[14].lanes),
+      load_integers(slots)};
+  s.e3 = cross(s.fields.h0, s.fields.h1);
+  const auto left = static_cast<float>(count_ - kLanes * group);
+  s.fields.max_rho = select(lane_indices<Float8>() < Float8(left), s.fields.max_rho, Float8(-1.0f));
+  return s;
+}
+
+template <class Source>
+void BeamSurfels::cull_all(const Beam& beam, std::size_t groups, const Source& source) {
+  start(kLanes * groups);
+  Float8 distances(0.0f);
+  for (std::size_t i = 0; i < groups; ++i) {
+    const EightSurfels s = source(i);
+    const BeamTest result = test(beam, s);
+    distances += keep(result.may_meet, result.distance);
+    append(s.slots, result.nearest, lane_bits(result.may_meet));
+  }
+  pad();
+  mean_distance_ = lane_sum(distances) / static_cast<float>(std::max<std::size_t>(count_, 1));
+}
+
+void BeamSurfels::cull(const Beam& beam, std::span<const SurfelCluster> clusters) {
+  cull_all(beam, clusters.size(), [&](std::size_t i) { return clusters[i].load(i); });
+}
+
+void BeamSurfels::cull(
+    const Beam& beam, const BeamSurfels& from, const std::vector<TracedSurfel>& surfels
+) {
+  cull_all(beam, from.groups(), [&](std::size_t i) { return from.load(i, surfels); });
+}
+
+// By buckets of equal depth: groups need a bound in front of all that follow, no strict order.
+void BeamSurfels::sort(const BeamSurfels& from) {
+  constexpr std::size_t kBuckets = 128;
+  start(from.count_);
+  mean_distance_ = from.mean_distance_;
+  float first = kInfinity, last = 0;
+  for (std::size_t i = 0; i < from.count_; ++i) {
+    first = std::min(first, from.nearest_[i]);
+    last = std::max(last, from.nearest_[i]);
+  }
+  const float scale = last > first ? (kBuckets - 1) / (last - first) : 0.0f;
+  const auto bucket = [&](std::size_t i) {
+    return static_cast<std::size_t>(
+        std::min((from.nearest_[i] - first) * scale, float{kBuckets - 1})
+    );
+  };
+  std::array<std::uint32_t, kBuckets + 1> starts{};
+  for (std::size_t i = 0; i < from.count_; ++i) ++starts[bucket(i) + 1];
+  for (std::size_t b = 0; b < kBuckets; ++b) starts[b + 1] += starts[b];
+  for (std::size_t i = 0; i < from.count_; ++i) {
+    const std::size_t place = starts[bucket(i)]++;
+    slots_[place] = from.slots_[i];
+    nearest_[place] = from.nearest_[i];
+  }
+  count_ = from.count_;
+  pad();
+  nearest_from_.resize(groups());
+  float bound = kInfinity;
+  for (std::size_t group = groups(); group-- > 0;)
+    nearest_from_[group] = bound = std::min(bound, smallest(&nearest_[kLanes * group]));
+}
+
+// ---- search
+
+void BeamSearch::start(
+    const Beam& beam, const BeamSurfels& from, const std::vector<TracedSurfel>& surfels
+) {
+  beam_ = beam;
+  from_ = &from;
+  surfels_ = &surfels;
+  next_ = 0;
+  count_ = 0;
+  if (stride_ < from.count_ + 2 * kLanes) {
+    // An odd number of cache lines apart: columns of one surfel then fall into different sets.
+    stride_ = (from.count_ + 2 * kLanes) / 32 * 32 + 48;
+    columns_.resize(kColumns * stride_);
+  }
+  nearest_from_.clear();
+  nearest_of_.clear();
+}
+
+GLINT_SIMD_INLINE EightSurfels BeamSearch::load(std::size_t group) const {
+  const float* p = columns_.data() + kLanes * group;
   const auto at = [&](int c) { return Float8::load(p + static_cast<std::size_t>(c) * stride_); };
   const auto at3 = [&](int c) { return Vec3<Float8>{at(c), at(c + 1), at(c + 2)}; };
   return {
-      {at3(0), at3(3), at3(6), at(9), at(10)},
+      {at3(0), at3(3), at3(6), at(9), at(kMaxRho)},
       at3(kE3),
       reinterpret_cast<Mask8::Lanes>(at(kSurfel).lanes),
       reinterpret_cast<Mask8::Lanes>(at(kSlot).lanes)};
 }
 
-GLINT_SIMD_INLINE void BeamSurfels::append(const EightSurfels& s, Float8 nearest, unsigned lanes) {
+GLINT_SIMD_INLINE void BeamSearch::append(const EightSurfels& s, Float8 nearest, unsigned lanes) {
   const Mask8::Lanes order = kPackTable.order(lanes);
   const SurfelFields<Float8>& f = s.fields;
   const Float8 columns[kColumns] = {
@@ -160,80 +271,50 @@ GLINT_SIMD_INLINE void BeamSurfels::append(const EightSurfels& s, Float8 nearest
       nearest,
       reinterpret_cast<Float8::Lanes>(s.surfels),
       reinterpret_cast<Float8::Lanes>(s.slots)};
-  float* to = floats_.get() + count_;
+  float* to = columns_.data() + count_;
   for (int c = 0; c < kColumns; ++c, to += stride_)
     Float8(__builtin_shuffle(columns[c].lanes, order)).store(to);
   count_ += static_cast<std::size_t>(std::popcount(lanes));
 }
 
 // Lanes behind the last surfel count nowhere.
-void BeamSurfels::pad() {
-  for (int c = 0; c < kColumns; ++c)
-    Float8(c == kNearest ? kInfinity : 0.0f).store(column(c) + count_);
-  Float8(-1.0f).store(column(kFields + 10) + count_);
+void BeamSearch::pad() {
+  float* end = columns_.data() + count_;
+  for (std::size_t c = 0; c < kColumns; ++c)
+    Float8(c == kMaxRho ? -1.0f : c == kNearest ? kInfinity : 0.0f).store(end + c * stride_);
 }
 
-template <class Source>
-void BeamSurfels::cull_all(const Beam& beam, std::size_t groups, const Source& source) {
-  reserve(kLanes * groups);
-  count_ = 0;
-  Float8 distances(0.0f);
-  for (std::size_t i = 0; i < groups; ++i) {
-    const EightSurfels s = source(i);
-    const BeamTest result = test(beam, s);
-    const unsigned lanes = lane_bits(result.may_meet);
-    if (lanes == 0) continue;
-    distances += keep(result.may_meet, result.distance);
+void BeamSearch::cull_next() {
+  const EightSurfels s = from_->load(next_, *surfels_);
+  const BeamTest result = test(beam_, s);
+  const unsigned lanes = lane_bits(result.may_meet);
+  if (lanes != 0) {
+    if (nearest_from_.size() * kLanes < count_ + static_cast<std::size_t>(std::popcount(lanes)))
+      nearest_from_.push_back(from_->nearest_from_[next_]);
     append(s, result.nearest, lanes);
   }
-  pad();
-  mean_distance_ = lane_sum(distances) / static_cast<float>(std::max<std::size_t>(count_, 1));
+  const bool last = ++next_ == from_->groups();
+  if (last) pad();
+  const std::size_t complete = (count_ + (last ? kLanes - 1 : 0)) / kLanes;
+  while (nearest_of_.size() < complete)
+    nearest_of_.push_back(smallest(&columns_[kNearest * stride_ + kLanes * nearest_of_.size()]));
 }
 
-void BeamSurfels::cull(const Beam& beam, std::span<const SurfelCluster> from) {
-  cull_all(beam, from.size(), [&](std::size_t i) { return from[i].load(i); });
-}
-
-void BeamSurfels::cull(const Beam& beam, const BeamSurfels& from) {
-  cull_all(beam, (from.count_ + kLanes - 1) / kLanes, [&](std::size_t i) { return from.load(i); });
-}
-
-// By buckets of equal depth: groups need a bound in front of all that follow, no strict order.
-void BeamSurfels::sort(const BeamSurfels& from) {
-  constexpr std::size_t kBuckets = 128;
-  reserve(from.count_);
-  count_ = from.count_;
-  const float* nearest = from.column(kNearest);
-  const auto [low, high] = std::minmax_element(nearest, nearest + count_);
-  const float first = count_ > 0 ? *low : 0.0f, width = count_ > 0 ? *high - first : 0.0f;
-  const float scale = width > 0 ? (kBuckets - 1) / width : 0.0f;
-  const auto bucket = [&](std::size_t i) {
-    return static_cast<std::size_t>(std::min((nearest[i] - first) * scale, float{kBuckets - 1}));
-  };
-  std::array<std::uint32_t, kBuckets + 1> starts{};
-  for (std::size_t i = 0; i < count_; ++i) ++starts[bucket(i) + 1];
-  for (std::size_t b = 0; b < kBuckets; ++b) starts[b + 1] += starts[b];
-  for (std::size_t i = 0; i < count_; ++i) {
-    const std::size_t place = starts[bucket(i)]++;
-    for (int c = 0; c < kColumns; ++c) column(c)[place] = from.column(c)[i];
+// Whether there is such a group and it, or one behind it, may hold a hit nearer than `limit`.
+GLINT_SIMD_INLINE bool BeamSearch::has_group(std::size_t group, float limit) {
+  while (group >= nearest_of_.size() && next_ < from_->groups()) {
+    const bool begun = group < nearest_from_.size();
+    if ((begun ? nearest_from_[group] : from_->nearest_from_[next_]) > limit) return false;
+    cull_next();
   }
-  pad();
-  group_nearest_.resize((count_ + kLanes - 1) / kLanes);
-  float bound = kInfinity;
-  for (std::size_t group = group_nearest_.size(); group-- > 0;) {
-    const float* p = column(kNearest) + kLanes * group;
-    bound = std::min(bound, *std::min_element(p, p + kLanes));
-    group_nearest_[group] = bound;
-  }
+  return group < nearest_of_.size() && nearest_from_[group] <= limit;
 }
 
-void BeamSurfels::nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const {
+void BeamSearch::nearest(Vec3f origin, Vec3f direction, NearestHits& hits) {
   const Vec3<Float8> o = all_lanes(origin), d = all_lanes(direction);
   const float norm = length(direction) * kFurther;
-  for (std::size_t group = 0; group < group_nearest_.size(); ++group) {
-    if (group_nearest_[group] > hits.last_t() * norm) break;
-    offer(load(group), o, d, hits);
-  }
+  for (std::size_t group = 0; has_group(group, hits.last_t() * norm); ++group)
+    if (nearest_of_[group] <= hits.last_t() * norm) offer(load(group), o, d, hits);
 }
 
 }  // namespace glint

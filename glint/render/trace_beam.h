@@ -42,44 +42,68 @@ std::size_t split_rays(
 // Whether a ray can be part of a beam: neither without direction nor of one whose length overflows.
 bool fits_beam(Vec3f origin, Vec3f direction);
 
-// Surfels that rays of a beam may meet, structure of arrays.
+// Slots of the surfels that rays of a beam may meet.
 class BeamSurfels {
  public:
-  // Those of `from` that a ray of the beam may meet.
-  void cull(const Beam& beam, std::span<const SurfelCluster> from);
-  void cull(const Beam& beam, const BeamSurfels& from);
+  // Those of all clusters, or of `from`, that a ray of the beam may meet. `surfels`: by slot.
+  void cull(const Beam& beam, std::span<const SurfelCluster> clusters);
+  void cull(const Beam& beam, const BeamSurfels& from, const std::vector<TracedSurfel>& surfels);
   std::size_t count() const { return count_; }
   float mean_distance() const { return mean_distance_; }  // of their centres from the beam's origin
-
-  // Those of `from`, nearest first.
+  // Those of `from`, about nearest first.
   void sort(const BeamSurfels& from);
-  // Adds the hits of one of the beam's rays behind hits.after(). Only after sort().
-  void nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const;
 
  private:
-  // As in SurfelCluster; then h0 x h1, a lower bound of the distance of a hit, indices.
+  friend class BeamSearch;
+  std::size_t groups() const { return (count_ + Float8::kLanes - 1) / Float8::kLanes; }
+  EightSurfels load(std::size_t group, const std::vector<TracedSurfel>& surfels) const;
+  template <class Source>
+  void cull_all(const Beam& beam, std::size_t groups, const Source& source);
+  void start(std::size_t most);
+  void append(Mask8::Lanes slots, Float8 nearest, unsigned lanes);
+  void pad();
+
+  std::size_t count_ = 0;
+  float mean_distance_ = 0;
+  std::vector<std::uint32_t> slots_;  // whole groups of eight
+  std::vector<float> nearest_;        // lower bounds of the distances of their hits
+  std::vector<float> nearest_from_;   // after sort(): of a group and all behind it
+};
+
+// The search for the hits of a few rays, a part of those of a wider beam. Surfels of the wider beam
+// are looked at as far as some ray needs them.
+class BeamSearch {
+ public:
+  // Keeps references to `from`, which is sorted, and `surfels`.
+  void start(const Beam& beam, const BeamSurfels& from, const std::vector<TracedSurfel>& surfels);
+  // Adds the hits of one of the rays behind hits.after().
+  void nearest(Vec3f origin, Vec3f direction, NearestHits& hits);
+
+ private:
+  // The fields of TracedSurfel up to max_rho, h0 x h1, lower bounds of the distances of hits,
+  // indices.
   enum Column {
-    kFields = 0,
-    kE3 = SurfelCluster::kFields,
+    kMaxRho = SurfelCluster::kFields - 1,
+    kE3,
     kNearest = kE3 + 3,
     kSurfel,
     kSlot,
     kColumns
   };
-
-  template <class Source>
-  void cull_all(const Beam& beam, std::size_t groups, const Source& source);
-  void reserve(std::size_t count);
-  float* column(int c) { return floats_.get() + static_cast<std::size_t>(c) * stride_; }
-  const float* column(int c) const { return floats_.get() + static_cast<std::size_t>(c) * stride_; }
-  EightSurfels load(std::size_t group) const;
+  bool has_group(std::size_t group, float limit);
+  void cull_next();
   void append(const EightSurfels& s, Float8 nearest, unsigned lanes);
+  EightSurfels load(std::size_t group) const;
   void pad();
 
-  std::unique_ptr<float[]> floats_;  // [kColumns][stride]; a multiple of eight in use
-  std::size_t stride_ = 0, count_ = 0;
-  float mean_distance_ = 0;
-  std::vector<float> group_nearest_;  // of a group and all behind it
+  Beam beam_;
+  const BeamSurfels* from_ = nullptr;
+  const std::vector<TracedSurfel>* surfels_ = nullptr;
+  std::size_t next_ = 0;  // group of *from_
+  std::size_t count_ = 0, stride_ = 0;
+  std::vector<float> columns_;       // [kColumns][stride_]
+  std::vector<float> nearest_from_;  // lower bound for a group and all behind it
+  std::vector<float> nearest_of_;    // and for that group, once it is complete
 };
 
 }  // namespace glint

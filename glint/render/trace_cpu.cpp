@@ -134,7 +134,7 @@ template <class Search>
 void trace_ray(
     const TraceSettings& settings,
     const TraceSaved& saved,
-    const Search& search,
+    Search& search,
     RayState& ray,
     std::vector<std::uint32_t>& slots,
     RaySums& sums
@@ -159,6 +159,7 @@ void trace_ray(
 // ------------------------------------------------------------------------------------
 
 constexpr std::size_t kRaysPerBeam = 32;  // at most
+constexpr std::size_t kRaysPerSort = 128;
 constexpr std::size_t kFewestRays = 4;    // that are worth a beam
 constexpr float kBroadestBeam = 0.7f;     // radius of directions above which surfels are not culled
 constexpr int kMostSplits = 24;
@@ -174,7 +175,7 @@ struct ForwardCall {
 
 template <class Search>
 void forward_ray(
-    const ForwardCall& call, const Search& search, std::size_t i, TraceScratch& scratch
+    const ForwardCall& call, Search& search, std::size_t i, TraceScratch& scratch
 ) {
   const std::size_t before = scratch.slots.size();
   RayState ray = ray_at(call.rays, call.input.sh_degree, i);
@@ -192,7 +193,7 @@ void forward_ray(
 template <class Search>
 void forward_rays(
     const ForwardCall& call,
-    const Search& search,
+    Search& search,
     std::span<const std::uint32_t> rays,
     TraceScratch& scratch
 ) {
@@ -212,16 +213,20 @@ void trace_beam(
   const RayBounds bounds = ray_bounds(call.rays, rays);
   const Beam beam = bounding_beam(call.rays, rays, bounds);
   BeamSurfels& own = scratch.levels[splits];
-  if (beam.direction_radius < kBroadestBeam) {
+  if (from != &scratch.sorted && beam.direction_radius < kBroadestBeam) {
     if (from != nullptr)
-      own.cull(beam, *from);
+      own.cull(beam, *from, call.saved.surfels);
     else
       own.cull(beam, call.saved.bvh.clusters());
     from = &own;
+    if (rays.size() <= kRaysPerSort) {
+      scratch.sorted.sort(own);
+      from = &scratch.sorted;
+    }
   }
-  if (rays.size() <= kRaysPerBeam && from != nullptr) {
-    scratch.sorted.sort(*from);
-    return forward_rays(call, scratch.sorted, rays, scratch);
+  if (rays.size() <= kRaysPerBeam && from == &scratch.sorted) {
+    scratch.search.start(beam, *from, call.saved.surfels);
+    return forward_rays(call, scratch.search, rays, scratch);
   }
   const std::size_t half =
       split_rays(call.rays, bounds, from == nullptr ? 1.0f : from->mean_distance(), rays);

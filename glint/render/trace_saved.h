@@ -47,6 +47,7 @@ struct TraceScratch {
   std::vector<std::size_t> first_hit;  // [rays of the tile] into `slots`
   std::vector<BeamSurfels> levels;     // of the beams that hold the present one
   BeamSurfels sorted;
+  BeamSearch search;
 };
 
 class ScratchPool {
