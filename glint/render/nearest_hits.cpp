@@ -2,7 +2,6 @@
 #include "glint/render/nearest_hits.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <limits>
 
@@ -17,30 +16,6 @@ constexpr std::uint32_t kLastSurfel = 0x7fffffff;
 constexpr int kLookInterval = 16;  // hits
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// For each set of lanes, its members in order: a permutation that moves them to the front.
-struct PackTable {
-  using Bytes = char __attribute__((vector_size(16)));
-  alignas(16) std::array<std::array<char, 16>, 256> lanes{};
-  constexpr PackTable() {
-    for (unsigned set = 0; set < 256; ++set)
-      for (unsigned lane = 0, n = 0; lane < 8; ++lane)
-        if (set >> lane & 1) lanes[set][n++] = static_cast<char>(lane);
-  }
-  Mask8::Lanes order(unsigned set) const {
-    Bytes bytes;
-    std::memcpy(&bytes, lanes[set].data(), sizeof bytes);
-    return __builtin_ia32_pmovsxbd256(bytes);
-  }
-};
-constexpr PackTable kPackTable;
-
-Mask8::Lanes load_integers(const std::uint32_t* p) {
-  Mask8::Lanes lanes;
-  std::memcpy(&lanes, p, sizeof lanes);
-  return lanes;
-}
-void store_integers(Mask8::Lanes lanes, std::uint32_t* p) { std::memcpy(p, &lanes, sizeof lanes); }
-
 }  // namespace
 
 NearestHits::NearestHits(float near, float min_alpha, float min_transmittance)
@@ -49,10 +24,11 @@ NearestHits::NearestHits(float near, float min_alpha, float min_transmittance)
       min_alpha_(min_alpha),
       min_transmittance_(min_transmittance) {}
 
-void NearestHits::start(float transmittance) {
+void NearestHits::start(float transmittance, std::size_t most) {
   if (count_ > 0) after_ = sorted_[count_ - 1];
   last_ = {kFarthest, kLastSurfel, 0, 0};
   transmittance_ = transmittance;
+  most_ = static_cast<int>(std::min<std::size_t>(most, kSize));
   count_ = 0;
   next_look_ = kLookInterval;
   cut_ = false;
@@ -64,23 +40,21 @@ bool NearestHits::finish() {
   return cut_;
 }
 
-void NearestHits::add(
-    Float8 t, Float8 alpha, Mask8 met, const std::uint32_t* surfels, std::uint32_t first_slot
-) {
+void NearestHits::add(Float8 t, Float8 alpha, Mask8 met, Mask8::Lanes surfels, Mask8::Lanes slots) {
   const Float8 after_t(after_.t);
-  const Mask8 later{load_integers(surfels) > static_cast<std::int32_t>(after_.surfel)};
+  const Mask8 later{surfels > static_cast<std::int32_t>(after_.surfel)};
   const Mask8 behind = (t > after_t) | ((t == after_t) & later);
-  append(t, alpha, lane_bits(met & behind & (alpha >= Float8(min_alpha_))), surfels, first_slot);
+  append(t, alpha, lane_bits(met & behind & (alpha >= Float8(min_alpha_))), surfels, slots);
 }
 
 void NearestHits::append(
-    Float8 t, Float8 alpha, unsigned lanes, const std::uint32_t* surfels, std::uint32_t first_slot
+    Float8 t, Float8 alpha, unsigned lanes, Mask8::Lanes surfels, Mask8::Lanes slots
 ) {
   const Mask8::Lanes order = kPackTable.order(lanes);
   Float8(__builtin_shuffle(t.lanes, order)).store(ts_ + count_);
   Float8(__builtin_shuffle(alpha.lanes, order)).store(alphas_ + count_);
-  store_integers(__builtin_shuffle(load_integers(surfels), order), surfels_ + count_);
-  store_integers(order + static_cast<std::int32_t>(first_slot), slots_ + count_);
+  store_integers(__builtin_shuffle(surfels, order), surfels_ + count_);
+  store_integers(__builtin_shuffle(slots, order), slots_ + count_);
   count_ += std::popcount(lanes);
   if (count_ >= next_look_) shorten();
 }
@@ -147,10 +121,10 @@ int NearestHits::hits_until_stop() const {
 }
 
 void NearestHits::shorten() {
-  if (count_ >= kCapacity || may_stop()) {
+  if (count_ >= kCapacity || count_ > most_ || may_stop()) {
     sort();
-    const int until_stop = hits_until_stop();
-    cut_after(until_stop < kCapacity ? until_stop : kCapacity / 2);
+    const int enough = std::min(hits_until_stop(), most_);
+    cut_after(enough < kCapacity ? enough : kCapacity / 2);
   }
   next_look_ = std::min(count_ + kLookInterval, kCapacity);
 }

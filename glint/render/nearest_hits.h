@@ -33,8 +33,9 @@ class NearestHits {
   // The first search is for t > near. Hits fainter than min_alpha do not count.
   NearestHits(float near, float min_alpha, float min_transmittance);
 
-  // Before a search: `transmittance` is what the ray has left there.
-  void start(float transmittance);
+  // Before a search: `transmittance` is what the ray has left there; hits behind the first `most`,
+  // at least 1, are not asked for.
+  void start(float transmittance, std::size_t most = kCapacity);
   // After it: sorts. Returns whether there may be hits behind the last of these; start() then goes
   // on from there.
   bool finish();
@@ -44,16 +45,12 @@ class NearestHits {
   // For the search. Hits behind last_t() do not matter.
   float after_t() const { return after_.t; }
   float last_t() const { return last_.t; }
-  // Of eight surfels of consecutive slots, those in `met`.
-  void add(
-      Float8 t, Float8 alpha, Mask8 met, const std::uint32_t* surfels, std::uint32_t first_slot
-  );
+  // Of eight surfels, those in `met`.
+  void add(Float8 t, Float8 alpha, Mask8 met, Mask8::Lanes surfels, Mask8::Lanes slots);
   void add(const FoundHit& hit);
 
  private:
-  void append(
-      Float8 t, Float8 alpha, unsigned lanes, const std::uint32_t* surfels, std::uint32_t slot
-  );
+  void append(Float8 t, Float8 alpha, unsigned lanes, Mask8::Lanes surfels, Mask8::Lanes slots);
   FoundHit hit(int i) const { return {ts_[i], surfels_[i], slots_[i], alphas_[i]}; }
   void sort();
   void sort_ties();
@@ -67,6 +64,7 @@ class NearestHits {
   FoundHit after_, last_;
   float min_alpha_, min_transmittance_, transmittance_ = 1;
   int count_ = 0;
+  int most_ = kCapacity;
   int next_look_ = 0;  // count at which to shorten
   bool cut_ = false;
   alignas(32) float ts_[kSize];

@@ -2,7 +2,9 @@
 // Surfels as rays see them: one a cache line, and eight of them as lanes.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <cstring>
 
 #include "glint/core/simd.h"
 #include "glint/core/vec.h"
@@ -69,6 +71,32 @@ GLINT_SIMD_INLINE unsigned lane_bits(Mask8 mask) {
   return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Float8::Lanes>(mask.lanes
   )));
 }
+GLINT_SIMD_INLINE Mask8::Lanes load_integers(const std::uint32_t* p) {
+  Mask8::Lanes lanes;
+  std::memcpy(&lanes, p, sizeof lanes);
+  return lanes;
+}
+GLINT_SIMD_INLINE void store_integers(Mask8::Lanes lanes, std::uint32_t* p) {
+  std::memcpy(p, &lanes, sizeof lanes);
+}
+
+// For each set of lanes, its members in order: a permutation that moves them to the front.
+struct PackTable {
+  using Bytes = char __attribute__((vector_size(16)));
+  alignas(16) std::array<std::array<char, 16>, 256> lanes{};
+  constexpr PackTable() {
+    for (unsigned set = 0; set < 256; ++set)
+      for (unsigned lane = 0, n = 0; lane < 8; ++lane)
+        if (set >> lane & 1) lanes[set][n++] = static_cast<char>(lane);
+  }
+  GLINT_SIMD_INLINE Mask8::Lanes order(unsigned set) const {
+    Bytes bytes;
+    std::memcpy(&bytes, lanes[set].data(), sizeof bytes);
+    return __builtin_ia32_pmovsxbd256(bytes);
+  }
+};
+inline constexpr PackTable kPackTable;
+
 template <class T>
 GLINT_SIMD_INLINE Vec3<Float8> all_lanes(Vec3<T> v) {
   return {Float8(v.x), Float8(v.y), Float8(v.z)};

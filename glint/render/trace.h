@@ -28,7 +28,8 @@ struct TraceSettings {
   float min_transmittance = kMinTransmittance;
   int max_hits = 256;  // contributors of a ray
   bool triangles =
-      false;  // Embree sees two triangles a surfel [Na26] instead of a disc; same picture
+      false;          // Embree sees two triangles a surfel [Na26] instead of a disc; same picture
+  bool beams = true;  // rays that run together share a search where that is faster; same picture
 };
 
 // Activated surfels, structure of arrays; borrowed. N surfels.

@@ -10,7 +10,6 @@
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
-#include "glint/render/blend.h"
 
 namespace glint {
 
@@ -20,14 +19,6 @@ constexpr float kMargin = 1e-4f;  // of the extent: rounding of bounds and of Em
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kLanes = Float8::kLanes;
 
-// Eight surfels of consecutive slots, the fields of TracedSurfel up to max_rho; lanes behind the
-// last surfel count nowhere.
-struct alignas(64) SurfelCluster {
-  static constexpr int kFields = 11;
-  Float8 fields[kFields];
-  std::uint32_t surfel[kLanes];
-};
-
 // What a callback needs beside Embree's own arguments.
 struct Context {
   RTCIntersectContext embree;
@@ -36,25 +27,6 @@ struct Context {
   Vec3<Float8> origin, direction;
   NearestHits* hits;
 };
-
-SurfelFields<Float8> cluster_fields(const SurfelCluster& c) {
-  const Float8* f = c.fields;
-  return {{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}, f[9], f[10]};
-}
-
-// Offers eight surfels to the list.
-void offer_cluster(const Context& context, unsigned cluster) {
-  const SurfelCluster& c = context.clusters[cluster];
-  NearestHits& hits = *context.hits;
-  const SurfelFields<Float8> s = cluster_fields(c);
-  const PlaneHit<Float8> hit = meet(s, context.origin, context.direction);
-  const Float8 rho = squared_radius(hit);
-  const Mask8 met =
-      (rho <= s.max_rho) & (hit.t >= Float8(hits.after_t())) & (hit.t <= Float8(hits.last_t()));
-  if (!any(met)) return;
-  const Float8 alpha = splat_alpha(s.opacity, min_of(rho, s.max_rho)).alpha;
-  hits.add(hit.t, alpha, met, c.surfel, static_cast<std::uint32_t>(kLanes) * cluster);
-}
 
 void offer_surfel(const Context& context, std::uint32_t slot) {
   const TracedSurfel& s = context.surfels[slot];
@@ -77,7 +49,8 @@ bool shorten(RTCRay& ray, const NearestHits& hits) {
 void intersect_cluster(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
   auto& context = *reinterpret_cast<Context*>(args->context);
-  offer_cluster(context, args->primID);
+  const SurfelCluster& cluster = context.clusters[args->primID];
+  offer(cluster.load(args->primID), context.origin, context.direction, *context.hits);
   shorten(reinterpret_cast<RTCRayHit*>(args->rayhit)->ray, *context.hits);
 }
 
@@ -289,12 +262,17 @@ void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool triangles,
   impl_->surfels = &surfels;
   impl_->count = surfels.size();
   impl_->triangles = triangles;
-  if (!triangles) impl_->write_clusters();
+  if (triangles)
+    impl_->clusters.clear();
+  else
+    impl_->write_clusters();
   if (same && refit)
     impl_->refit();
   else
     impl_->rebuild();
 }
+
+std::span<const SurfelCluster> SurfelBvh::clusters() const { return impl_->clusters; }
 
 void SurfelBvh::nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const {
   Context context;

@@ -10,26 +10,14 @@
 #include <vector>
 
 #include "glint/core/vec.h"
-#include "glint/render/intersect.h"
 #include "glint/render/nearest_hits.h"
-#include "glint/render/surfel_lanes.h"
+#include "glint/render/surfel_cluster.h"
 
 namespace glint {
 
 // Slots [N] of surfels at `means` [N][3], along a Morton curve. Means that are not finite come
 // last.
 std::vector<std::uint32_t> morton_slots(std::span<const float> means);
-
-// Where a surfel meets a ray; the same operations for one surfel and for eight.
-template <class T>
-PlaneHit<T> meet(const SurfelFields<T>& s, Vec3<T> origin, Vec3<T> direction) {
-  const RayPlane<T> plane = ray_plane(s.h0, s.h1, cross(s.h0, s.h1), s.mean - origin, direction);
-  return intersect(plane.zeta, plane.det);
-}
-template <class T>
-T squared_radius(const PlaneHit<T>& hit) {
-  return fma_of(hit.u, hit.u, hit.v * hit.v);
-}
 
 class SurfelBvh {
  public:
@@ -44,6 +32,8 @@ class SurfelBvh {
   void update(const std::vector<TracedSurfel>& surfels, bool triangles, bool refit);
   // Adds the hits behind hits.after().
   void nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const;
+  // All surfels, eight consecutive slots each; none where the tree is of triangles.
+  std::span<const SurfelCluster> clusters() const;
 
  private:
   struct Impl;

@@ -41,9 +41,10 @@ TracedSurfel traced_surfel(const TraceInput& input, const TraceSettings& setting
 // ---- one ray
 // -------------------------------------------------------------------------------------
 
-// Hits of one traversal that count, to be shaded eight at a time.
+// Hits that count and are not yet shaded, which takes eight at a time: which hits lie in one lane
+// must not depend on how many a search returned.
 struct WeightedHits {
-  static constexpr std::size_t kCapacity = NearestHits::kCapacity;
+  static constexpr std::size_t kCapacity = NearestHits::kCapacity + kHitsAtOnce;
   static_assert(kCapacity % kHitsAtOnce == 0);
   std::size_t count = 0;
   std::uint32_t slots[kCapacity];
@@ -57,6 +58,14 @@ struct WeightedHits {
   void pad() {
     while (count % kHitsAtOnce != 0) push(slots[count - 1], 0, 0);
   }
+  void drop_first(std::size_t shaded) {
+    for (std::size_t i = shaded; i < count; ++i) {
+      slots[i - shaded] = slots[i];
+      weights[i - shaded] = weights[i];
+      ts[i - shaded] = ts[i];
+    }
+    count -= shaded;
+  }
 };
 
 // Sums over a ray's hits, hit i in lane i % 8.
@@ -67,16 +76,16 @@ struct RaySums {
 
 Vec3f lane_sum(Vec3<Float8> v) { return {lane_sum(v.x), lane_sum(v.y), lane_sum(v.z)}; }
 
-// Weights of the hits in order, at most `most`. Returns false when the ray has stopped.
+// Weights of the hits in order, at most `left` of them. Returns false when the ray has stopped.
 bool weigh(
     const TraceSettings& settings,
     const TraceSaved& saved,
     const NearestHits& nearest,
-    std::size_t most,
+    std::size_t& left,
     RayState& ray,
     WeightedHits& hits
 ) {
-  for (int i = 0; i < nearest.count() && hits.count < most; ++i) {
+  for (int i = 0; i < nearest.count() && left > 0; ++i, --left) {
     const FoundHit& hit = nearest[i];
     const BlendStep<float> step =
         blend_step(ray.transmittance, hit.alpha, settings.min_transmittance);
@@ -85,7 +94,7 @@ bool weigh(
     prefetch_hit(saved, hit.slot);
     hits.push(hit.slot, step.weight, hit.t);
   }
-  return hits.count < most;
+  return left > 0;
 }
 
 // Adds eight hits.
@@ -113,46 +122,145 @@ void shade(
   sums.depth += weights * Float8::load(&hits.ts[first]);
 }
 
+// Shades whole groups of eight and keeps the rest.
+void shade_groups(const TraceSaved& saved, const RayState& ray, WeightedHits& hits, RaySums& sums) {
+  const std::size_t whole = hits.count / kHitsAtOnce * kHitsAtOnce;
+  for (std::size_t i = 0; i < whole; i += kHitsAtOnce) shade(saved, ray, hits, i, sums);
+  hits.drop_first(whole);
+}
+
+// `search` has nearest(origin, direction, hits).
+template <class Search>
 void trace_ray(
     const TraceSettings& settings,
     const TraceSaved& saved,
+    Search& search,
     RayState& ray,
     std::vector<std::uint32_t>& slots,
     RaySums& sums
 ) {
   NearestHits nearest(settings.near, settings.min_alpha, settings.min_transmittance);
+  WeightedHits hits;
   auto left = static_cast<std::size_t>(std::max(settings.max_hits, 0));
   for (bool more = left > 0; more;) {
-    nearest.start(ray.transmittance);
-    saved.bvh.nearest(ray.origin, ray.direction, nearest);
+    nearest.start(ray.transmittance, left);
+    search.nearest(ray.origin, ray.direction, nearest);
     more = nearest.finish();
-    WeightedHits hits;
+    const std::size_t before = hits.count;
     more = weigh(settings, saved, nearest, left, ray, hits) && more;
-    slots.insert(slots.end(), hits.slots, hits.slots + hits.count);
-    left -= hits.count;
-    hits.pad();
-    for (std::size_t i = 0; i < hits.count; i += kHitsAtOnce) shade(saved, ray, hits, i, sums);
+    slots.insert(slots.end(), hits.slots + before, hits.slots + hits.count);
+    shade_groups(saved, ray, hits, sums);
+  }
+  hits.pad();
+  shade_groups(saved, ray, hits, sums);
+}
+
+// ---- tiles
+// ------------------------------------------------------------------------------------
+
+constexpr std::size_t kRaysPerBeam = 32;  // at most
+constexpr std::size_t kRaysPerSort = 128;
+constexpr std::size_t kFewestRays = 4;    // that are worth a beam
+constexpr float kBroadestBeam = 0.7f;     // radius of directions above which surfels are not culled
+constexpr int kMostSplits = 24;
+
+// Everything the forward pass reads and its outputs.
+struct ForwardCall {
+  const TraceInput& input;
+  const Rays& rays;
+  const TraceSettings& settings;
+  TraceSaved& saved;
+  TraceOutput& output;
+};
+
+template <class Search>
+void forward_ray(
+    const ForwardCall& call, Search& search, std::size_t i, TraceScratch& scratch
+) {
+  const std::size_t before = scratch.slots.size();
+  RayState ray = ray_at(call.rays, call.input.sh_degree, i);
+  RaySums sums;
+  if (length2(ray.direction) > 0 && call.input.count > 0)
+    trace_ray(call.settings, call.saved, search, ray, scratch.slots, sums);
+  scratch.first_hit[i % kRaysPerTile] = before;
+  call.saved.counts[i] = static_cast<std::uint32_t>(scratch.slots.size() - before);
+  put3(&call.output.color.data()[3 * i], lane_sum(sums.color));
+  put3(&call.output.normal.data()[3 * i], lane_sum(sums.normal));
+  call.output.depth_sum.data()[i] = lane_sum(sums.depth);
+  call.output.alpha.data()[i] = 1 - std::abs(ray.transmittance);
+}
+
+template <class Search>
+void forward_rays(
+    const ForwardCall& call,
+    Search& search,
+    std::span<const std::uint32_t> rays,
+    TraceScratch& scratch
+) {
+  for (const std::uint32_t i : rays) forward_ray(call, search, i, scratch);
+}
+
+// `from`: surfels that the rays may meet; null: all.
+void trace_beam(
+    const ForwardCall& call,
+    std::span<std::uint32_t> rays,
+    const BeamSurfels* from,
+    std::size_t splits,
+    TraceScratch& scratch
+) {
+  if (rays.size() < kFewestRays || splits == kMostSplits)
+    return forward_rays(call, call.saved.bvh, rays, scratch);
+  const RayBounds bounds = ray_bounds(call.rays, rays);
+  const Beam beam = bounding_beam(call.rays, rays, bounds);
+  BeamSurfels& own = scratch.levels[splits];
+  if (from != &scratch.sorted && beam.direction_radius < kBroadestBeam) {
+    if (from != nullptr)
+      own.cull(beam, *from, call.saved.surfels);
+    else
+      own.cull(beam, call.saved.bvh.clusters());
+    from = &own;
+    if (rays.size() <= kRaysPerSort) {
+      scratch.sorted.sort(own);
+      from = &scratch.sorted;
+    }
+  }
+  if (rays.size() <= kRaysPerBeam && from == &scratch.sorted) {
+    scratch.search.start(beam, *from, call.saved.surfels);
+    return forward_rays(call, scratch.search, rays, scratch);
+  }
+  const std::size_t half =
+      split_rays(call.rays, bounds, from == nullptr ? 1.0f : from->mean_distance(), rays);
+  trace_beam(call, rays.first(half), from, splits + 1, scratch);
+  trace_beam(call, rays.subspan(half), from, splits + 1, scratch);
+}
+
+// Hits in the order of the rays, as backward() reads them.
+void save_hits(const TraceScratch& scratch, std::size_t begin, std::size_t end, TraceSaved& saved) {
+  for (std::size_t i = begin; i < end; ++i) {
+    std::vector<std::uint32_t>& block = saved.blocks[i / kRaysPerBlock];
+    if (i % kRaysPerBlock == 0) block.clear();
+    const std::uint32_t* slots = scratch.slots.data() + scratch.first_hit[i % kRaysPerTile];
+    block.insert(block.end(), slots, slots + saved.counts[i]);
   }
 }
 
-void forward_ray(
-    const TraceInput& input,
-    const Rays& rays,
-    const TraceSettings& settings,
-    std::size_t i,
-    TraceSaved& saved,
-    TraceOutput& out
+void forward_tile(
+    const ForwardCall& call, std::size_t begin, std::size_t end, TraceScratch& scratch
 ) {
-  std::vector<std::uint32_t>& slots = saved.blocks[i / kRaysPerBlock];
-  const std::size_t before = slots.size();
-  RayState ray = ray_at(rays, input.sh_degree, i);
-  RaySums sums;
-  if (length2(ray.direction) > 0 && input.count > 0) trace_ray(settings, saved, ray, slots, sums);
-  saved.counts[i] = static_cast<std::uint32_t>(slots.size() - before);
-  put3(&out.color.data()[3 * i], lane_sum(sums.color));
-  put3(&out.normal.data()[3 * i], lane_sum(sums.normal));
-  out.depth_sum.data()[i] = lane_sum(sums.depth);
-  out.alpha.data()[i] = 1 - std::abs(ray.transmittance);
+  scratch.slots.clear();
+  scratch.first_hit.resize(kRaysPerTile);
+  scratch.levels.resize(kMostSplits);
+  scratch.rays.clear();
+  for (std::size_t i = begin; i < end; ++i) {
+    const bool fits = call.settings.beams &&
+                      fits_beam(pixel3(call.rays.origins, i), pixel3(call.rays.directions, i));
+    if (fits)
+      scratch.rays.push_back(static_cast<std::uint32_t>(i));
+    else
+      forward_ray(call, call.saved.bvh, i, scratch);
+  }
+  trace_beam(call, scratch.rays, nullptr, 0, scratch);
+  save_hits(scratch, begin, end, call.saved);
 }
 
 // ---- preparation
@@ -241,10 +349,11 @@ void Tracer::forward(
   fit(output.alpha, size, 1);
   fit(output.depth_sum, size, 1);
   prepare(input, settings, num_rays, *saved_);
-  parallel_for_blocks(num_rays, kRaysPerBlock, [&](std::size_t begin, std::size_t end) {
-    saved_->blocks[begin / kRaysPerBlock].clear();
-    for (std::size_t i = begin; i < end; ++i)
-      forward_ray(input, rays, settings, i, *saved_, output);
+  const ForwardCall call{input, rays, settings, *saved_, output};
+  parallel_for_blocks(num_rays, kRaysPerTile, [&](std::size_t begin, std::size_t end) {
+    auto scratch = saved_->scratch.take();
+    forward_tile(call, begin, end, *scratch);
+    saved_->scratch.give_back(std::move(scratch));
   });
 }
 

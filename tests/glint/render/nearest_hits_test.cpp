@@ -32,15 +32,16 @@ void offer_all(const std::vector<FoundHit>& hits, Rng& rng, NearestHits& nearest
     std::swap(groups[i - 1], groups[rng.below(static_cast<std::uint32_t>(i))]);
   for (const std::size_t group : groups) {
     float t[8], alpha[8];
-    std::uint32_t surfels[8];
+    Mask8::Lanes surfels, slots;
     for (std::size_t i = 0; i < 8; ++i) {
       t[i] = hits[8 * group + i].t;
       alpha[i] = hits[8 * group + i].alpha;
-      surfels[i] = hits[8 * group + i].surfel;
+      surfels[i] = static_cast<std::int32_t>(hits[8 * group + i].surfel);
+      slots[i] = static_cast<std::int32_t>(8 * group + i);
     }
     const Float8 ts = Float8::load(t);
     const Mask8 met = (ts >= Float8(nearest.after_t())) & (ts <= Float8(nearest.last_t()));
-    nearest.add(ts, Float8::load(alpha), met, surfels, static_cast<std::uint32_t>(8 * group));
+    nearest.add(ts, Float8::load(alpha), met, surfels, slots);
   }
 }
 
