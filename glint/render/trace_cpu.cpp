@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
@@ -165,7 +166,7 @@ constexpr float kBroadestBeam = 0.7f;    // radius of directions above which not
 constexpr std::size_t kMostSplits = 24;  // of a tile's rays
 // A beam pays where going through its surfels costs at most this share of what its rays cost one
 // by one, which a few of each tile's rays tell.
-constexpr double kCullShare = 1.0 / 8, kSearchShare = 1.0 / 4;
+constexpr double kCullShare = 1.0 / 4, kSearchShare = 1;
 constexpr std::size_t kProbes = 8;
 
 // Everything the forward pass reads and its outputs.
@@ -256,7 +257,7 @@ void trace_beam(
   const bool shared = node.sorted && rays.size() <= kRaysPerBeam;
   const double share = node.sorted ? kSearchShare : kCullShare;
   const auto together = static_cast<double>(node.groups(call.saved));
-  if (splits == kMostSplits || together > share * one_by_one)
+  if (splits == kMostSplits || rays.empty() || together >= share * one_by_one)
     return forward_rays(call, call.saved.bvh, rays, scratch);
   const RayBounds bounds = ray_bounds(call.rays, rays);
   const Beam beam = bounding_beam(call.rays, rays, bounds);
@@ -280,14 +281,21 @@ void save_hits(const TraceScratch& scratch, std::size_t begin, std::size_t end, 
   }
 }
 
-// Traces a few rays from all over the tile and moves them to the front.
-void probe(const ForwardCall& call, std::span<std::uint32_t> rays, TraceScratch& scratch) {
+// What a ray costs that goes through the tree. Tells from a few rays from all over the tile, which
+// come to the front; returns their number.
+std::size_t probe(const ForwardCall& call, std::span<std::uint32_t> rays, TraceScratch& scratch) {
+  const TraceSettings& settings = call.settings;
+  const bool beams = settings.search == TraceSearch::kBeams && !settings.triangles;
+  scratch.clusters_per_ray = beams ? std::numeric_limits<double>::infinity() : 0.0;
+  const bool open = settings.search == TraceSearch::kCheapest && !settings.triangles;
+  if (!open || rays.size() < 2 * kProbes) return 0;
   Probe search{call.saved.bvh};
   for (std::size_t k = 0; k < kProbes; ++k) {
     std::swap(rays[k], rays[k * (rays.size() / kProbes)]);
     forward_ray(call, search, rays[k], scratch);
   }
   scratch.clusters_per_ray = static_cast<double>(search.clusters) / kProbes;
+  return kProbes;
 }
 
 void forward_tile(
@@ -305,12 +313,8 @@ void forward_tile(
       forward_ray(call, call.saved.bvh, i, scratch);
   }
   const std::span<std::uint32_t> rays(scratch.rays);
-  if (call.settings.triangles || !call.settings.beams || rays.size() < 2 * kProbes) {
-    forward_rays(call, call.saved.bvh, rays, scratch);
-  } else {
-    probe(call, rays, scratch);
-    trace_beam(call, rays.subspan(kProbes), {}, 0, scratch);
-  }
+  const std::size_t probed = probe(call, rays, scratch);
+  trace_beam(call, rays.subspan(probed), {}, 0, scratch);
   save_hits(scratch, begin, end, call.saved);
 }
 
