@@ -161,9 +161,9 @@ void trace_ray(
 
 // Rays of a beam, at most: of which surfels are sorted, and that share a search.
 constexpr std::size_t kRaysPerSort = 64, kRaysPerBeam = 32;
-constexpr std::size_t kShrink = 3;       // a beam is culled again with so many times fewer rays
+constexpr std::size_t kShrink = 2;       // a beam is culled again with so many times fewer rays
 constexpr float kBroadestBeam = 0.7f;    // radius of directions above which nothing is culled
-constexpr std::size_t kMostSplits = 24;  // of a tile's rays
+constexpr std::size_t kMostSplits = 24;  // of a tile's rays; reached where rays are the same
 // A beam pays where going through its surfels costs at most this share of what its rays cost one
 // by one, which a few of each tile's rays tell.
 constexpr double kCullShare = 1.0 / 4, kSearchShare = 1;
@@ -222,7 +222,8 @@ struct BeamNode {
   std::size_t groups(const TraceSaved& saved) const {
     return surfels == nullptr ? saved.bvh.clusters().size() : surfels->groups();
   }
-  float mean_distance() const { return surfels == nullptr ? 1.0f : surfels->mean_distance(); }
+  // Of the hits, which lie nearer than the surfels do on average.
+  float hit_distance() const { return surfels == nullptr ? 1.0f : 0.5f * surfels->mean_distance(); }
 };
 
 // Drops what the beam of `count` rays cannot meet, where that pays.
@@ -245,7 +246,8 @@ void narrow(
   node = {sorts ? &sorted : &culled, count, sorts};
 }
 
-// One of the halves of the rays' box after the other, until they are alike.
+// Halves the rays until few and alike are left, whose surfels are few as well; or until sharing
+// does not pay.
 void trace_beam(
     const ForwardCall& call,
     std::span<std::uint32_t> rays,
@@ -266,7 +268,7 @@ void trace_beam(
     return forward_rays(call, scratch.search, rays, scratch);
   }
   narrow(call.saved, beam, rays.size(), scratch.levels[splits], scratch.sorted, node);
-  const std::size_t half = split_rays(call.rays, bounds, node.mean_distance(), rays);
+  const std::size_t half = split_rays(call.rays, bounds, node.hit_distance(), rays);
   trace_beam(call, rays.first(half), node, splits + 1, scratch);
   trace_beam(call, rays.subspan(half), node, splits + 1, scratch);
 }
