@@ -27,7 +27,8 @@ struct BeamTest {
 // m' - m = o - o' and d' - d bounded by the beam's radii,
 //   |h (m' x d') - h (m x d)| <= |h| (|m| r_d + r_o),  |e3 d' - e3 d| <= |e3| r_d,
 //   |m' e3 - m e3| <= |e3| r_o.
-// A ray that meets the disc passes its centre within its radius, too.
+// A ray that meets the disc passes its centre within its radius, too. The margins for rounding
+// cover that of the ray's own test.
 GLINT_SIMD_INLINE BeamTest test(const Beam& beam, const EightSurfels& s) {
   const SurfelFields<Float8>& f = s.fields;
   const Vec3<Float8> m = f.mean - all_lanes(beam.origin), d = all_lanes(beam.direction);
@@ -123,6 +124,7 @@ bool fits_beam(Vec3f origin, Vec3f direction) {
 }
 
 // ---- lists of surfels
+// ---------------------------------------------------------------------------
 
 void BeamSurfels::start(std::size_t most) {
   const std::size_t size = most + kLanes;  // whole vectors are appended
@@ -140,7 +142,7 @@ GLINT_SIMD_INLINE void BeamSurfels::append(Mask8::Lanes slots, Float8 nearest, u
   count_ += static_cast<std::size_t>(std::popcount(lanes));
 }
 
-// Fills the last group with a surfel that is there already; load() lets it count nowhere.
+// Fills the last group with the surfel of slot 0, which load() lets count nowhere.
 void BeamSurfels::pad() {
   store_integers(Mask8::Lanes{}, &slots_[count_]);
   Float8(kInfinity).store(&nearest_[count_]);
@@ -221,6 +223,7 @@ void BeamSurfels::sort(const BeamSurfels& from) {
 }
 
 // ---- search
+// --------------------------------------------------------------------------------------
 
 void BeamSearch::start(
     const Beam& beam, const BeamSurfels& from, const std::vector<TracedSurfel>& surfels

@@ -48,14 +48,13 @@ class BeamSurfels {
   // Those of all clusters, or of `from`, that a ray of the beam may meet. `surfels`: by slot.
   void cull(const Beam& beam, std::span<const SurfelCluster> clusters);
   void cull(const Beam& beam, const BeamSurfels& from, const std::vector<TracedSurfel>& surfels);
-  std::size_t count() const { return count_; }
+  std::size_t groups() const { return (count_ + Float8::kLanes - 1) / Float8::kLanes; }
   float mean_distance() const { return mean_distance_; }  // of their centres from the beam's origin
   // Those of `from`, about nearest first.
   void sort(const BeamSurfels& from);
 
  private:
   friend class BeamSearch;
-  std::size_t groups() const { return (count_ + Float8::kLanes - 1) / Float8::kLanes; }
   EightSurfels load(std::size_t group, const std::vector<TracedSurfel>& surfels) const;
   template <class Source>
   void cull_all(const Beam& beam, std::size_t groups, const Source& source);

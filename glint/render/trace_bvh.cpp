@@ -26,6 +26,7 @@ struct Context {
   const TracedSurfel* surfels;
   Vec3<Float8> origin, direction;
   NearestHits* hits;
+  std::size_t looked_at = 0;
 };
 
 void offer_surfel(const Context& context, std::uint32_t slot) {
@@ -49,6 +50,7 @@ bool shorten(RTCRay& ray, const NearestHits& hits) {
 void intersect_cluster(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
   auto& context = *reinterpret_cast<Context*>(args->context);
+  ++context.looked_at;
   const SurfelCluster& cluster = context.clusters[args->primID];
   offer(cluster.load(args->primID), context.origin, context.direction, *context.hits);
   shorten(reinterpret_cast<RTCRayHit*>(args->rayhit)->ray, *context.hits);
@@ -59,6 +61,7 @@ void intersect_cluster(const RTCIntersectFunctionNArguments* args) {
 void filter_triangle(const RTCFilterFunctionNArguments* args) {
   auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
   auto& context = *reinterpret_cast<Context*>(args->context);
+  ++context.looked_at;
   offer_surfel(context, reinterpret_cast<const RTCHit*>(args->hit)->primID / 2);
   if (!shorten(ray, *context.hits)) args->valid[0] = 0;
 }
@@ -274,7 +277,7 @@ void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool triangles,
 
 std::span<const SurfelCluster> SurfelBvh::clusters() const { return impl_->clusters; }
 
-void SurfelBvh::nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const {
+std::size_t SurfelBvh::nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const {
   Context context;
   rtcInitIntersectContext(&context.embree);
   context.clusters = impl_->clusters.data();
@@ -295,6 +298,7 @@ void SurfelBvh::nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const 
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(impl_->scene, &context.embree, &ray);
+  return context.looked_at;
 }
 
 }  // namespace glint

@@ -30,8 +30,8 @@ class SurfelBvh {
   // for surfels that are the same ones in the same slots.
   // Errors (kEnvironment): Embree fails.
   void update(const std::vector<TracedSurfel>& surfels, bool triangles, bool refit);
-  // Adds the hits behind hits.after().
-  void nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const;
+  // Adds the hits behind hits.after(). Returns how many clusters (or triangles) it took.
+  std::size_t nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const;
   // All surfels, eight consecutive slots each; none where the tree is of triangles.
   std::span<const SurfelCluster> clusters() const;
 

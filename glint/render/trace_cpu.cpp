@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
@@ -156,13 +157,17 @@ void trace_ray(
 }
 
 // ---- tiles
-// ------------------------------------------------------------------------------------
+// -----------------------------------------------------------------------------------------
 
-constexpr std::size_t kRaysPerBeam = 32;  // at most
-constexpr std::size_t kRaysPerSort = 128;
-constexpr std::size_t kFewestRays = 4;    // that are worth a beam
-constexpr float kBroadestBeam = 0.7f;     // radius of directions above which surfels are not culled
-constexpr int kMostSplits = 24;
+// Rays of a beam, at most: of which surfels are sorted, and that share a search.
+constexpr std::size_t kRaysPerSort = 64, kRaysPerBeam = 32;
+constexpr std::size_t kShrink = 2;       // a beam is culled again with so many times fewer rays
+constexpr float kBroadestBeam = 0.7f;    // radius of directions above which nothing is culled
+constexpr std::size_t kMostSplits = 24;  // of a tile's rays; reached where rays are the same
+// A beam pays where going through its surfels costs at most this share of what its rays cost one
+// by one, which a few of each tile's rays tell.
+constexpr double kCullShare = 1.0 / 4, kSearchShare = 1;
+constexpr std::size_t kProbes = 8;
 
 // Everything the forward pass reads and its outputs.
 struct ForwardCall {
@@ -174,9 +179,7 @@ struct ForwardCall {
 };
 
 template <class Search>
-void forward_ray(
-    const ForwardCall& call, Search& search, std::size_t i, TraceScratch& scratch
-) {
+void forward_ray(const ForwardCall& call, Search& search, std::size_t i, TraceScratch& scratch) {
   const std::size_t before = scratch.slots.size();
   RayState ray = ray_at(call.rays, call.input.sh_degree, i);
   RaySums sums;
@@ -200,38 +203,74 @@ void forward_rays(
   for (const std::uint32_t i : rays) forward_ray(call, search, i, scratch);
 }
 
-// `from`: surfels that the rays may meet; null: all.
+// Searches the tree and counts the clusters that this takes.
+struct Probe {
+  const SurfelBvh& bvh;
+  std::size_t clusters = 0;
+
+  void nearest(Vec3f origin, Vec3f direction, NearestHits& hits) {
+    clusters += bvh.nearest(origin, direction, hits);
+  }
+};
+
+// Surfels that rays of a beam may meet.
+struct BeamNode {
+  const BeamSurfels* surfels = nullptr;  // null: all
+  std::size_t culled_for = 0;            // rays
+  bool sorted = false;
+
+  std::size_t groups(const TraceSaved& saved) const {
+    return surfels == nullptr ? saved.bvh.clusters().size() : surfels->groups();
+  }
+  // Of the hits, which lie nearer than the surfels do on average.
+  float hit_distance() const { return surfels == nullptr ? 1.0f : 0.5f * surfels->mean_distance(); }
+};
+
+// Drops what the beam of `count` rays cannot meet, where that pays.
+void narrow(
+    const TraceSaved& saved,
+    const Beam& beam,
+    std::size_t count,
+    BeamSurfels& culled,
+    BeamSurfels& sorted,
+    BeamNode& node
+) {
+  const bool sorts = count <= kRaysPerSort;
+  const bool fewer = sorts || node.surfels == nullptr || kShrink * count <= node.culled_for;
+  if (node.sorted || !fewer || beam.direction_radius > kBroadestBeam) return;
+  if (node.surfels == nullptr)
+    culled.cull(beam, saved.bvh.clusters());
+  else
+    culled.cull(beam, *node.surfels, saved.surfels);
+  if (sorts) sorted.sort(culled);
+  node = {sorts ? &sorted : &culled, count, sorts};
+}
+
+// Halves the rays until few and alike are left, whose surfels are few as well; or until sharing
+// does not pay.
 void trace_beam(
     const ForwardCall& call,
     std::span<std::uint32_t> rays,
-    const BeamSurfels* from,
+    BeamNode node,
     std::size_t splits,
     TraceScratch& scratch
 ) {
-  if (rays.size() < kFewestRays || splits == kMostSplits)
+  const double one_by_one = scratch.clusters_per_ray * static_cast<double>(rays.size());
+  const bool shared = node.sorted && rays.size() <= kRaysPerBeam;
+  const double share = node.sorted ? kSearchShare : kCullShare;
+  const auto together = static_cast<double>(node.groups(call.saved));
+  if (splits == kMostSplits || rays.empty() || together >= share * one_by_one)
     return forward_rays(call, call.saved.bvh, rays, scratch);
   const RayBounds bounds = ray_bounds(call.rays, rays);
   const Beam beam = bounding_beam(call.rays, rays, bounds);
-  BeamSurfels& own = scratch.levels[splits];
-  if (from != &scratch.sorted && beam.direction_radius < kBroadestBeam) {
-    if (from != nullptr)
-      own.cull(beam, *from, call.saved.surfels);
-    else
-      own.cull(beam, call.saved.bvh.clusters());
-    from = &own;
-    if (rays.size() <= kRaysPerSort) {
-      scratch.sorted.sort(own);
-      from = &scratch.sorted;
-    }
-  }
-  if (rays.size() <= kRaysPerBeam && from == &scratch.sorted) {
-    scratch.search.start(beam, *from, call.saved.surfels);
+  if (shared) {
+    scratch.search.start(beam, *node.surfels, call.saved.surfels);
     return forward_rays(call, scratch.search, rays, scratch);
   }
-  const std::size_t half =
-      split_rays(call.rays, bounds, from == nullptr ? 1.0f : from->mean_distance(), rays);
-  trace_beam(call, rays.first(half), from, splits + 1, scratch);
-  trace_beam(call, rays.subspan(half), from, splits + 1, scratch);
+  narrow(call.saved, beam, rays.size(), scratch.levels[splits], scratch.sorted, node);
+  const std::size_t half = split_rays(call.rays, bounds, node.hit_distance(), rays);
+  trace_beam(call, rays.first(half), node, splits + 1, scratch);
+  trace_beam(call, rays.subspan(half), node, splits + 1, scratch);
 }
 
 // Hits in the order of the rays, as backward() reads them.
@@ -244,6 +283,23 @@ void save_hits(const TraceScratch& scratch, std::size_t begin, std::size_t end, 
   }
 }
 
+// What a ray costs that goes through the tree. Tells from a few rays from all over the tile, which
+// come to the front; returns their number.
+std::size_t probe(const ForwardCall& call, std::span<std::uint32_t> rays, TraceScratch& scratch) {
+  const TraceSettings& settings = call.settings;
+  const bool beams = settings.search == TraceSearch::kBeams && !settings.triangles;
+  scratch.clusters_per_ray = beams ? std::numeric_limits<double>::infinity() : 0.0;
+  const bool open = settings.search == TraceSearch::kCheapest && !settings.triangles;
+  if (!open || rays.size() < 2 * kProbes) return 0;
+  Probe search{call.saved.bvh};
+  for (std::size_t k = 0; k < kProbes; ++k) {
+    std::swap(rays[k], rays[k * (rays.size() / kProbes)]);
+    forward_ray(call, search, rays[k], scratch);
+  }
+  scratch.clusters_per_ray = static_cast<double>(search.clusters) / kProbes;
+  return kProbes;
+}
+
 void forward_tile(
     const ForwardCall& call, std::size_t begin, std::size_t end, TraceScratch& scratch
 ) {
@@ -252,14 +308,15 @@ void forward_tile(
   scratch.levels.resize(kMostSplits);
   scratch.rays.clear();
   for (std::size_t i = begin; i < end; ++i) {
-    const bool fits = call.settings.beams &&
-                      fits_beam(pixel3(call.rays.origins, i), pixel3(call.rays.directions, i));
-    if (fits)
+    const Vec3f origin = pixel3(call.rays.origins, i), direction = pixel3(call.rays.directions, i);
+    if (fits_beam(origin, direction))
       scratch.rays.push_back(static_cast<std::uint32_t>(i));
     else
       forward_ray(call, call.saved.bvh, i, scratch);
   }
-  trace_beam(call, scratch.rays, nullptr, 0, scratch);
+  const std::span<std::uint32_t> rays(scratch.rays);
+  const std::size_t probed = probe(call, rays, scratch);
+  trace_beam(call, rays.subspan(probed), {}, 0, scratch);
   save_hits(scratch, begin, end, call.saved);
 }
 

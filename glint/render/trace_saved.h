@@ -17,7 +17,7 @@
 namespace glint {
 
 inline constexpr std::size_t kRaysPerBlock = 64;
-inline constexpr std::size_t kRaysPerTile = 16 * kRaysPerBlock;  // that are traced together
+inline constexpr std::size_t kRaysPerTile = 32 * kRaysPerBlock;  // that are traced together
 inline constexpr std::size_t kSurfelGrain = 512;
 inline constexpr std::size_t kSurfelsAhead = 8;  // that memory is asked for in advance
 inline constexpr std::size_t kHitsAtOnce = Float8::kLanes;
@@ -46,6 +46,7 @@ struct TraceScratch {
   std::vector<std::uint32_t> slots;    // of the tile's hits, in the order of tracing
   std::vector<std::size_t> first_hit;  // [rays of the tile] into `slots`
   std::vector<BeamSurfels> levels;     // of the beams that hold the present one
+  double clusters_per_ray = 0;         // that the tree takes
   BeamSurfels sorted;
   BeamSearch search;
 };
