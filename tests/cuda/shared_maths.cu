@@ -4,6 +4,8 @@
 #include "glint/render/depth_normal.h"
 #include "glint/render/project.h"
 #include "glint/render/spherical_harmonics.h"
+#include "glint/render/transport.h"
+#include "glint/train/pixel_losses.h"
 
 namespace glint {
 
@@ -48,11 +50,40 @@ __device__ float pixel_formulas(Vec3f direction) {
          distortion_depth_vjp(sum, 0.2f, 100.0f, m);
 }
 
+__device__ float transport_formulas(Vec3f d, Vec3f n) {
+  const float fresnel = schlick(kGlassF0, dot(d, n)), k = mirrored_share(0.1f, fresnel);
+  float dL_ds = 0, dL_df = 0;
+  mirrored_share_vjp(0.1f, fresnel, k, dL_ds, dL_df);
+  Vec3f dL_dn{};
+  mirrored_direction_vjp(d, n, mirrored_direction(d, n), dL_dn);
+  const GlassRadiance<float> pixel{d, n, dL_dn, 0.5f, k};
+  const GlassRadiance<float> g = outgoing_radiance_vjp(pixel, outgoing_radiance(pixel));
+  const RayPlane<float> plane = ray_plane(d, n, cross(d, n), dL_dn, d);
+  Vec3f dL_dh0{}, dL_dh1{}, dL_dm{}, dL_dd{};
+  ray_plane_vjp(d, n, cross(d, n), dL_dn, d, plane, dL_dh0, dL_dh1, dL_dm, dL_dd);
+  return g.mirrored + dL_ds + schlick_vjp(kGlassF0, k, dL_df) + dL_dm.x + dL_dd.y;
+}
+
+__device__ float loss_formulas(Vec3f normal, Vec3f prior, float p) {
+  const Vec3f unit = unit_normal(normal);
+  Vec3f dL_dunit{}, dL_dnormal{};
+  gated_normal_loss_vjp(unit, prior, 0.3f, 1.0f, p, dL_dunit);
+  unit_normal_vjp(normal, dL_dunit, dL_dnormal);
+  float dL_dp = 0;
+  binary_cross_entropy_vjp(p, 0.98f, binary_cross_entropy(p, 0.98f), dL_dp);
+  binary_entropy_vjp(p, binary_entropy(p), dL_dp);
+  return dL_dp + dL_dnormal.x + gated_normal_loss(unit, prior, 0.3f, 0.0f) +
+         edge_weight(normal, prior, 1.0f);
+}
+
 __global__ void shared_maths(
     const SurfelGeometry<float>* surfels, CameraOf<float> camera, float* results, int count
 ) {
   const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (i < count) results[i] = surfel_formulas(surfels[i], camera) + pixel_formulas(surfels[i].mean);
+  if (i >= count) return;
+  const Vec3f m = surfels[i].mean;
+  results[i] = surfel_formulas(surfels[i], camera) + pixel_formulas(m) + transport_formulas(m, m) +
+               loss_formulas(m, m, results[i]);
 }
 
 }  // namespace glint
