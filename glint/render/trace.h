@@ -51,7 +51,8 @@ struct TraceInput {
 // scales and opacities of `activated`; its features are not used.
 TraceInput trace_input(const SurfelCloud& cloud, const ActivatedSurfels& activated, int sh_degree);
 
-// One ray a pixel: o + t d. d need not be unit (t and depths are in its units); d = 0: no ray.
+// One ray a pixel: o + t d. d need not be unit (t and depths are in its units). No ray: d = 0, or
+// |d|^2 or |o|^2 not finite.
 struct Rays {
   Image origins;     // [H][W][3] world, metres
   Image directions;  // [H][W][3]

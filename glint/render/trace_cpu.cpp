@@ -178,12 +178,19 @@ struct ForwardCall {
   TraceOutput& output;
 };
 
+// Embree aborts on rays that are not finite; they come from parameters that diverged, which the
+// trainer reports by name.
+bool is_ray(const RayState& ray) {
+  const float direction2 = length2(ray.direction);
+  return direction2 > 0 && std::isfinite(direction2 + length2(ray.origin));
+}
+
 template <class Search>
 void forward_ray(const ForwardCall& call, Search& search, std::size_t i, TraceScratch& scratch) {
   const std::size_t before = scratch.slots.size();
   RayState ray = ray_at(call.rays, call.input.sh_degree, i);
   RaySums sums;
-  if (length2(ray.direction) > 0 && call.input.count > 0)
+  if (is_ray(ray) && call.input.count > 0)
     trace_ray(call.settings, call.saved, search, ray, scratch.slots, sums);
   scratch.first_hit[i % kRaysPerTile] = before;
   call.saved.counts[i] = static_cast<std::uint32_t>(scratch.slots.size() - before);

@@ -310,6 +310,31 @@ TEST_CASE("no surfels, and rays without direction, give nothing and no gradient"
   }
 }
 
+TEST_CASE("rays that are not finite count as none, those beside them as ever") {
+  Rng rng(19);
+  const TraceArrays arrays = random_arrays(30, rng);
+  for (const TraceSearch search : {TraceSearch::kTree, TraceSearch::kBeams}) {
+    Rays rays = random_rays(6, 4, rng);
+    TraceSettings settings;
+    settings.search = search;
+    Tracer tracer;
+    TraceOutput before, after;
+    tracer.forward(arrays.view(), rays, settings, before);
+    rays.origins.data()[0] = std::numeric_limits<float>::quiet_NaN();
+    rays.directions.data()[4] = std::numeric_limits<float>::quiet_NaN();
+    rays.directions.data()[7] = std::numeric_limits<float>::infinity();
+    rays.origins.data()[10] = 1e30f;
+    tracer.forward(arrays.view(), rays, settings, after);
+    for (std::size_t i = 0; i < 24; ++i)
+      CHECK(after.alpha.data()[i] == (i < 4 ? 0.0f : before.alpha.data()[i]));
+    TraceOutputGradient g;
+    g.color = Image(6, 4, 3, 1.0f);
+    TraceGradient gradient;
+    tracer.backward(arrays.view(), rays, settings, after, g, gradient);
+    for (const float value : gradient.means) CHECK(std::isfinite(value));
+  }
+}
+
 TEST_CASE("surfels that moved are found where they are, refitted or rebuilt") {
   Rng rng(10);
   TraceArrays arrays = random_arrays(200, rng);
