@@ -18,6 +18,7 @@
 #include "glint/train/glass_transport.h"
 #include "glint/train/initial_points.h"
 #include "glint/train/mirror_cutoffs.h"
+#include "glint/train/perceptual.h"
 #include "glint/train/photometric.h"
 #include "glint/train/surfel_set.h"
 #include "glint/train/trainer.h"
@@ -31,6 +32,7 @@ constexpr int kBaseChannels = 4;  // colour, s
 
 struct EnvGsConfig {
   float lambda_ssim = 0.2f;
+  PerceptualConfig perceptual;
   float initial_specular = 1e-3f;
   int random_points = 30000;
   int environment_from = 3000, sh_interval = 1000;
@@ -48,11 +50,13 @@ struct EnvGsConfig {
     geometry.normal_l1 = 1;
     geometry.near_first = true;
     geometry.min_cosine = NormalPriorLoss::kNoGate;
+    perceptual.lpips_from = 21000;
     densify.until = 21000;
   }
   template <class V>
   void visit(V&& v) {
     v("lambda_ssim", lambda_ssim, "weight of 1 - SSIM against L1");
+    perceptual.visit(v);
     v("initial_specular", initial_specular, "s of the initial surfels");
     v("random_points", random_points, "initial surfels of scenes without points");
     v("environment_from", environment_from, "first iteration with the environment (of 40,000)");
@@ -69,7 +73,8 @@ struct EnvGsConfig {
     const auto scaled = [&](int published, int at_least = 1) {
       return scaled_step(published, iterations, at_least, kPublishedIterations);
     };
-    for (int* window : {&environment_from, &sh_interval, &densify.from, &densify.until})
+    for (int* window :
+         {&environment_from, &sh_interval, &perceptual.lpips_from, &densify.from, &densify.until})
       *window = scaled(*window);
     rates = rates.for_shorter_run(static_cast<double>(kPublishedIterations) / iterations);
     geometry.scale(scaled);
@@ -120,6 +125,10 @@ class EnvGs final : public Method {
     const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);
     stats.terms["photometric"] = photo.weighted(weights);
     stats.psnr = -10 * std::log10(std::max(photo.mse, 1e-10));
+    if (perceptual_ != nullptr && iteration >= windows_.perceptual.lpips_from)
+      stats.terms["lpips"] =
+          static_cast<double>(windows_.perceptual.lambda_lpips) *
+          perceptual_->evaluate(image, view.rgb, windows_.perceptual.lambda_lpips, dL_dimage_);
     geometry_.add(view, iteration, *base_output_, transport_.buffer().depth, dL_dbase_, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     backward(view.camera);
@@ -188,7 +197,7 @@ class EnvGs final : public Method {
   }
   void set_up_losses() {
     warnings_ = geometry_.set_up(windows_.geometry, *scene_, "envgs");
-    warnings_.push_back("envgs: LPIPS is off: its network is not built in");
+    perceptual_ = wanted_perceptual_loss(windows_.perceptual, "envgs", warnings_);
     if (scene_->points.positions.empty())
       warnings_.push_back(
           fmt::format("envgs: {} has no points; starts from random ones", scene_->name)
@@ -233,6 +242,7 @@ class EnvGs final : public Method {
   const RasterOutput* base_output_ = nullptr;
   GlassLayers layers_;
   PhotometricLoss photometric_;
+  std::unique_ptr<PerceptualLoss> perceptual_;
   GeometryLosses geometry_;
   Image dL_dimage_;
   RasterOutputGradient dL_dbase_;

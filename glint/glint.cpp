@@ -66,6 +66,10 @@ class Glint final : public Method {
     const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);
     stats.terms["photometric"] = photo.weighted(weights);
     stats.psnr = -10 * std::log10(std::max(photo.mse, 1e-10));
+    if (perceptual_ != nullptr && iteration >= windows_.perceptual.lpips_from)
+      stats.terms["lpips"] =
+          static_cast<double>(windows_.perceptual.lambda_lpips) *
+          perceptual_->evaluate(image, view.rgb, windows_.perceptual.lambda_lpips, dL_dimage_);
     add_map_losses(view, iteration, weights, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     model_.backward(view.camera, config_, dL_dimage_, dL_dtransparency_, !frozen_, dL_dinterface_);
@@ -135,7 +139,8 @@ class Glint final : public Method {
     return densify;
   }
   void set_up_losses() {
-    warnings_ = {"glint: LPIPS is off: its network is not built in"};
+    warnings_.clear();
+    perceptual_ = wanted_perceptual_loss(windows_.perceptual, "glint", warnings_);
     if (scene_->points.positions.empty())
       warnings_.push_back(
           fmt::format("glint: {} has no points; starts from random ones", scene_->name)
@@ -199,6 +204,7 @@ class Glint final : public Method {
   GlintPhase phase_;
   bool frozen_ = false;
   PhotometricLoss photometric_;
+  std::unique_ptr<PerceptualLoss> perceptual_;
   GeometryLosses geometry_;
   TransmissionLosses transmission_losses_;
   Image dL_dimage_, dL_dtransparency_;

@@ -28,6 +28,7 @@ GlintConfig GlintConfig::scaled_to(int iterations) const {
        {&run.transmission_from,
         &run.reflection_from,
         &run.sh_interval,
+        &run.perceptual.lpips_from,
         &run.densify.from,
         &run.densify.until})
     *window = scaled(*window);
@@ -70,6 +71,7 @@ Json glint_release_overrides() {
       {"freeze", "geometry"},
       {"l1_weight", 1.2},
       {"ssim_weight", 0.4},
+      {"lambda_lpips", 0.05},
       {"lambda_depth", 0.05},
       {"depth_gradient_scales", 4},
       {"lambda_normal", 0.3},

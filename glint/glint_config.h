@@ -10,6 +10,7 @@
 #include "glint/train/geometry_losses.h"
 #include "glint/train/initial_points.h"
 #include "glint/train/mirror_cutoffs.h"
+#include "glint/train/perceptual.h"
 #include "glint/train/transmission_losses.h"
 
 namespace glint {
@@ -33,6 +34,7 @@ struct GlintConfig {
   int freeze_at_least = 10000;
   // Losses.
   float l1_weight = 0.8f, ssim_weight = 0.2f;
+  PerceptualConfig perceptual;
   GeometryLossConfig geometry;
   TransmissionLossConfig transmission_losses;
   // Density control.
@@ -68,6 +70,7 @@ struct GlintConfig {
     v("sh_interval", sh_interval, "iterations per SH degree (of 60,000)");
     v("l1_weight", l1_weight, "weight of L1");
     v("ssim_weight", ssim_weight, "weight of 1 - SSIM");
+    perceptual.visit(v);
     geometry.visit(v);
     transmission_losses.visit(v);
     densify.visit(v);

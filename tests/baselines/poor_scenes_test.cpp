@@ -67,6 +67,18 @@ TEST_CASE("Without priors every method trains, and names each loss that is off")
   });
 }
 
+TEST_CASE("Where LPIPS is wanted and not built in, the record says that it is off") {
+  for_every_method([&](const MethodSpec& spec) {
+    const bool wanted = uses(spec, "lambda_lpips");
+    const auto warnings = warnings_of_short_run(spec, small_room());
+    CHECK(any_says(warnings, "LPIPS is off") == wanted);
+    if (!wanted) return;
+    const auto without = create_method(spec.id, Json{{"lambda_lpips", 0.0}});
+    without->initialize(small_room(), {});
+    CHECK_FALSE(any_says(without->warnings(), "LPIPS"));
+  });
+}
+
 TEST_CASE("A prior that one view lacks is off for all, and the warning counts the views") {
   Scene scene = small_room();
   scene.train.front().priors.depth = {};
