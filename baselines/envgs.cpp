@@ -158,11 +158,11 @@ class EnvGs final : public Method {
 
   void save(const std::string& folder) const override {
     write_surfel_ply(fs::path(folder) / "interface.ply", base_.cloud());
-    write_surfel_ply(fs::path(folder) / "environment.ply", environment_.cloud());
+    write_surfel_ply(fs::path(folder) / "reflection.ply", environment_.cloud());
   }
   void load(const std::string& folder) override {
     base_ = SurfelSet(read_surfel_ply(fs::path(folder) / "interface.ply"), {}, {}, 1, 0);
-    environment_ = SurfelSet(read_surfel_ply(fs::path(folder) / "environment.ply"), {}, {}, 1, 0);
+    environment_ = SurfelSet(read_surfel_ply(fs::path(folder) / "reflection.ply"), {}, {}, 1, 0);
     GLINT_CHECK(
         base_.cloud().extra_names == std::vector<std::string>({"specular"}),
         kBadPrediction,

@@ -9,13 +9,15 @@ namespace glint {
 
 namespace {
 
-int run_train(const CommonOptions& common, const SingleRunOptions& options) {
+int run_train(
+    CommonOptions common, const SingleRunOptions& options, const std::string& transmission
+) {
+  if (!transmission.empty()) common.set.push_back("transmission=" + transmission);
   install_interrupt_handler();
   const SingleRun single = new_single_run(common, options);
   const std::string folder = single.spec.folder.string();
   try {
     const auto method = train_stage(single.spec, single.scene);
-    for (const std::string& warning : method->warnings()) log::warn(warning);
     const TrainCost cost = *trained_cost(single.spec);
     if (common.json)
       print_json(
@@ -40,13 +42,16 @@ int run_train(const CommonOptions& common, const SingleRunOptions& options) {
 
 void add_train_verb(CommandLine& line) {
   auto options = std::make_shared<SingleRunOptions>();
+  auto transmission = std::make_shared<std::string>();
   CLI::App* verb =
-      line.add_verb(line.app, "train", "train one method on one dataset folder", [&line, options] {
-        return run_train(line.common, *options);
+      line.add_verb(line.app, "train", "train one method on one dataset folder", [=, &line] {
+        return run_train(line.common, *options, *transmission);
       });
   verb->add_option("--dataset", options->dataset, "dataset folder")->required();
   verb->add_option("--method", options->method, "method id")->capture_default_str();
   verb->add_option("--run", options->run, "run folder; else OUT/single/runs/SCENE/METHOD/SEED");
+  verb->add_option("--transmission", *transmission, "glint: raster or trace")
+      ->check(CLI::IsMember({"raster", "trace"}));
   verb->add_option("--max-pixels", options->max_pixels, "shrink images below this area")
       ->check(CLI::NonNegativeNumber);
 }
