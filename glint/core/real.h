@@ -23,6 +23,10 @@ struct MaskOf {
 template <class T>
 using Mask = typename MaskOf<T>::type;
 
+// How many numbers a T holds.
+template <class T>
+inline constexpr int kLanesOf = 1;
+
 GLINT_HD float select(bool mask, float a, float b) { return mask ? a : b; }
 GLINT_HD double select(bool mask, double a, double b) { return mask ? a : b; }
 GLINT_HD bool any(bool mask) { return mask; }
@@ -34,6 +38,8 @@ GLINT_HD float max_of(float a, float b) { return a > b ? a : b; }
 GLINT_HD double max_of(double a, double b) { return a > b ? a : b; }
 GLINT_HD float abs_of(float a) { return fabsf(a); }
 GLINT_HD double abs_of(double a) { return fabs(a); }
+GLINT_HD float log_of(float a) { return logf(a); }
+GLINT_HD double log_of(double a) { return log(a); }
 GLINT_HD float sqrt_of(float a) { return sqrtf(a); }
 GLINT_HD double sqrt_of(double a) { return sqrt(a); }
 // a * b + c in one rounding, on every backend: forward and backward passes must agree to the bit.

@@ -115,9 +115,7 @@ GLINT_SIMD_INLINE float lane_sum(Float8 v) {
 }
 GLINT_SIMD_INLINE float lane_sum(float v) { return v; }
 
-// How many lanes T has, and loads and stores of that many floats.
-template <class T>
-inline constexpr int kLanesOf = 1;
+// Loads and stores of as many floats as T holds.
 template <>
 inline constexpr int kLanesOf<Float8> = 8;
 template <class T>

@@ -259,6 +259,15 @@ GLINT_HD ProjectedSurfel<T> project_surfel(
   return p;
 }
 
+// dL/d(image position of the centre) in NDC, the statistic of densification: through the centre
+// only. z: its depth.
+template <class T>
+GLINT_HD Vec2<T> screen_gradient(Vec3<T> dL_dm, T z, const CameraOf<T>& c) {
+  const T depth = max_of(z, c.near_plane);
+  return {
+      dL_dm.x * depth / c.fx * (T(0.5f) * c.width), dL_dm.y * depth / c.fy * (T(0.5f) * c.height)};
+}
+
 // dL/d(projected): map, low-pass centre, z_center and normal are set; the box has no gradient.
 // dL_dm: dL/d(centre in camera space), for the screen-space statistic of densification.
 template <class T>

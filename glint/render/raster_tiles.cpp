@@ -13,11 +13,6 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;  // surfels a block
 
-// Squared radius where alpha falls below 1/255, at most 3 sigma; not positive: never visible.
-float max_rho_of(float opacity) {
-  return std::min(kMaxRho, 2.0f * std::log(std::max(opacity, 1e-12f) / kMinAlpha) + 1e-4f);
-}
-
 float lane(float v, int) { return v; }
 float lane(Float8 v, int i) { return v[i]; }
 template <class T>
@@ -38,23 +33,11 @@ Splat splat_of(const ProjectedSurfel<T>& p, int i, float opacity) {
       lane(p.normal, i)};
 }
 
-// First pixel whose centre is at or right of x, clamped to [0, size].
-int first_pixel(float x, int size) {
-  return static_cast<int>(std::clamp(std::ceil(x - 0.5f), 0.0f, static_cast<float>(size)));
-}
-
-// Comparisons are false for NaN, so surfels with broken parameters reach no tile.
 template <class T>
 PixelBox pixel_box_of(const ProjectedSurfel<T>& p, int i, const CameraOf<float>& camera) {
-  const float x0 = lane(p.box_min_x, i), x1 = lane(p.box_max_x, i);
-  const float y0 = lane(p.box_min_y, i), y1 = lane(p.box_max_y, i);
-  if (!(x0 <= x1) || !(y0 <= y1)) return {};
-  const int width = static_cast<int>(camera.width), height = static_cast<int>(camera.height);
-  return {
-      first_pixel(x0, width),
-      first_pixel(x1, width),
-      first_pixel(y0, height),
-      first_pixel(y1, height)};
+  return pixel_box(
+      lane(p.box_min_x, i), lane(p.box_max_x, i), lane(p.box_min_y, i), lane(p.box_max_y, i), camera
+  );
 }
 
 template <class T>

@@ -5,33 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "glint/render/project.h"
+#include "glint/render/splat_hit.h"
 #include "glint/render/radix_sort.h"
 #include "glint/render/rasterize.h"
 
 namespace glint {
-
-inline constexpr int kTileSize = 8;  // pixels
-
-// One projected surfel as the tile loops read it.
-struct Splat {
-  PixelPlaneMap<float> map;
-  float x_ref, y_ref, center_x, center_y;
-  float opacity, z_center;
-  Vec3f normal;
-};
-
-// Pixels [x_min, x_max) x [y_min, y_max) a splat can reach; empty for surfels out of view.
-struct PixelBox {
-  std::int32_t x_min = 0, x_max = 0, y_min = 0, y_max = 0;
-  bool empty() const { return x_min >= x_max || y_min >= y_max; }
-  int tile_x_min() const { return x_min / kTileSize; }
-  int tile_y_min() const { return y_min / kTileSize; }
-  int tile_x_max() const { return (x_max + kTileSize - 1) / kTileSize; }
-  int tile_y_max() const { return (y_max + kTileSize - 1) / kTileSize; }
-  int tiles_across() const { return tile_x_max() - tile_x_min(); }
-  int num_tiles() const { return empty() ? 0 : tiles_across() * (tile_y_max() - tile_y_min()); }
-};
 
 // A surfel in a tile's list. Pairs are numbered surfel by surfel, so that a surfel's sums run over
 // neighbours in memory.

@@ -21,73 +21,56 @@ namespace {
 
 // ---- forward -----------------------------------------------------------------------------------
 
-// kChannels > 0: known at compile time; 0: input.channels.
+DistortionRange distortion_range(const RasterSettings& settings) {
+  return {settings.with_distortion, settings.distortion_near, settings.distortion_far};
+}
+
 template <class T, int kChannels>
 struct ForwardVisitor {
   const TileContext& tile;
-  const RasterSettings& settings;
+  const DistortionRange range;
   float* pair_visibility;
-  int channels;
-  T features[kChannels > 0 ? kChannels : kMaxChannels][kGroupsPerTile<T>] = {};
-  T depth[kGroupsPerTile<T>] = {}, normal[3][kGroupsPerTile<T>] = {};
-  T median[kGroupsPerTile<T>] = {};
-  T first_depth[kGroupsPerTile<T>];
-  T moment1[kGroupsPerTile<T>] = {}, moment2[kGroupsPerTile<T>] = {};
+  const int channels;
+  PixelSums<T, kChannels> sums[kGroupsPerTile<T>];
   T visibility;
   const float* feature;
   const Splat* splat;
 
   ForwardVisitor(const TileContext& tile, const RasterSettings& settings, float* pair_visibility)
       : tile(tile),
-        settings(settings),
+        range(distortion_range(settings)),
         pair_visibility(pair_visibility),
         channels(tile.input.channels) {
-    std::fill_n(first_depth, kGroupsPerTile<T>, T(1));
+    for (auto& group : sums) group.clear();
   }
-  int num_channels() const { return kChannels > 0 ? kChannels : channels; }
 
   void begin(TileEntry entry) {
     visibility = T(0);
     feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
     splat = &tile.lists.splats[entry.surfel];
   }
-  void hit(int g, const TileHit<T>& hit) {
-    const T w = hit.weight;
-    visibility += w;
-    for (int c = 0; c < num_channels(); ++c)
-      features[c][g] = fma_of(w, T(feature[c]), features[c][g]);
-    depth[g] = fma_of(w, hit.depth, depth[g]);
-    for (int c = 0; c < 3; ++c) normal[c][g] = fma_of(w, T(splat->normal[c]), normal[c][g]);
-    const auto is_median = hit.valid & (hit.transmittance > T(0.5f));
-    median[g] = select(is_median, hit.depth, median[g]);
-    if (settings.with_distortion) add_moments(g, hit);
-  }
-  void add_moments(int g, const TileHit<T>& hit) {
-    const T z = select(hit.valid, hit.depth, T(1));
-    first_depth[g] = select(hit.valid & (hit.transmittance >= T(1)), z, first_depth[g]);
-    const T near(settings.distortion_near), far(settings.distortion_far);
-    const T m = distortion_depth(z, first_depth[g], near, far);
-    moment1[g] = fma_of(hit.weight, m, moment1[g]);
-    moment2[g] = fma_of(hit.weight, m * m, moment2[g]);
+  void hit(int g, const SplatHit<T>& hit) {
+    visibility += hit.weight;
+    sums[g].add(hit, feature, channels, splat->normal, range);
   }
   void end(TileEntry entry) { pair_visibility[entry.pair] = lane_sum(visibility); }
   void skip(TileEntry entry) { pair_visibility[entry.pair] = 0; }
 
   void store(const TilePixels<T>& pixels, RasterOutput& out, RasterSaved& saved) const {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) {
+      const PixelSums<T, kChannels>& s = sums[g];
       const T alpha = T(1) - pixels.final_transmittance(g);
-      for (int c = 0; c < num_channels(); ++c)
-        store_pixels(tile, out.features, g, c, features[c][g]);
-      for (int c = 0; c < 3; ++c) store_pixels(tile, out.normal, g, c, normal[c][g]);
+      for (int c = 0; c < channels; ++c) store_pixels(tile, out.features, g, c, s.features[c]);
+      for (int c = 0; c < 3; ++c) store_pixels(tile, out.normal, g, c, s.normal[c]);
       store_pixels(tile, out.alpha, g, 0, alpha);
-      store_pixels(tile, out.depth_sum, g, 0, depth[g]);
-      store_pixels(tile, out.depth_median, g, 0, median[g]);
+      store_pixels(tile, out.depth_sum, g, 0, s.depth);
+      store_pixels(tile, out.depth_median, g, 0, s.median);
       store_pixels(tile, saved.final_transmittance, g, 0, pixels.final_transmittance(g));
-      if (!settings.with_distortion) continue;
-      store_pixels(tile, saved.first_depth, g, 0, first_depth[g]);
-      store_pixels(tile, saved.moment1, g, 0, moment1[g]);
-      store_pixels(tile, saved.moment2, g, 0, moment2[g]);
-      store_pixels(tile, out.distortion, g, 0, distortion(alpha, moment1[g], moment2[g]));
+      if (!range.on) continue;
+      store_pixels(tile, saved.first_depth, g, 0, s.first_depth);
+      store_pixels(tile, saved.moment1, g, 0, s.moment1);
+      store_pixels(tile, saved.moment2, g, 0, s.moment2);
+      store_pixels(tile, out.distortion, g, 0, distortion(alpha, s.moment1, s.moment2));
     }
   }
 };
@@ -104,38 +87,16 @@ void forward_tile(
 
 // ---- backward ----------------------------------------------------------------------------------
 
-// Sums over a tile's pixels that one pair hands to its surfel.
-enum PairSum {
-  kSumGx = 0,  // 3: zeta's gradient times X
-  kSumGy = 3,  // 3: times Y
-  kSumG0 = 6,  // 3
-  kSumDet = 9,
-  kSumOpacity = 10,
-  kSumCenterX = 11,
-  kSumCenterY = 12,
-  kSumZCenter = 13,
-  kSumNormal = 14,   // 3
-  kSumFeatures = 17  // channels
-};
-constexpr int kMaxSums = (kSumFeatures + kMaxChannels + 7) / 8 * 8;
-
-int slot_width(int channels) { return (kSumFeatures + channels + 7) / 8 * 8; }
+constexpr int kMaxSums = splat_sums(kMaxChannels);
 
 template <class T, int kChannels>
 struct BackwardVisitor {
-  static constexpr int kSums = kChannels > 0 ? (kSumFeatures + kChannels + 7) / 8 * 8 : kMaxSums;
+  static constexpr int kSums = splat_sums(kChannels > 0 ? kChannels : kMaxChannels);
   const TileContext& tile;
-  const RasterSettings& settings;
+  const DistortionRange range;
   RasterSaved& saved;
-  int channels;
-  // Gradients and totals of the tile's pixels.
-  T g_features[kChannels > 0 ? kChannels : kMaxChannels][kGroupsPerTile<T>];
-  T g_alpha[kGroupsPerTile<T>], g_depth[kGroupsPerTile<T>], g_median[kGroupsPerTile<T>];
-  T g_normal[3][kGroupsPerTile<T>], g_distortion[kGroupsPerTile<T>];
-  T alpha[kGroupsPerTile<T>];
-  T first_depth[kGroupsPerTile<T>], moment1[kGroupsPerTile<T>], moment2[kGroupsPerTile<T>];
-  T median_behind[kGroupsPerTile<T>];  // the median hit is the first to leave this or less
-  T remaining[kGroupsPerTile<T>];      // S minus the prefix so far, see blend_alpha_vjp
+  const int channels;
+  PixelGradient<T, kChannels> pixels[kGroupsPerTile<T>];
   // Of the current surfel.
   T sums[kSums];
   const float* feature;
@@ -148,108 +109,55 @@ struct BackwardVisitor {
       const RasterOutput& out,
       const RasterOutputGradient& g
   )
-      : tile(tile), settings(settings), saved(saved), channels(tile.input.channels) {
+      : tile(tile),
+        range(distortion_range(settings)),
+        saved(saved),
+        channels(tile.input.channels) {
     for (int i = 0; i < kGroupsPerTile<T>; ++i) load_group(i, out, g);
   }
-  int num_channels() const { return kChannels > 0 ? kChannels : channels; }
-  bool with_distortion() const { return settings.with_distortion; }
 
   T load(const Image& image, int group, int channel) const {
     return image.empty() ? T(0) : load_pixels<T>(tile, image, group, channel, 0.0f);
   }
   void load_group(int i, const RasterOutput& out, const RasterOutputGradient& g) {
-    alpha[i] = load(out.alpha, i, 0);
-    g_alpha[i] = load(g.alpha, i, 0);
-    g_depth[i] = load(g.depth_sum, i, 0);
-    g_median[i] = load(g.depth_median, i, 0);
-    median_behind[i] = max_of(T(0.5f), load(saved.final_transmittance, i, 0));
-    remaining[i] = g_alpha[i] * alpha[i] + g_depth[i] * load(out.depth_sum, i, 0);
-    for (int c = 0; c < num_channels(); ++c) {
-      g_features[c][i] = load(g.features, i, c);
-      remaining[i] = fma_of(g_features[c][i], load(out.features, i, c), remaining[i]);
+    PixelGradient<T, kChannels>& p = pixels[i];
+    PixelSums<T, kChannels> s;
+    s.depth = load(out.depth_sum, i, 0);
+    p.total_alpha = load(out.alpha, i, 0);
+    p.alpha = load(g.alpha, i, 0);
+    p.depth = load(g.depth_sum, i, 0);
+    p.median = load(g.depth_median, i, 0);
+    for (int c = 0; c < channels; ++c) {
+      p.features[c] = load(g.features, i, c);
+      s.features[c] = load(out.features, i, c);
     }
     for (int c = 0; c < 3; ++c) {
-      g_normal[c][i] = load(g.normal, i, c);
-      remaining[i] = fma_of(g_normal[c][i], load(out.normal, i, c), remaining[i]);
+      p.normal[c] = load(g.normal, i, c);
+      s.normal[c] = load(out.normal, i, c);
     }
-    g_distortion[i] = with_distortion() ? load(g.distortion, i, 0) : T(0);
-    if (!with_distortion()) return;
-    first_depth[i] = load_pixels<T>(tile, saved.first_depth, i, 0, 1.0f);
-    moment1[i] = load(saved.moment1, i, 0);
-    moment2[i] = load(saved.moment2, i, 0);
-    // sum w dL/dw of the distortion is twice the distortion itself: it is quadratic in w.
-    remaining[i] += T(2) * g_distortion[i] * (alpha[i] * moment2[i] - moment1[i] * moment1[i]);
+    if (range.on) {
+      p.distortion = load(g.distortion, i, 0);
+      p.first_depth = load_pixels<T>(tile, saved.first_depth, i, 0, 1.0f);
+      p.moment1 = load(saved.moment1, i, 0);
+      p.moment2 = load(saved.moment2, i, 0);
+    }
+    p.start(s, load(saved.final_transmittance, i, 0), channels, range.on);
   }
 
   void begin(TileEntry entry) {
-    std::fill_n(sums, slot_width(channels), T(0));
+    std::fill_n(sums, splat_sums(channels), T(0));
     feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
     splat = &tile.lists.splats[entry.surfel];
   }
-  void hit(int g, const TileHit<T>& hit) {
-    T value = fma_of(g_depth[g], hit.depth, g_alpha[g]);
-    for (int c = 0; c < num_channels(); ++c) {
-      value = fma_of(g_features[c][g], T(feature[c]), value);
-      sums[kSumFeatures + c] = fma_of(hit.weight, g_features[c][g], sums[kSumFeatures + c]);
-    }
-    for (int c = 0; c < 3; ++c) {
-      value = fma_of(g_normal[c][g], T(splat->normal[c]), value);
-      sums[kSumNormal + c] = fma_of(hit.weight, g_normal[c][g], sums[kSumNormal + c]);
-    }
-    // The last hit in front of which more than half of the light is left.
-    const auto is_median =
-        (hit.transmittance > T(0.5f)) & (hit.transmittance_behind <= median_behind[g]);
-    T dL_dz = fma_of(hit.weight, g_depth[g], keep(is_median, g_median[g]));
-    if (with_distortion()) add_distortion(g, hit, value, dL_dz);
-    remaining[g] = remaining[g] - hit.weight * value;
-    const T dL_dalpha = blend_alpha_vjp(hit.transmittance, hit.alpha.alpha, value, remaining[g]);
-    add_geometry(hit, keep(hit.valid, dL_dalpha), keep(hit.valid, dL_dz));
-  }
-  void add_distortion(int g, const TileHit<T>& hit, T& value, T& dL_dz) const {
-    const T z = select(hit.valid, hit.depth, T(1));
-    const T near(settings.distortion_near), far(settings.distortion_far);
-    const T m = distortion_depth(z, first_depth[g], near, far);
-    value += g_distortion[g] * distortion_dweight(m, alpha[g], moment1[g], moment2[g]);
-    const T dL_dm = g_distortion[g] * distortion_dm(hit.weight, m, alpha[g], moment1[g]);
-    dL_dz += distortion_depth_vjp(z, near, far, dL_dm);
-  }
-  // From alpha and depth of the hit to the sums over the tile.
-  void add_geometry(const TileHit<T>& hit, T dL_dalpha, T dL_dz) {
-    T dL_drho(0);
-    splat_alpha_vjp(T(splat->opacity), hit.alpha, dL_dalpha, sums[kSumOpacity], dL_drho);
-    const auto in_plane = hit.valid & hit.in_plane;
-    const PlaneHit<T> plane{
-        keep(in_plane, hit.plane.u),
-        keep(in_plane, hit.plane.v),
-        keep(in_plane, hit.plane.t),
-        keep(in_plane, hit.plane.inverse)};
-    const T scale = dL_drho + dL_drho;  // rho = u^2 + v^2
-    Vec3<T> dL_dzeta{};
-    intersect_vjp(plane, scale * plane.u, scale * plane.v, dL_dz, dL_dzeta, sums[kSumDet]);
-    for (int k = 0; k < 3; ++k) {
-      sums[kSumGx + k] = fma_of(dL_dzeta[k], hit.x, sums[kSumGx + k]);
-      sums[kSumGy + k] = fma_of(dL_dzeta[k], hit.y, sums[kSumGy + k]);
-      sums[kSumG0 + k] += dL_dzeta[k];
-    }
-    const auto low_pass = hit.valid & !hit.in_plane;
-    if (!kLeavesEarly<T> || any(low_pass))
-      add_low_pass(hit, keep(low_pass, dL_drho), keep(low_pass, dL_dz));
-  }
-  void add_low_pass(const TileHit<T>& hit, T dL_drho, T dL_dz) {
-    T dL_ddx(0), dL_ddy(0);
-    low_pass_rho2_vjp(
-        hit.x - T(splat->center_x), hit.y - T(splat->center_y), dL_drho, dL_ddx, dL_ddy
-    );
-    sums[kSumCenterX] += -dL_ddx;
-    sums[kSumCenterY] += -dL_ddy;
-    sums[kSumZCenter] += dL_dz;
+  void hit(int g, const SplatHit<T>& hit) {
+    pixels[g].hit(hit, *splat, feature, channels, range, sums);
   }
   float* slot_of(TileEntry entry) const {
-    return &saved.pair_gradients[entry.pair * static_cast<std::size_t>(slot_width(channels))];
+    return &saved.pair_gradients[entry.pair * static_cast<std::size_t>(splat_sums(channels))];
   }
-  void skip(TileEntry entry) { std::fill_n(slot_of(entry), slot_width(channels), 0.0f); }
+  void skip(TileEntry entry) { std::fill_n(slot_of(entry), splat_sums(channels), 0.0f); }
   void end(TileEntry entry) {
-    const int width = slot_width(channels);
+    const int width = splat_sums(channels);
     float* slot = slot_of(entry);
     if constexpr (kLanesOf<T> == 8)
       for (int i = 0; i < width; i += 8) lane_sums(&sums[i]).store(slot + i);
@@ -336,17 +244,6 @@ void store3(std::vector<float>& array, std::size_t i, Vec3<T> v) {
   for (int k = 0; k < 3; ++k) store_strided(&array[3 * i + k], 3, v[k]);
 }
 
-// dL/d(image position of the centre) in NDC, the statistic of densification: through the centre
-// only.
-template <class T>
-void store_screen(
-    std::vector<float>& screen, std::size_t i, Vec3<T> dL_dm, T z, const CameraOf<T>& c
-) {
-  const T depth = max_of(z, c.near_plane);
-  store_strided(&screen[2 * i], 2, dL_dm.x * depth / c.fx * (T(0.5f) * c.width));
-  store_strided(&screen[2 * i + 1], 2, dL_dm.y * depth / c.fy * (T(0.5f) * c.height));
-}
-
 template <class T>
 void surfel_vjp_lanes(
     const RasterInput& input,
@@ -355,7 +252,7 @@ void surfel_vjp_lanes(
     std::size_t first,
     RasterGradient& out
 ) {
-  const int width = slot_width(input.channels);
+  const int width = splat_sums(input.channels);
   alignas(32) float sums[8 * kMaxSums];
   float z[8], num_pairs[8];
   for (int i = 0; i < kLanesOf<T>; ++i) {
@@ -378,7 +275,9 @@ void surfel_vjp_lanes(
   store_strided(&out.scales[2 * first + 1], 2, g.scale.y);
   const T rotation[4] = {g.rotation.w, g.rotation.x, g.rotation.y, g.rotation.z};
   for (int k = 0; k < 4; ++k) store_strided(&out.rotations[4 * first + k], 4, rotation[k]);
-  store_screen(out.screen, first, dL_dm, load_lanes<T>(z), c);
+  const Vec2<T> screen = screen_gradient(dL_dm, load_lanes<T>(z), c);
+  store_strided(&out.screen[2 * first], 2, screen.x);
+  store_strided(&out.screen[2 * first + 1], 2, screen.y);
 }
 
 void surfel_vjp(
@@ -508,7 +407,7 @@ void Rasterizer::backward(
   gradient.features.resize(n * input.channels);
   gradient.screen.resize(2 * n);
   const TileLists& lists = saved_->lists;
-  saved_->pair_gradients.resize(lists.num_pairs() * slot_width(input.channels));
+  saved_->pair_gradients.resize(lists.num_pairs() * splat_sums(input.channels));
   dispatch(scalar, input.channels, [&]<class T, int kChannels>() {
     for_each_tile(input, lists, camera.size(), settings.near_plane, [&](const TileContext& tile) {
       backward_tile<T, kChannels>(tile, settings, *saved_, output, dL_doutput);

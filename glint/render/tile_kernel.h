@@ -6,11 +6,10 @@
 #include <bit>
 
 #include "glint/core/simd.h"
+#include "glint/render/pixel_pass.h"
 #include "glint/render/raster_tiles.h"
 
 namespace glint {
-
-inline constexpr int kMaxChannels = 16;
 
 // A tile's pixels in blocks of 4x2 that are culled together: squarer than a row of eight, so small
 // splats fill more lanes. A group is what one T holds: a block's eight lanes, or one pixel of it.
@@ -114,68 +113,22 @@ struct TilePixels {
   }
 };
 
-// One surfel at the pixels of one group. Lanes outside `valid` hold harmless values.
-template <class T>
-struct TileHit {
-  Mask<T> valid;
-  Mask<T> in_plane;   // rho comes from the surfel's plane; otherwise from the low-pass
-  T x, y;             // offsets from the splat's reference point, pixels
-  PlaneHit<T> plane;  // finite where in_plane
-  T rho, depth;
-  SplatAlpha<T> alpha;
-  T transmittance;         // before the hit
-  T transmittance_behind;  // after it
-  T weight;                // 0 outside `valid`
-};
-
-// rho and depth of a splat at a pixel. In the low-pass branch the ray misses the surfel by more
-// than the pixel's filter: depth is the centre's (Deviation from the official kernels' latest
-// state, as in EnvGS: the plane's depth there can be arbitrarily far from the surfel).
-template <class T>
-void geometry_of_hit(const Splat& s, const PixelPlaneMap<T>& map, TileHit<T>& hit) {
-  hit.plane = intersect(zeta_at(map, hit.x, hit.y), map.det);
-  const T rho3 = fma_of(hit.plane.u, hit.plane.u, hit.plane.v * hit.plane.v);
-  const T rho2 = low_pass_rho2(hit.x - T(s.center_x), hit.y - T(s.center_y));
-  hit.in_plane = rho3 <= rho2;  // false for NaN
-  hit.rho = select(hit.in_plane, rho3, rho2);
-  hit.depth = select(hit.in_plane, hit.plane.t, T(s.z_center));
-}
-
 template <class T>
 PixelPlaneMap<T> broadcast_map(const PixelPlaneMap<float>& m) {
   const auto lift = [](Vec3f v) { return Vec3<T>{T(v.x), T(v.y), T(v.z)}; };
   return {lift(m.gx), lift(m.gy), lift(m.g0), T(m.det)};
 }
 
-// Scalars leave at the first test that fails. Lanes do not: most groups have a lane that counts,
-// and a mispredicted branch costs more than computing one that has none.
-template <class T>
-constexpr bool kLeavesEarly = kLanesOf<T> == 1;
-
 // The hit of one splat at one group, composited. Lanes that do not count have weight and depth 0.
 template <class T, class Visitor>
 void visit_group(
     const Splat& splat, const PixelPlaneMap<T>& map, int g, TilePixels<T>& pixels, Visitor& visitor
 ) {
-  TileHit<T> hit;
-  hit.transmittance = pixels.transmittance[g];
-  if (kLeavesEarly<T> && !any(hit.transmittance > T(0))) return;
-  hit.x = pixels.x[g] - T(splat.x_ref);
-  hit.y = pixels.y[g] - T(splat.y_ref);
-  geometry_of_hit(splat, map, hit);
-  hit.valid = (hit.rho <= T(kMaxRho)) & (hit.depth > pixels.nearest[g]);
-  if (kLeavesEarly<T> && !any(hit.valid)) return;
-  // Lanes beyond 3 sigma get the value there: alpha of a far lane would be denormal, which is slow.
-  hit.alpha = splat_alpha(T(splat.opacity), min_of(hit.rho, T(kMaxRho)));
-  hit.valid = hit.valid & (hit.alpha.alpha >= T(kMinAlpha));
-  if (kLeavesEarly<T> && !any(hit.valid)) return;
-  const BlendStep<T> step = blend_step(hit.transmittance, keep(hit.valid, hit.alpha.alpha));
-  pixels.transmittance[g] = step.transmittance;
-  hit.transmittance_behind = step.transmittance;
-  hit.weight = step.weight;
-  hit.valid = step.weight > T(0);
-  hit.depth = keep(hit.valid, hit.depth);
-  visitor.hit(g, hit);
+  SplatHit<T> hit;
+  const bool counts = composite_splat(
+      splat, map, pixels.x[g], pixels.y[g], pixels.nearest[g], pixels.transmittance[g], hit
+  );
+  if (counts) visitor.hit(g, hit);
 }
 
 // Groups of a tile whose blocks a splat's box overlaps, one bit each.

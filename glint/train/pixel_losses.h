@@ -9,9 +9,6 @@
 
 namespace glint {
 
-GLINT_HD float log_of(float a) { return logf(a); }
-GLINT_HD double log_of(double a) { return log(a); }
-
 // The slope of |a|, 0 at 0. Without a branch, which would be taken at random.
 GLINT_HD float sign_of(float a) { return static_cast<float>(int(a > 0) - int(a < 0)); }
 GLINT_HD double sign_of(double a) { return static_cast<double>(int(a > 0) - int(a < 0)); }

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+// Runs kernels on the current CUDA device, in one stream. Buffers grow and never shrink, so that a
+// steady state allocates nothing.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+#include <cstdint>
+#include <utility>
+
+#include "glint/cuda/block.h"
+#include "glint/cuda/cuda_error.h"
+
+namespace glint::cuda {
+
+inline void check_cuda(cudaError_t status, const char* what) {
+  if (status != cudaSuccess) throw_cuda_error(what, cudaGetErrorString(status));
+}
+
+template <class T>
+class DeviceBuffer {
+ public:
+  DeviceBuffer() = default;
+  DeviceBuffer(DeviceBuffer&& other) noexcept { swap(other); }
+  DeviceBuffer& operator=(DeviceBuffer&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~DeviceBuffer() { cudaFree(data_); }
+
+  // What was there before is not kept once it has to grow.
+  void resize(std::size_t count) {
+    size_ = count;
+    if (count <= capacity_) return;
+    const std::size_t room = count + count / 2;
+    check_cuda(cudaFree(data_), "freeing memory");
+    data_ = nullptr;
+    capacity_ = 0;
+    check_cuda(cudaMalloc(&data_, room * sizeof(T)), "allocating memory");
+    capacity_ = room;
+  }
+  std::size_t size() const { return size_; }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+
+ private:
+  void swap(DeviceBuffer& other) {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
+  T* data_ = nullptr;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+class DeviceExec {
+ public:
+  template <class T>
+  using Buffer = DeviceBuffer<T>;
+
+  explicit DeviceExec(cudaStream_t stream = nullptr) : stream_(stream) {}
+
+  template <class T>
+  void upload(const T* from, std::size_t count, Buffer<T>& to) {
+    to.resize(count);
+    if (count == 0) return;
+    check_cuda(
+        cudaMemcpyAsync(to.data(), from, count * sizeof(T), cudaMemcpyHostToDevice, stream_),
+        "copying to the device"
+    );
+  }
+  // Waits for the device.
+  template <class T>
+  void download(const Buffer<T>& from, std::size_t count, T* to) {
+    if (count == 0) return;
+    check_cuda(
+        cudaMemcpyAsync(to, from.data(), count * sizeof(T), cudaMemcpyDeviceToHost, stream_),
+        "copying from the device"
+    );
+    check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
+  }
+  template <class T>
+  void fill_zero(Buffer<T>& buffer) {
+    if (buffer.size() == 0) return;
+    check_cuda(
+        cudaMemsetAsync(buffer.data(), 0, buffer.size() * sizeof(T), stream_), "clearing memory"
+    );
+  }
+  template <class F>
+  void for_each(std::size_t count, F f) {
+    constexpr unsigned kThreads = 256;
+    if (count == 0) return;
+    const auto blocks = static_cast<unsigned>((count + kThreads - 1) / kThreads);
+    run_elements<<<blocks, kThreads, 0, stream_>>>(count, f);
+    check_cuda(cudaGetLastError(), "launching a kernel");
+  }
+  template <class Body>
+  void launch(std::size_t blocks, const Body& body) {
+    if (blocks == 0) return;
+    run_blocks<<<static_cast<unsigned>(blocks), Body::kThreads, 0, stream_>>>(body);
+    check_cuda(cudaGetLastError(), "launching a kernel");
+  }
+  // See HostExec. Waits for the device: the sum is needed to size what follows.
+  std::uint32_t exclusive_sum(
+      const Buffer<std::uint32_t>& counts, std::size_t count, Buffer<std::uint32_t>& sums
+  ) {
+    sums.resize(count);
+    if (count == 0) return 0;
+    const auto n = static_cast<int>(count);
+    with_scratch([&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceScan::ExclusiveSum(
+          scratch, bytes, counts.data(), sums.data(), n, stream_
+      );
+    });
+    std::uint32_t last[2];
+    const std::uint32_t* ends[2] = {sums.data() + count - 1, counts.data() + count - 1};
+    for (int i = 0; i < 2; ++i)
+      check_cuda(
+          cudaMemcpyAsync(&last[i], ends[i], sizeof last[i], cudaMemcpyDeviceToHost, stream_),
+          "reading a sum"
+      );
+    check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
+    return last[0] + last[1];
+  }
+  void sort_pairs(
+      std::size_t count, int bits, Buffer<std::uint64_t>& keys, Buffer<std::uint32_t>& values
+  ) {
+    if (count == 0) return;
+    other_keys_.resize(count);
+    other_values_.resize(count);
+    const auto n = static_cast<int>(count);
+    with_scratch([&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceRadixSort::SortPairs(
+          scratch,
+          bytes,
+          keys.data(),
+          other_keys_.data(),
+          values.data(),
+          other_values_.data(),
+          n,
+          0,
+          bits,
+          stream_
+      );
+    });
+    std::swap(keys, other_keys_);
+    std::swap(values, other_values_);
+  }
+
+ private:
+  // CUB: once to ask for the size of its scratch memory, once to run.
+  template <class F>
+  void with_scratch(F&& run) {
+    std::size_t bytes = 0;
+    check_cuda(run(nullptr, bytes), "asking CUB for its memory");
+    scratch_.resize(bytes);
+    check_cuda(run(scratch_.data(), bytes), "running CUB");
+  }
+
+  cudaStream_t stream_;
+  Buffer<char> scratch_;
+  Buffer<std::uint64_t> other_keys_;
+  Buffer<std::uint32_t> other_values_;
+};
+
+}  // namespace glint::cuda

@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: MIT
+// Rasterisation on the GPU, as bodies (block.h): surfels projected to splats, listed per tile, and
+// one thread a pixel through its tile's list. Formulas: project.h, splat_hit.h, pixel_pass.h.
+#pragma once
+
+#include "glint/cuda/block.h"
+#include "glint/render/pixel_pass.h"
+
+namespace glint::cuda {
+
+inline constexpr int kDeviceTile = 16;  // pixels
+inline constexpr int kTileThreads = kDeviceTile * kDeviceTile;
+
+// Activated surfels in device memory; shapes of RasterInput.
+struct DeviceSurfels {
+  std::size_t count;
+  int channels;
+  const float *means, *scales, *rotations, *opacities, *features;
+};
+
+GLINT_HD SurfelGeometry<float> geometry_at(const DeviceSurfels& s, std::size_t i) {
+  const float *m = s.means + 3 * i, *q = s.rotations + 4 * i;
+  return {{m[0], m[1], m[2]}, {s.scales[2 * i], s.scales[2 * i + 1]}, {q[0], q[1], q[2], q[3]}};
+}
+
+struct TileGrid {
+  int across, down;  // tiles
+  GLINT_HD int count() const { return across * down; }
+};
+GLINT_HD TileGrid tile_grid(int width, int height) {
+  return {
+      (width + kDeviceTile - 1) / kDeviceTile, (height + kDeviceTile - 1) / kDeviceTile};
+}
+
+// Tiles [x0, x1) x [y0, y1) of a box.
+struct TileRect {
+  int x0, x1, y0, y1;
+  GLINT_HD std::uint32_t count() const {
+    return static_cast<std::uint32_t>((x1 - x0) * (y1 - y0));
+  }
+};
+GLINT_HD TileRect tile_rect(const PixelBox& box) {
+  if (box.empty()) return {0, 0, 0, 0};
+  return {
+      box.x_min / kDeviceTile,
+      (box.x_max + kDeviceTile - 1) / kDeviceTile,
+      box.y_min / kDeviceTile,
+      (box.y_max + kDeviceTile - 1) / kDeviceTile};
+}
+
+struct ProjectSurfels {
+  DeviceSurfels surfels;
+  CameraOf<float> camera;
+  Splat* splats;
+  PixelBox* boxes;
+  std::uint32_t* num_tiles;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const float opacity = surfels.opacities[i];
+    const ProjectedSurfel<float> p =
+        project_surfel(geometry_at(surfels, i), camera, max_rho_of(opacity));
+    splats[i] = {
+        p.map, p.x_ref, p.y_ref, p.center_x, p.center_y, opacity, p.z_center, p.normal};
+    boxes[i] = pixel_box(p.box_min_x, p.box_max_x, p.box_min_y, p.box_max_y, camera);
+    num_tiles[i] = tile_rect(boxes[i]).count();
+  }
+};
+
+// Order of floats as unsigned integers.
+GLINT_HD std::uint32_t ordered_bits(float v) {
+  std::uint32_t bits;
+  memcpy(&bits, &v, sizeof bits);
+  return bits >> 31 != 0 ? ~bits : bits | 0x80000000u;
+}
+
+// Keys are (tile, depth of the centre); pairs are written surfel by surfel, so that a stable sort
+// leaves ties in the order of the surfels.
+struct WritePairs {
+  const Splat* splats;
+  const PixelBox* boxes;
+  const std::uint32_t* first_pair;
+  TileGrid grid;
+  std::uint64_t* keys;
+  std::uint32_t* surfels;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const TileRect rect = tile_rect(boxes[i]);
+    std::uint32_t pair = first_pair[i];
+    for (int y = rect.y0; y < rect.y1; ++y)
+      for (int x = rect.x0; x < rect.x1; ++x, ++pair) {
+        const auto tile = static_cast<std::uint64_t>(y * grid.across + x);
+        keys[pair] = tile << 32 | ordered_bits(splats[i].z_center);
+        surfels[pair] = static_cast<std::uint32_t>(i);
+      }
+  }
+};
+
+struct PairRange {
+  std::uint32_t begin = 0, end = 0;
+};
+// Ranges of tiles without pairs stay as they were: empty.
+struct FindTileRanges {
+  const std::uint64_t* keys;
+  std::size_t num_pairs;
+  PairRange* ranges;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const std::uint64_t tile = keys[i] >> 32;
+    if (i == 0 || keys[i - 1] >> 32 != tile) ranges[tile].begin = static_cast<std::uint32_t>(i);
+    if (i + 1 == num_pairs || keys[i + 1] >> 32 != tile)
+      ranges[tile].end = static_cast<std::uint32_t>(i + 1);
+  }
+};
+
+// What both passes over a tile read.
+struct TilePass {
+  const Splat* splats;
+  const PixelBox* boxes;
+  const float* features;  // [N][C]
+  const std::uint32_t* pairs;
+  const PairRange* ranges;
+  const float* near_limit;  // [H][W] or null
+  float near_plane;
+  int width, height, channels;
+  DistortionRange range;
+
+  GLINT_HD int tile_x(int tile) const { return tile % tile_grid(width, height).across; }
+  GLINT_HD int tile_y(int tile) const { return tile / tile_grid(width, height).across; }
+};
+
+// A pixel while its tile is traversed.
+struct TilePixel {
+  int x, y;
+  bool inside;
+  float nearest, transmittance;  // negative once stopped; 0 outside the image
+
+  GLINT_HD void start(const TilePass& pass, int tile, int thread) {
+    x = pass.tile_x(tile) * kDeviceTile + thread % kDeviceTile;
+    y = pass.tile_y(tile) * kDeviceTile + thread / kDeviceTile;
+    inside = x < pass.width && y < pass.height;
+    transmittance = inside ? 1.0f : 0.0f;
+    nearest = pass.near_plane;
+    if (inside && pass.near_limit != nullptr)
+      nearest = max_of(nearest, pass.near_limit[index(pass)]);
+  }
+  GLINT_HD std::size_t index(const TilePass& pass) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(pass.width) +
+           static_cast<std::size_t>(x);
+  }
+  GLINT_HD bool live() const { return transmittance > 0; }
+  // Whether the splat counts here; the box is what the CPU's blocks test, too.
+  GLINT_HD bool composite(const Splat& splat, SplatHit<float>& hit) {
+    const bool counts = composite_splat(
+        splat,
+        splat.map,
+        static_cast<float>(x) + 0.5f,
+        static_cast<float>(y) + 0.5f,
+        nearest,
+        transmittance,
+        hit
+    );
+    return counts && hit.weight > 0;
+  }
+};
+
+// A batch of a tile's splats in shared memory.
+struct SplatBatch {
+  std::uint32_t surfels[kTileThreads];
+  Splat splats[kTileThreads];
+
+  GLINT_HD void load(const TilePass& pass, std::uint32_t first, std::uint32_t end, int thread) {
+    const std::uint32_t pair = first + static_cast<std::uint32_t>(thread);
+    if (pair >= end) return;
+    surfels[thread] = pass.pairs[pair];
+    splats[thread] = pass.splats[surfels[thread]];
+  }
+};
+GLINT_HD int batch_size(std::uint32_t first, std::uint32_t end) {
+  const std::uint32_t left = end - first;
+  return static_cast<int>(left < kTileThreads ? left : std::uint32_t{kTileThreads});
+}
+
+// Images in device memory; shapes of RasterOutput, of which empty ones are null.
+struct DeviceImages {
+  float *features, *alpha, *depth_sum, *depth_median, *normal, *distortion;
+};
+// What the backward pass needs beside them.
+struct DeviceSums {
+  float *final_transmittance, *first_depth, *moment1, *moment2;
+};
+
+template <int kChannels>
+struct ForwardTile {
+  static constexpr int kThreads = kTileThreads;
+  using Shared = SplatBatch;
+  TilePass pass;
+  DeviceImages out;
+  DeviceSums saved;
+  float* visibility;  // [N]
+
+  template <class Block>
+  GLINT_HD void operator()(Block& block, Shared& shared) const {
+    typename Block::template PerThread<TilePixel> pixels;
+    typename Block::template PerThread<PixelSums<float, kChannels>> sums;
+    block.each([&](int thread) {
+      pixels[thread].start(pass, block.index, thread);
+      sums[thread].clear();
+    });
+    const PairRange range = pass.ranges[block.index];
+    for (std::uint32_t first = range.begin; first < range.end; first += kTileThreads) {
+      if (!block.any([&](int thread) { return pixels[thread].live(); })) break;
+      block.each([&](int thread) { shared.load(pass, first, range.end, thread); });
+      const int size = batch_size(first, range.end);
+      for (int k = 0; k < size; ++k)
+        block.template add_over_warps<1>(
+            [&](int thread, float* weight) {
+              return step(shared, k, pixels[thread], sums[thread], *weight);
+            },
+            visibility + shared.surfels[k]
+        );
+      block.each([](int) {});
+    }
+    block.each([&](int thread) { store(pixels[thread], sums[thread]); });
+  }
+
+ private:
+  GLINT_HD bool step(
+      const Shared& shared,
+      int k,
+      TilePixel& pixel,
+      PixelSums<float, kChannels>& sums,
+      float& weight
+  ) const {
+    SplatHit<float> hit;
+    if (!pixel.live() || !pixel.composite(shared.splats[k], hit)) return false;
+    const float* feature =
+        pass.features + static_cast<std::size_t>(shared.surfels[k]) *
+                            static_cast<std::size_t>(pass.channels);
+    sums.add(hit, feature, pass.channels, shared.splats[k].normal, pass.range);
+    weight = hit.weight;
+    return true;
+  }
+  GLINT_HD void store(const TilePixel& pixel, const PixelSums<float, kChannels>& sums) const {
+    if (!pixel.inside) return;
+    const std::size_t i = pixel.index(pass);
+    const float transmittance = abs_of(pixel.transmittance), alpha = 1 - transmittance;
+    for (int c = 0; c < pass.channels; ++c)
+      out.features[i * static_cast<std::size_t>(pass.channels) + static_cast<std::size_t>(c)] =
+          sums.features[c];
+    for (std::size_t c = 0; c < 3; ++c) out.normal[3 * i + c] = sums.normal[c];
+    out.alpha[i] = alpha;
+    out.depth_sum[i] = sums.depth;
+    out.depth_median[i] = sums.median;
+    saved.final_transmittance[i] = transmittance;
+    if (!pass.range.on) return;
+    saved.first_depth[i] = sums.first_depth;
+    saved.moment1[i] = sums.moment1;
+    saved.moment2[i] = sums.moment2;
+    out.distortion[i] = distortion(alpha, sums.moment1, sums.moment2);
+  }
+};
+
+template <int kChannels>
+struct BackwardTile {
+  static constexpr int kThreads = kTileThreads;
+  static constexpr int kSums = splat_sums(kChannels > 0 ? kChannels : kMaxChannels);
+  using Shared = SplatBatch;
+  TilePass pass;
+  DeviceImages out, dL_dout;
+  DeviceSums saved;
+  float* gradients;  // [N][kSums]
+
+  template <class Block>
+  GLINT_HD void operator()(Block& block, Shared& shared) const {
+    typename Block::template PerThread<TilePixel> pixels;
+    typename Block::template PerThread<PixelGradient<float, kChannels>> states;
+    block.each([&](int thread) {
+      pixels[thread].start(pass, block.index, thread);
+      if (pixels[thread].inside) start(pixels[thread].index(pass), states[thread]);
+    });
+    const PairRange range = pass.ranges[block.index];
+    for (std::uint32_t first = range.begin; first < range.end; first += kTileThreads) {
+      if (!block.any([&](int thread) { return pixels[thread].live(); })) break;
+      block.each([&](int thread) { shared.load(pass, first, range.end, thread); });
+      const int size = batch_size(first, range.end);
+      for (int k = 0; k < size; ++k)
+        block.template add_over_warps<kSums>(
+            [&](int thread, float* sums) {
+              return step(shared, k, pixels[thread], states[thread], sums);
+            },
+            gradients + static_cast<std::size_t>(shared.surfels[k]) * kSums
+        );
+      block.each([](int) {});
+    }
+  }
+
+ private:
+  GLINT_HD static float at(const float* image, std::size_t i) {
+    return image == nullptr ? 0.0f : image[i];
+  }
+  GLINT_HD void start(std::size_t i, PixelGradient<float, kChannels>& state) const {
+    PixelSums<float, kChannels> sums;
+    sums.depth = out.depth_sum[i];
+    state.total_alpha = out.alpha[i];
+    state.alpha = at(dL_dout.alpha, i);
+    state.depth = at(dL_dout.depth_sum, i);
+    state.median = at(dL_dout.depth_median, i);
+    const auto channels = static_cast<std::size_t>(pass.channels);
+    for (std::size_t c = 0; c < channels; ++c) {
+      state.features[c] = at(dL_dout.features, channels * i + c);
+      sums.features[c] = out.features[channels * i + c];
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      state.normal[c] = at(dL_dout.normal, 3 * i + c);
+      sums.normal[c] = out.normal[3 * i + c];
+    }
+    if (pass.range.on) {
+      state.distortion = at(dL_dout.distortion, i);
+      state.first_depth = saved.first_depth[i];
+      state.moment1 = saved.moment1[i];
+      state.moment2 = saved.moment2[i];
+    }
+    state.start(sums, saved.final_transmittance[i], pass.channels, pass.range.on);
+  }
+  GLINT_HD bool step(
+      const Shared& shared,
+      int k,
+      TilePixel& pixel,
+      PixelGradient<float, kChannels>& state,
+      float* sums
+  ) const {
+    SplatHit<float> hit;
+    if (!pixel.live() || !pixel.composite(shared.splats[k], hit)) return false;
+    const float* feature =
+        pass.features + static_cast<std::size_t>(shared.surfels[k]) *
+                            static_cast<std::size_t>(pass.channels);
+    state.hit(hit, shared.splats[k], feature, pass.channels, pass.range, sums);
+    return true;
+  }
+};
+
+// dL/d(parameters), shapes of RasterGradient.
+struct DeviceGradients {
+  float *means, *scales, *rotations, *opacities, *features, *screen;
+};
+
+// From the sums over a surfel's pixels back to its parameters.
+struct SurfelVjp {
+  DeviceSurfels surfels;
+  CameraOf<float> camera;
+  const Splat* splats;
+  const std::uint32_t* num_tiles;
+  const float* sums;  // [N][stride]
+  int stride;
+  DeviceGradients out;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const float* s = sums + i * static_cast<std::size_t>(stride);
+    const bool seen = num_tiles[i] > 0;
+    const auto at3 = [&](int k) { return Vec3f{s[k], s[k + 1], s[k + 2]}; };
+    ProjectedSurfel<float> g{};
+    g.map = {at3(kSumGx), at3(kSumGy), at3(kSumG0), s[kSumDet]};
+    g.center_x = s[kSumCenterX];
+    g.center_y = s[kSumCenterY];
+    g.z_center = s[kSumZCenter];
+    g.normal = at3(kSumNormal);
+    SurfelGeometry<float> dL_dsurfel{};
+    Vec3f dL_dm{};
+    // Surfels without pairs get exact zeros, whatever their parameters (they may not be finite).
+    if (seen) project_surfel_vjp(geometry_at(surfels, i), camera, g, dL_dsurfel, dL_dm);
+    store(i, s, dL_dsurfel, screen_gradient(dL_dm, seen ? splats[i].z_center : 1.0f, camera));
+  }
+
+ private:
+  GLINT_HD void store(
+      std::size_t i, const float* s, const SurfelGeometry<float>& g, Vec2f screen
+  ) const {
+    for (int k = 0; k < 3; ++k) out.means[3 * i + static_cast<std::size_t>(k)] = g.mean[k];
+    out.scales[2 * i] = g.scale.x;
+    out.scales[2 * i + 1] = g.scale.y;
+    const float rotation[4] = {g.rotation.w, g.rotation.x, g.rotation.y, g.rotation.z};
+    for (std::size_t k = 0; k < 4; ++k) out.rotations[4 * i + k] = rotation[k];
+    out.opacities[i] = s[kSumOpacity];
+    const auto channels = static_cast<std::size_t>(surfels.channels);
+    for (std::size_t c = 0; c < channels; ++c)
+      out.features[channels * i + c] = s[kSumFeatures + c];
+    out.screen[2 * i] = screen.x;
+    out.screen[2 * i + 1] = screen.y;
+  }
+};
+
+}  // namespace glint::cuda

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// Runs kernels on the host: blocks one after the other, a block's threads one after the other within
+// each phase. The counterpart of glint/cuda/device_exec.cuh, for parity tests without a GPU and for
+// sanitizers; slow, and no part of the product.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+#include "glint/cuda/block.h"
+
+namespace glint::test {
+
+template <int kThreads>
+class HostBlock {
+ public:
+  template <class T>
+  struct PerThread {
+    std::vector<T> values = std::vector<T>(kThreads);
+    T& operator[](int thread) { return values[static_cast<std::size_t>(thread)]; }
+  };
+  int index = 0;
+
+  template <class F>
+  void each(F&& f) {
+    for (int thread = 0; thread < kThreads; ++thread) f(thread);
+  }
+  template <class F>
+  bool any(F&& f) {
+    bool result = false;
+    for (int thread = 0; thread < kThreads; ++thread) result |= f(thread);
+    return result;
+  }
+  void add(float* p, float value) { *p += value; }
+  template <int kN, class F>
+  void add_over_warps(F&& f, float* p) {
+    for (int first = 0; first < kThreads; first += cuda::kWarp) {
+      float sums[kN] = {};
+      bool has = false;
+      for (int thread = first; thread < first + cuda::kWarp; ++thread) {
+        float out[kN] = {};
+        has |= f(thread, out);
+        for (int i = 0; i < kN; ++i) sums[i] += out[i];
+      }
+      for (int i = 0; has && i < kN; ++i) p[i] += sums[i];
+    }
+  }
+};
+
+class HostExec {
+ public:
+  template <class T>
+  class Buffer {
+   public:
+    // What was there before is not kept.
+    void resize(std::size_t count) { values_.assign(count, T{}); }
+    std::size_t size() const { return values_.size(); }
+    T* data() { return values_.data(); }
+    const T* data() const { return values_.data(); }
+
+   private:
+    std::vector<T> values_;
+  };
+
+  template <class T>
+  void upload(const T* from, std::size_t count, Buffer<T>& to) {
+    to.resize(count);
+    std::copy_n(from, count, to.data());
+  }
+  template <class T>
+  void download(const Buffer<T>& from, std::size_t count, T* to) {
+    std::copy_n(from.data(), count, to);
+  }
+  template <class T>
+  void fill_zero(Buffer<T>& buffer) {
+    std::fill_n(buffer.data(), buffer.size(), T{});
+  }
+  template <class F>
+  void for_each(std::size_t count, F f) {
+    for (std::size_t i = 0; i < count; ++i) f(i);
+  }
+  template <class Body>
+  void launch(std::size_t blocks, const Body& body) {
+    for (std::size_t i = 0; i < blocks; ++i) {
+      HostBlock<Body::kThreads> block;
+      block.index = static_cast<int>(i);
+      const auto shared = std::make_unique<typename Body::Shared>();
+      body(block, *shared);
+    }
+  }
+  // sums[i] = counts[0] + ... + counts[i - 1]; returns the sum of all.
+  std::uint32_t exclusive_sum(
+      const Buffer<std::uint32_t>& counts, std::size_t count, Buffer<std::uint32_t>& sums
+  ) {
+    sums.resize(count);
+    std::exclusive_scan(counts.data(), counts.data() + count, sums.data(), 0u);
+    return count == 0 ? 0 : sums.data()[count - 1] + counts.data()[count - 1];
+  }
+  // Stable, by the low `bits` bits of the keys.
+  void sort_pairs(
+      std::size_t count, int bits, Buffer<std::uint64_t>& keys, Buffer<std::uint32_t>& values
+  ) {
+    const std::uint64_t mask = bits < 64 ? (std::uint64_t{1} << bits) - 1 : ~std::uint64_t{0};
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> pairs(count);
+    for (std::size_t i = 0; i < count; ++i) pairs[i] = {keys.data()[i], values.data()[i]};
+    std::stable_sort(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
+      return (a.first & mask) < (b.first & mask);
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      keys.data()[i] = pairs[i].first;
+      values.data()[i] = pairs[i].second;
+    }
+  }
+};
+
+}  // namespace glint::test
