@@ -21,7 +21,7 @@
 
 #include "glint/core/real.h"
 
-namespace glint::cuda {
+namespace glint::gpu {
 
 inline constexpr int kWarp = 32;
 
@@ -55,8 +55,7 @@ class DeviceBlock {
     if (__any_sync(~0u, has) == 0) return;
 #pragma unroll
     for (int i = 0; i < kN; ++i) {
-      for (int step = kWarp / 2; step > 0; step /= 2)
-        out[i] += __shfl_down_sync(~0u, out[i], step);
+      for (int step = kWarp / 2; step > 0; step /= 2) out[i] += __shfl_down_sync(~0u, out[i], step);
       if (threadIdx.x % kWarp == 0) atomicAdd(p + i, out[i]);
     }
   }
@@ -77,4 +76,4 @@ __global__ void run_elements(std::size_t count, F f) {
 
 #endif
 
-}  // namespace glint::cuda
+}  // namespace glint::gpu

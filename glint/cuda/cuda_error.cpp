@@ -5,10 +5,10 @@
 
 #include "glint/core/error.h"
 
-namespace glint::cuda {
+namespace glint::gpu {
 
 void throw_cuda_error(const char* what, const char* reason) {
   throw Error(ExitCode::kEnvironment, fmt::format("CUDA: {} failed: {}", what, reason));
 }
 
-}  // namespace glint::cuda
+}  // namespace glint::gpu

@@ -5,15 +5,15 @@
 
 #include <cuda_runtime.h>
 
+#include <cstdint>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
-#include <cstdint>
 #include <utility>
 
 #include "glint/cuda/block.h"
 #include "glint/cuda/cuda_error.h"
 
-namespace glint::cuda {
+namespace glint::gpu {
 
 inline void check_cuda(cudaError_t status, const char* what) {
   if (status != cudaSuccess) throw_cuda_error(what, cudaGetErrorString(status));
@@ -110,9 +110,7 @@ class DeviceExec {
     if (count == 0) return 0;
     const auto n = static_cast<int>(count);
     with_scratch([&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceScan::ExclusiveSum(
-          scratch, bytes, counts.data(), sums.data(), n, stream_
-      );
+      return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts.data(), sums.data(), n, stream_);
     });
     std::uint32_t last[2];
     const std::uint32_t* ends[2] = {sums.data() + count - 1, counts.data() + count - 1};
@@ -165,4 +163,4 @@ class DeviceExec {
   Buffer<std::uint32_t> other_values_;
 };
 
-}  // namespace glint::cuda
+}  // namespace glint::gpu

@@ -6,7 +6,7 @@
 #include "glint/cuda/block.h"
 #include "glint/render/pixel_pass.h"
 
-namespace glint::cuda {
+namespace glint::gpu {
 
 inline constexpr int kDeviceTile = 16;  // pixels
 inline constexpr int kTileThreads = kDeviceTile * kDeviceTile;
@@ -28,16 +28,13 @@ struct TileGrid {
   GLINT_HD int count() const { return across * down; }
 };
 GLINT_HD TileGrid tile_grid(int width, int height) {
-  return {
-      (width + kDeviceTile - 1) / kDeviceTile, (height + kDeviceTile - 1) / kDeviceTile};
+  return {(width + kDeviceTile - 1) / kDeviceTile, (height + kDeviceTile - 1) / kDeviceTile};
 }
 
 // Tiles [x0, x1) x [y0, y1) of a box.
 struct TileRect {
   int x0, x1, y0, y1;
-  GLINT_HD std::uint32_t count() const {
-    return static_cast<std::uint32_t>((x1 - x0) * (y1 - y0));
-  }
+  GLINT_HD std::uint32_t count() const { return static_cast<std::uint32_t>((x1 - x0) * (y1 - y0)); }
 };
 GLINT_HD TileRect tile_rect(const PixelBox& box) {
   if (box.empty()) return {0, 0, 0, 0};
@@ -59,8 +56,7 @@ struct ProjectSurfels {
     const float opacity = surfels.opacities[i];
     const ProjectedSurfel<float> p =
         project_surfel(geometry_at(surfels, i), camera, max_rho_of(opacity));
-    splats[i] = {
-        p.map, p.x_ref, p.y_ref, p.center_x, p.center_y, opacity, p.z_center, p.normal};
+    splats[i] = {p.map, p.x_ref, p.y_ref, p.center_x, p.center_y, opacity, p.z_center, p.normal};
     boxes[i] = pixel_box(p.box_min_x, p.box_max_x, p.box_min_y, p.box_max_y, camera);
     num_tiles[i] = tile_rect(boxes[i]).count();
   }
@@ -233,9 +229,8 @@ struct ForwardTile {
   ) const {
     SplatHit<float> hit;
     if (!pixel.live() || !pixel.composite(shared.splats[k], hit)) return false;
-    const float* feature =
-        pass.features + static_cast<std::size_t>(shared.surfels[k]) *
-                            static_cast<std::size_t>(pass.channels);
+    const float* feature = pass.features + static_cast<std::size_t>(shared.surfels[k]) *
+                                               static_cast<std::size_t>(pass.channels);
     sums.add(hit, feature, pass.channels, shared.splats[k].normal, pass.range);
     weight = hit.weight;
     return true;
@@ -331,9 +326,8 @@ struct BackwardTile {
   ) const {
     SplatHit<float> hit;
     if (!pixel.live() || !pixel.composite(shared.splats[k], hit)) return false;
-    const float* feature =
-        pass.features + static_cast<std::size_t>(shared.surfels[k]) *
-                            static_cast<std::size_t>(pass.channels);
+    const float* feature = pass.features + static_cast<std::size_t>(shared.surfels[k]) *
+                                               static_cast<std::size_t>(pass.channels);
     state.hit(hit, shared.splats[k], feature, pass.channels, pass.range, sums);
     return true;
   }
@@ -372,9 +366,8 @@ struct SurfelVjp {
   }
 
  private:
-  GLINT_HD void store(
-      std::size_t i, const float* s, const SurfelGeometry<float>& g, Vec2f screen
-  ) const {
+  GLINT_HD void store(std::size_t i, const float* s, const SurfelGeometry<float>& g, Vec2f screen)
+      const {
     for (int k = 0; k < 3; ++k) out.means[3 * i + static_cast<std::size_t>(k)] = g.mean[k];
     out.scales[2 * i] = g.scale.x;
     out.scales[2 * i + 1] = g.scale.y;
@@ -382,11 +375,10 @@ struct SurfelVjp {
     for (std::size_t k = 0; k < 4; ++k) out.rotations[4 * i + k] = rotation[k];
     out.opacities[i] = s[kSumOpacity];
     const auto channels = static_cast<std::size_t>(surfels.channels);
-    for (std::size_t c = 0; c < channels; ++c)
-      out.features[channels * i + c] = s[kSumFeatures + c];
+    for (std::size_t c = 0; c < channels; ++c) out.features[channels * i + c] = s[kSumFeatures + c];
     out.screen[2 * i] = screen.x;
     out.screen[2 * i + 1] = screen.y;
   }
 };
 
-}  // namespace glint::cuda
+}  // namespace glint::gpu

@@ -6,7 +6,7 @@
 
 #include "glint/cuda/raster_bodies.h"
 
-namespace glint::cuda {
+namespace glint::gpu {
 
 template <class Exec>
 class RasterPipeline {
@@ -39,9 +39,7 @@ class RasterPipeline {
     pass_.channels = surfels.channels;
     pass_.range = range;
     with_channels([&]<int kChannels>() {
-      exec_.launch(
-          ranges_.size(), ForwardTile<kChannels>{pass_, out, sums(), visibility_.data()}
-      );
+      exec_.launch(ranges_.size(), ForwardTile<kChannels>{pass_, out, sums(), visibility_.data()});
     });
   }
 
@@ -112,8 +110,7 @@ class RasterPipeline {
     exec_.for_each(num_pairs_, FindTileRanges{keys_.data(), num_pairs_, ranges_.data()});
   }
   DeviceSums sums() {
-    return {
-        final_transmittance_.data(), first_depth_.data(), moment1_.data(), moment2_.data()};
+    return {final_transmittance_.data(), first_depth_.data(), moment1_.data(), moment2_.data()};
   }
   template <class F>
   void with_channels(F&& body) {
@@ -134,4 +131,4 @@ class RasterPipeline {
   Buffer<float> gradient_sums_;
 };
 
-}  // namespace glint::cuda
+}  // namespace glint::gpu

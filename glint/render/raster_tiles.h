@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "glint/render/splat_hit.h"
 #include "glint/render/radix_sort.h"
 #include "glint/render/rasterize.h"
+#include "glint/render/splat_hit.h"
 
 namespace glint {
 

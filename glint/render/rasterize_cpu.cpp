@@ -109,10 +109,7 @@ struct BackwardVisitor {
       const RasterOutput& out,
       const RasterOutputGradient& g
   )
-      : tile(tile),
-        range(distortion_range(settings)),
-        saved(saved),
-        channels(tile.input.channels) {
+      : tile(tile), range(distortion_range(settings)), saved(saved), channels(tile.input.channels) {
     for (int i = 0; i < kGroupsPerTile<T>; ++i) load_group(i, out, g);
   }
 

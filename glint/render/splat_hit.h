@@ -86,8 +86,8 @@ GLINT_HD void geometry_of_hit(const Splat& s, const PixelPlaneMap<T>& map, Splat
 }
 
 // Composites a splat at the pixel centres (x, y), of which only hits behind `nearest` count;
-// `map`: the splat's, in lanes. Returns false where no lane has a hit (scalars only; lanes say it by
-// weight 0).
+// `map`: the splat's, in lanes. Returns false where no lane has a hit (scalars only; lanes say it
+// by weight 0).
 template <class T>
 GLINT_HD bool composite_splat(
     const Splat& splat,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Runs kernels on the host: blocks one after the other, a block's threads one after the other within
-// each phase. The counterpart of glint/cuda/device_exec.cuh, for parity tests without a GPU and for
-// sanitizers; slow, and no part of the product.
+// Runs kernels on the host: blocks one after the other, a block's threads one after the other
+// within each phase. The counterpart of glint/cuda/device_exec.cuh, for parity tests without a GPU
+// and for sanitizers; slow, and no part of the product.
 #pragma once
 
 #include <algorithm>
@@ -37,10 +37,10 @@ class HostBlock {
   void add(float* p, float value) { *p += value; }
   template <int kN, class F>
   void add_over_warps(F&& f, float* p) {
-    for (int first = 0; first < kThreads; first += cuda::kWarp) {
+    for (int first = 0; first < kThreads; first += gpu::kWarp) {
       float sums[kN] = {};
       bool has = false;
-      for (int thread = first; thread < first + cuda::kWarp; ++thread) {
+      for (int thread = first; thread < first + gpu::kWarp; ++thread) {
         float out[kN] = {};
         has |= f(thread, out);
         for (int i = 0; i < kN; ++i) sums[i] += out[i];

@@ -10,7 +10,7 @@
 
 using namespace glint;
 using namespace glint::test;
-using namespace glint::cuda;
+using namespace glint::gpu;
 
 namespace {
 
