@@ -29,6 +29,7 @@ const std::vector<Layer>& layers() {
       {"glint/core/", {"glint/core/"}},
       {"glint/scene/", {"glint/core/", "glint/scene/"}},
       {"glint/render/", {"glint/core/", "glint/scene/", "glint/render/"}},
+      {"glint/cuda/", {"glint/core/", "glint/scene/", "glint/render/", "glint/cuda/"}},
       {"glint/method.h", {"glint/core/", "glint/scene/"}},  // what the trainer drives
       {"glint/train/",
        {"glint/core/",

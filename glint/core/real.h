@@ -38,8 +38,8 @@ GLINT_HD float max_of(float a, float b) { return a > b ? a : b; }
 GLINT_HD double max_of(double a, double b) { return a > b ? a : b; }
 GLINT_HD float abs_of(float a) { return fabsf(a); }
 GLINT_HD double abs_of(double a) { return fabs(a); }
-GLINT_HD float log_of(float a) { return logf(a); }
-GLINT_HD double log_of(double a) { return log(a); }
+GLINT_HD float log_of(float a) { return ::logf(a); }
+GLINT_HD double log_of(double a) { return ::log(a); }
 GLINT_HD float sqrt_of(float a) { return sqrtf(a); }
 GLINT_HD double sqrt_of(double a) { return sqrt(a); }
 // a * b + c in one rounding, on every backend: forward and backward passes must agree to the bit.
