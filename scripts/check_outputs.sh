@@ -12,13 +12,17 @@ for table in table1_photometric table2_geometry table3_ablation tableB_cost regi
   done
 done
 grep -q '^2DGS\|^2dgs' "$out/tables/table1_photometric.csv" || fail "no row for 2dgs in table1_photometric.csv"
+# Variants (2dgs/prior) are one folder deeper than methods.
 runs=0
-for run in "$out"/runs/*/*/*/; do
+while IFS= read -r config; do
+  run=$(dirname "$config")
   for file in config.json env.json metrics.json log.jsonl interface.ply; do
-    [ -s "$run$file" ] || fail "$run$file is missing or empty"
+    [ -s "$run/$file" ] || fail "$run/$file is missing or empty"
   done
   compgen -G "$run/renders/*/rgb.exr" >/dev/null || fail "$run has no renders"
   runs=$((runs + 1))
-done
+done < <(find "$out/runs" -name config.json)
+[ "$runs" -eq "$(grep -o '"scene":"[^"]*","method":"[^"]*","seed":[0-9]*' "$out/records.jsonl" | sort -u | wc -l)" ] ||
+  fail "$runs run folders in $out/runs, but another number of cells in $out/records.jsonl"
 [ "$runs" -gt 0 ] || fail "no run folders in $out/runs"
 echo "check_outputs: $runs runs, six tables in four formats" >&2
