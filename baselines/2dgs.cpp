@@ -69,9 +69,7 @@ class TwoDgs final : public Method {
     windows_ = config_;
     windows_.scale_to(options.iterations);
     warnings_ = geometry_.set_up(windows_.geometry, scene, "2dgs");
-    if (scene.points.positions.empty())
-      warnings_.push_back(fmt::format("2dgs: {} has no points; starts from random ones", scene.name)
-      );
+    warn_without_points(scene, "2dgs", warnings_);
     InitialSurfels initial;
     initial.seed = options.seed;
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
@@ -137,7 +135,7 @@ class TwoDgs final : public Method {
     const PhotometricTerms terms =
         photometric_.evaluate(out.features, view.rgb, weights, gradient_.features);
     stats.terms["photometric"] = terms.weighted(weights);
-    stats.psnr = -10 * std::log10(std::max(terms.mse, 1e-10));
+    stats.psnr = terms.psnr();
   }
   void add_distortion(const RasterOutput& out, StepStats& stats) {
     const double count = static_cast<double>(out.distortion.num_pixels());

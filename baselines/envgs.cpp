@@ -124,11 +124,10 @@ class EnvGs final : public Method {
     const PhotometricWeights weights{1 - config_.lambda_ssim, config_.lambda_ssim};
     const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);
     stats.terms["photometric"] = photo.weighted(weights);
-    stats.psnr = -10 * std::log10(std::max(photo.mse, 1e-10));
-    if (perceptual_ != nullptr && iteration >= windows_.perceptual.lpips_from)
-      stats.terms["lpips"] =
-          static_cast<double>(windows_.perceptual.lambda_lpips) *
-          perceptual_->evaluate(image, view.rgb, windows_.perceptual.lambda_lpips, dL_dimage_);
+    stats.psnr = photo.psnr();
+    add_perceptual(
+        perceptual_.get(), windows_.perceptual, iteration, image, view.rgb, dL_dimage_, stats
+    );
     geometry_.add(view, iteration, *base_output_, transport_.buffer().depth, dL_dbase_, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     backward(view.camera);
@@ -139,7 +138,7 @@ class EnvGs final : public Method {
   }
 
   RenderOutput render(const Camera& camera) const override {
-    EnvGs copy(*this, camera);
+    EnvGs copy(config_, *this);
     RenderOutput out;
     out.rgb = copy.forward(camera);
     const GlassBuffer& buffer = copy.transport_.buffer();
@@ -184,8 +183,8 @@ class EnvGs final : public Method {
 
  private:
   // What rendering needs of a method in training, with fresh buffers.
-  EnvGs(const EnvGs& from, const Camera&)
-      : config_(from.config_),
+  EnvGs(const EnvGsConfig& config, const EnvGs& from)
+      : config_(config),
         base_(from.base_.cloud(), {}, {}, 1, 0),
         environment_(from.environment_.cloud(), {}, {}, 1, 0),
         with_environment_(from.with_environment_),
@@ -198,10 +197,7 @@ class EnvGs final : public Method {
   void set_up_losses() {
     warnings_ = geometry_.set_up(windows_.geometry, *scene_, "envgs");
     perceptual_ = wanted_perceptual_loss(windows_.perceptual, "envgs", warnings_);
-    if (scene_->points.positions.empty())
-      warnings_.push_back(
-          fmt::format("envgs: {} has no points; starts from random ones", scene_->name)
-      );
+    warn_without_points(*scene_, "envgs", warnings_);
   }
 
   const Image& forward(const Camera& camera) {

@@ -65,11 +65,10 @@ class Glint final : public Method {
     const PhotometricWeights weights{config_.l1_weight, config_.ssim_weight};
     const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);
     stats.terms["photometric"] = photo.weighted(weights);
-    stats.psnr = -10 * std::log10(std::max(photo.mse, 1e-10));
-    if (perceptual_ != nullptr && iteration >= windows_.perceptual.lpips_from)
-      stats.terms["lpips"] =
-          static_cast<double>(windows_.perceptual.lambda_lpips) *
-          perceptual_->evaluate(image, view.rgb, windows_.perceptual.lambda_lpips, dL_dimage_);
+    stats.psnr = photo.psnr();
+    add_perceptual(
+        perceptual_.get(), windows_.perceptual, iteration, image, view.rgb, dL_dimage_, stats
+    );
     add_map_losses(view, iteration, weights, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     model_.backward(view.camera, config_, dL_dimage_, dL_dtransparency_, !frozen_, dL_dinterface_);
@@ -141,10 +140,7 @@ class Glint final : public Method {
   void set_up_losses() {
     warnings_.clear();
     perceptual_ = wanted_perceptual_loss(windows_.perceptual, "glint", warnings_);
-    if (scene_->points.positions.empty())
-      warnings_.push_back(
-          fmt::format("glint: {} has no points; starts from random ones", scene_->name)
-      );
+    warn_without_points(*scene_, "glint", warnings_);
     for (const auto& of_losses :
          {geometry_.set_up(windows_.geometry, *scene_, "glint"),
           transmission_losses_.set_up(windows_.transmission_losses, *scene_, "glint")})

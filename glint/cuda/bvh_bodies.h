@@ -7,7 +7,8 @@
 #include "glint/core/vec.h"
 #include "glint/cuda/block.h"
 #include "glint/render/activations.h"
-#include "glint/render/splat_hit.h"
+#include "glint/render/blend.h"
+#include "glint/render/morton.h"
 
 namespace glint::gpu {
 
@@ -51,10 +52,9 @@ struct MakeDiscs {
     d.h1 = input.scales[2 * i + 1] * column(r, 1);
     d.normal = column(r, 2);
     d.opacity = input.opacities[i];
-    const float faintest = 2 * log_of(max_of(d.opacity, 1e-12f) / cutoffs.min_alpha) + 1e-4f;
     const Vec3f sum = d.mean + d.h0 + d.h1;
     const bool finite = abs_of(sum.x + sum.y + sum.z) < 1e30f;  // false for NaN
-    d.max_rho = finite ? min_of(cutoffs.max_rho, faintest) : -1.0f;
+    d.max_rho = finite ? max_rho_of(d.opacity, cutoffs.max_rho, cutoffs.min_alpha) : -1.0f;
     discs[i] = d;
   }
 };
@@ -70,6 +70,15 @@ GLINT_HD Box box_of(const DiscSurfel& d) {
     box.high[axis] = d.mean[axis] + half;
   }
   return box;
+}
+
+// The union of a block's boxes, to the first.
+template <int kThreads, class Block>
+GLINT_HD void unite(Block& block, Box* boxes) {
+  for (int half = kThreads / 2; half > 0; half /= 2)
+    block.each([&](int thread) {
+      if (thread < half) boxes[thread] = union_of(boxes[thread], boxes[thread + half]);
+    });
 }
 
 // Boxes of the centres of runs of discs, one a block.
@@ -90,11 +99,7 @@ struct BoundCenters {
       const bool counts = i < count && discs[i].max_rho > 0;
       shared.boxes[thread] = counts ? Box{discs[i].mean, discs[i].mean} : empty_box();
     });
-    for (int half = kThreads / 2; half > 0; half /= 2)
-      block.each([&](int thread) {
-        if (thread < half)
-          shared.boxes[thread] = union_of(shared.boxes[thread], shared.boxes[thread + half]);
-      });
+    unite<kThreads>(block, shared.boxes);
     block.each([&](int thread) {
       if (thread == 0) out[block.index] = shared.boxes[0];
     });
@@ -118,24 +123,12 @@ struct UniteBoxes {
         box = union_of(box, in[i]);
       shared.boxes[thread] = box;
     });
-    for (int half = kThreads / 2; half > 0; half /= 2)
-      block.each([&](int thread) {
-        if (thread < half)
-          shared.boxes[thread] = union_of(shared.boxes[thread], shared.boxes[thread + half]);
-      });
+    unite<kThreads>(block, shared.boxes);
     block.each([&](int thread) {
       if (thread == 0) *out = shared.boxes[0];
     });
   }
 };
-
-// Bits of a 10-bit number two places apart.
-GLINT_HD std::uint32_t spread_bits(std::uint32_t v) {
-  v = (v | v << 16) & 0x030000ffu;
-  v = (v | v << 8) & 0x0300f00fu;
-  v = (v | v << 4) & 0x030c30c3u;
-  return (v | v << 2) & 0x09249249u;
-}
 
 // Keys are (Morton code, index): all different.
 struct MortonKeys {
@@ -145,16 +138,8 @@ struct MortonKeys {
   std::uint32_t* order;
 
   GLINT_HD void operator()(std::size_t i) const {
-    std::uint32_t code = ~0u;
-    if (discs[i].max_rho > 0) {
-      code = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        const float width = max_of(bounds->high[axis] - bounds->low[axis], 1e-30f);
-        const float cell = 1024 * ((discs[i].mean[axis] - bounds->low[axis]) / width);
-        code |= spread_bits(static_cast<std::uint32_t>(min_of(max_of(cell, 0.0f), 1023.0f)))
-                << axis;
-      }
-    }
+    const std::uint32_t code =
+        discs[i].max_rho > 0 ? morton_code(discs[i].mean, bounds->low, bounds->high) : ~0u;
     keys[i] = std::uint64_t{code} << 32 | i;
     order[i] = static_cast<std::uint32_t>(i);
   }

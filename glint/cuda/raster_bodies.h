@@ -111,7 +111,6 @@ struct FindTileRanges {
 // What both passes over a tile read.
 struct TilePass {
   const Splat* splats;
-  const PixelBox* boxes;
   const float* features;  // [N][C]
   const std::uint32_t* pairs;
   const PairRange* ranges;
@@ -144,7 +143,7 @@ struct TilePixel {
            static_cast<std::size_t>(x);
   }
   GLINT_HD bool live() const { return transmittance > 0; }
-  // Whether the splat counts here; the box is what the CPU's blocks test, too.
+  // Whether the splat counts here.
   GLINT_HD bool composite(const Splat& splat, SplatHit<float>& hit) {
     const bool counts = composite_splat(
         splat,

@@ -30,7 +30,6 @@ class RasterPipeline {
     visibility_.resize(surfels.count);
     exec_.fill_zero(visibility_);
     pass_.splats = splats_.data();
-    pass_.boxes = boxes_.data();
     pass_.features = surfels.features;
     pass_.pairs = pair_surfels_.data();
     pass_.ranges = ranges_.data();
@@ -74,7 +73,6 @@ class RasterPipeline {
   }
 
   Buffer<float>& visibility() { return visibility_; }
-  const std::uint32_t* num_tiles() const { return num_tiles_.data(); }
   std::size_t num_pairs() const { return num_pairs_; }
 
  private:

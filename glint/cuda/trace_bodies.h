@@ -5,6 +5,7 @@
 #pragma once
 
 #include "glint/cuda/bvh_bodies.h"
+#include "glint/render/intersect.h"
 #include "glint/render/spherical_harmonics.h"
 
 namespace glint::gpu {
@@ -46,9 +47,6 @@ GLINT_HD PlaneHit<float> meet(const DiscSurfel& d, Vec3f origin, Vec3f direction
   const RayPlane<float> plane =
       ray_plane(d.h0, d.h1, cross(d.h0, d.h1), d.mean - origin, direction);
   return intersect(plane.zeta, plane.det);
-}
-GLINT_HD float squared_radius(const PlaneHit<float>& hit) {
-  return fma_of(hit.u, hit.u, hit.v * hit.v);
 }
 
 // Where a ray enters a box, behind 0; beyond `far`: it does not.

@@ -12,6 +12,11 @@ inline constexpr float kMinAlpha = 1.0f / 255.0f;  // fainter hits are skipped
 inline constexpr float kMaxAlpha = 0.99f;
 inline constexpr float kMinTransmittance = 1e-4f;  // compositing stops before falling below
 
+// Squared radius where alpha falls below min_alpha, at most max_rho; not positive: never visible.
+GLINT_HD float max_rho_of(float opacity, float max_rho = kMaxRho, float min_alpha = kMinAlpha) {
+  return min_of(max_rho, 2.0f * log_of(max_of(opacity, 1e-12f) / min_alpha) + 1e-4f);
+}
+
 // Gaussian falloff at squared radius rho (units of sigma), 0 to 174, and the clamped alpha.
 template <class T>
 struct SplatAlpha {

@@ -91,6 +91,11 @@ GLINT_HD PlaneHit<T> intersect(Vec3<T> zeta, T det) {
   const T inverse = T(1) / zeta.z;
   return {zeta.x * inverse, zeta.y * inverse, det * inverse, inverse};
 }
+// rho = u^2 + v^2, in units of sigma squared.
+template <class T>
+GLINT_HD T squared_radius(const PlaneHit<T>& hit) {
+  return fma_of(hit.u, hit.u, hit.v * hit.v);
+}
 // Adds to the gradients of zeta and det. `hit`: what intersect() returned.
 template <class T>
 GLINT_HD void intersect_vjp(

@@ -32,11 +32,6 @@ struct PixelBox {
   int num_tiles() const { return empty() ? 0 : tiles_across() * (tile_y_max() - tile_y_min()); }
 };
 
-// Squared radius where alpha falls below 1/255, at most 3 sigma; not positive: never visible.
-GLINT_HD float max_rho_of(float opacity) {
-  return min_of(kMaxRho, 2.0f * log_of(max_of(opacity, 1e-12f) / kMinAlpha) + 1e-4f);
-}
-
 // First pixel whose centre is at or right of x, clamped to [0, size].
 GLINT_HD int first_pixel(float x, float size) {
   return static_cast<int>(min_of(max_of(ceilf(x - 0.5f), 0.0f), size));
@@ -78,7 +73,7 @@ struct SplatHit {
 template <class T>
 GLINT_HD void geometry_of_hit(const Splat& s, const PixelPlaneMap<T>& map, SplatHit<T>& hit) {
   hit.plane = intersect(zeta_at(map, hit.x, hit.y), map.det);
-  const T rho3 = fma_of(hit.plane.u, hit.plane.u, hit.plane.v * hit.plane.v);
+  const T rho3 = squared_radius(hit.plane);
   const T rho2 = low_pass_rho2(hit.x - T(s.center_x), hit.y - T(s.center_y));
   hit.in_plane = rho3 <= rho2;  // false for NaN
   hit.rho = select(hit.in_plane, rho3, rho2);

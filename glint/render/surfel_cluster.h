@@ -22,10 +22,6 @@ template <class T>
 PlaneHit<T> meet(const SurfelFields<T>& s, Vec3<T> origin, Vec3<T> direction) {
   return meet(s, cross(s.h0, s.h1), origin, direction);
 }
-template <class T>
-T squared_radius(const PlaneHit<T>& hit) {
-  return fma_of(hit.u, hit.u, hit.v * hit.v);
-}
 
 struct EightSurfels {
   SurfelFields<Float8> fields;

@@ -10,6 +10,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
+#include "glint/render/morton.h"
 
 namespace glint {
 
@@ -100,28 +101,9 @@ void write_quad(const SurfelFields<float>& s, float* corners) {
                  : std::numeric_limits<float>::quiet_NaN();  // Embree skips such triangles
 }
 
-// Bits of a coordinate two places apart.
-std::uint32_t spread_bits(std::uint32_t v) {
-  v = (v | v << 16) & 0x030000ff;
-  v = (v | v << 8) & 0x0300f00f;
-  v = (v | v << 4) & 0x030c30c3;
-  return (v | v << 2) & 0x09249249;
-}
-
 struct Extent {
   Vec3f low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
 };
-
-// Place on the curve through 1024^3 cells.
-std::uint32_t morton_code(const float* mean, const Extent& extent) {
-  std::uint32_t code = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float width = std::max(extent.high[axis] - extent.low[axis], 1e-30f);
-    const float cell = std::min(1023.0f, 1024 * ((mean[axis] - extent.low[axis]) / width));
-    code |= spread_bits(static_cast<std::uint32_t>(std::max(0.0f, cell))) << axis;
-  }
-  return code;
-}
 
 bool is_finite(const float* mean) { return std::isfinite(mean[0] + mean[1] + mean[2]); }
 
@@ -144,7 +126,8 @@ std::vector<std::uint32_t> morton_slots(std::span<const float> means) {
   std::vector<std::uint64_t> keys(means.size() / 3);
   parallel_for(keys.size(), 4096, [&](std::size_t i) {
     const float* mean = &means[3 * i];
-    const std::uint32_t code = is_finite(mean) ? morton_code(mean, extent) : ~0u;
+    const std::uint32_t code =
+        is_finite(mean) ? morton_code({mean[0], mean[1], mean[2]}, extent.low, extent.high) : ~0u;
     keys[i] = std::uint64_t{code} << 32 | i;
   });
   std::sort(keys.begin(), keys.end());

@@ -27,13 +27,13 @@ bool is_finite(const SurfelFields<float>& s) {
 TracedSurfel traced_surfel(const TraceInput& input, const TraceSettings& settings, std::size_t i) {
   const Mat3f r = rotation_matrix(rotation_at(input, i));
   const float opacity = input.opacities[i];
-  const float faintest = 2 * std::log(std::max(opacity, 1e-12f) / settings.min_alpha) + 1e-4f;
   TracedSurfel s{};
   s.fields.mean = {input.means[3 * i], input.means[3 * i + 1], input.means[3 * i + 2]};
   s.fields.h0 = input.scales[2 * i] * column(r, 0);
   s.fields.h1 = input.scales[2 * i + 1] * column(r, 1);
   s.fields.opacity = opacity;
-  s.fields.max_rho = is_finite(s.fields) ? std::min(settings.max_rho, faintest) : -1.0f;
+  s.fields.max_rho =
+      is_finite(s.fields) ? max_rho_of(opacity, settings.max_rho, settings.min_alpha) : -1.0f;
   s.normal = column(r, 2);
   s.surfel = static_cast<std::uint32_t>(i);
   return s;

@@ -53,6 +53,15 @@ PointCloud initial_points(const Scene& scene, std::size_t count, std::uint64_t s
   return points;
 }
 
+void warn_without_points(
+    const Scene& scene, const std::string& method, std::vector<std::string>& warnings
+) {
+  if (scene.points.positions.empty())
+    warnings.push_back(
+        fmt::format("{}: {} has no points; starts from random ones", method, scene.name)
+    );
+}
+
 int ReflectionGrid::cells_for(ImageSize size) const {
   const double wanted =
       static_cast<double>(points_per_pixel) * static_cast<double>(size.num_pixels());

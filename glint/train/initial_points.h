@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "glint/scene/scene.h"
 
@@ -11,6 +13,11 @@ namespace glint {
 // The scene's points, or `count` uniform random ones in its bounds where it has none. Errors
 // (kBadReference): no point lies in front of any training camera.
 PointCloud initial_points(const Scene& scene, std::size_t count, std::uint64_t seed);
+
+// Adds a warning where the scene has no points.
+void warn_without_points(
+    const Scene& scene, const std::string& method, std::vector<std::string>& warnings
+);
 
 // The initial cloud of sets that mirrored rays are traced into [Xie25; Na26 supplement]: uniform
 // points in each of cells^3 equal boxes of the scene's bounds, random colours.

@@ -23,4 +23,19 @@ std::unique_ptr<PerceptualLoss> wanted_perceptual_loss(
   return loss;
 }
 
+void add_perceptual(
+    PerceptualLoss* loss,
+    const PerceptualConfig& config,
+    int iteration,
+    const Image& rendered,
+    const Image& target,
+    Image& dL_drendered,
+    StepStats& stats
+) {
+  if (loss == nullptr || iteration < config.lpips_from) return;
+  const float weight = config.lambda_lpips;
+  stats.terms["lpips"] =
+      static_cast<double>(weight) * loss->evaluate(rendered, target, weight, dL_drendered);
+}
+
 }  // namespace glint

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "glint/core/image.h"
+#include "glint/method.h"
 
 namespace glint {
 
@@ -40,6 +41,18 @@ std::unique_ptr<PerceptualLoss> make_perceptual_loss(std::string& why);
 // the warning says why.
 std::unique_ptr<PerceptualLoss> wanted_perceptual_loss(
     PerceptualConfig& config, const std::string& method, std::vector<std::string>& warnings
+);
+
+// Adds the weighted loss to stats.terms and its gradient to dL_drendered, once its iteration has
+// come. config: windows of this run; loss: may be null.
+void add_perceptual(
+    PerceptualLoss* loss,
+    const PerceptualConfig& config,
+    int iteration,
+    const Image& rendered,
+    const Image& target,
+    Image& dL_drendered,
+    StepStats& stats
 );
 
 }  // namespace glint

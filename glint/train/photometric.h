@@ -2,6 +2,8 @@
 // Photometric loss of one view: (1 - w) L1 + w (1 - SSIM), value and gradient in one pass.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "glint/core/image.h"
@@ -20,6 +22,7 @@ struct PhotometricTerms {
   double weighted(PhotometricWeights w) const {
     return static_cast<double>(w.l1) * l1 + static_cast<double>(w.ssim) * ssim_loss;
   }
+  double psnr() const { return -10 * std::log10(std::max(mse, 1e-10)); }  // dB, at most 100
 };
 
 // Keeps its buffers between calls: no allocation in steady state.
