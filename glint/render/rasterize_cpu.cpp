@@ -3,27 +3,14 @@
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
-#include "glint/render/rasterize.h"
+#include "glint/render/raster_saved.h"
 #include "glint/render/tile_kernel.h"
 
 namespace glint {
 
-struct RasterSaved {
-  TileLists lists;
-  Image final_transmittance;  // [H][W][1]
-  // Of the distortion loss, [H][W][1]: depth of the first hit; sum w m, sum w m^2 relative to it.
-  Image first_depth, moment1, moment2;
-  std::vector<float> pair_visibility;  // [pairs]
-  std::vector<float> pair_gradients;   // [pairs][slot_width]
-};
-
 namespace {
 
 // ---- forward -----------------------------------------------------------------------------------
-
-DistortionRange distortion_range(const RasterSettings& settings) {
-  return {settings.with_distortion, settings.distortion_near, settings.distortion_far};
-}
 
 template <class T, int kChannels>
 struct ForwardVisitor {
@@ -237,7 +224,7 @@ void zero_unseen(Mask<T> seen, SurfelGeometry<T>& g, Vec3<T>& dL_dm) {
 }
 
 template <class T>
-void store3(std::vector<float>& array, std::size_t i, Vec3<T> v) {
+void store3(FloatArray& array, std::size_t i, Vec3<T> v) {
   for (int k = 0; k < 3; ++k) store_strided(&array[3 * i + k], 3, v[k]);
 }
 
@@ -294,123 +281,64 @@ void surfel_vjp(
   });
 }
 
-void check_input(const RasterInput& input, const Camera& camera) {
-  GLINT_CHECK(
-      input.channels >= 1 && input.channels <= kMaxChannels,
-      kUsage,
-      "rasterize: {} feature channels, expected 1 to {}",
-      input.channels,
-      kMaxChannels
-  );
-  const std::size_t n = input.count;
-  const bool sizes_agree = input.means.size() == 3 * n && input.scales.size() == 2 * n &&
-                           input.rotations.size() == 4 * n && input.opacities.size() == n &&
-                           input.features.size() == n * input.channels;
-  GLINT_CHECK(sizes_agree, kUsage, "rasterize: array sizes do not match {} surfels", n);
-  GLINT_CHECK(
-      input.near_limit.empty() || input.near_limit.size() == camera.size(),
-      kUsage,
-      "rasterize: near_limit is {}x{}, the camera {}x{}",
-      input.near_limit.width,
-      input.near_limit.height,
-      camera.width,
-      camera.height
-  );
-}
-
-void fit(Image& image, ImageSize size, int channels) {
-  if (image.size() != size || image.channels() != channels)
-    image = Image(size.width, size.height, channels);
-}
-
-void fit_outputs(
-    const RasterInput& input,
-    const RasterSettings& settings,
-    ImageSize size,
-    RasterOutput& out,
-    RasterSaved& saved
-) {
-  fit(out.features, size, input.channels);
-  fit(out.normal, size, 3);
-  for (Image* image : {&out.alpha, &out.depth_sum, &out.depth_median, &saved.final_transmittance})
-    fit(*image, size, 1);
-  out.visibility.resize(input.count);
-  out.in_view.resize(input.count);
-  if (settings.with_distortion)
-    for (Image* image : {&out.distortion, &saved.first_depth, &saved.moment1, &saved.moment2})
-      fit(*image, size, 1);
-  else
-    out.distortion = Image();
+void fit_saved(const RasterSettings& settings, ImageSize size, RasterSaved& saved) {
+  fit(saved.final_transmittance, size, 1);
+  if (!settings.with_distortion) return;
+  for (Image* image : {&saved.first_depth, &saved.moment1, &saved.moment2}) fit(*image, size, 1);
 }
 
 }  // namespace
 
-Rasterizer::Rasterizer() : saved_(std::make_unique<RasterSaved>()) {}
-Rasterizer::~Rasterizer() = default;
-Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
-Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
-
-std::size_t Rasterizer::num_pairs() const { return saved_->lists.num_pairs(); }
-
-std::size_t Rasterizer::num_pixel_pairs() const {
-  std::size_t sum = 0;
-  for (const PixelBox& box : saved_->lists.boxes)
-    if (!box.empty())
-      sum += static_cast<std::size_t>(box.x_max - box.x_min) * (box.y_max - box.y_min);
-  return sum;
-}
-
-void Rasterizer::forward(
+void rasterize_forward_cpu(
     const RasterInput& input,
     const Camera& camera,
     const RasterSettings& settings,
     RasterOutput& output,
-    bool scalar
+    bool scalar,
+    RasterSaved& saved
 ) {
-  check_input(input, camera);
-  TileLists& lists = saved_->lists;
+  TileLists& lists = saved.lists;
   build_tile_lists(input, camera, settings.near_plane, scalar, lists);
-  fit_outputs(input, settings, camera.size(), output, *saved_);
-  saved_->pair_visibility.resize(lists.num_pairs());
+  fit_saved(settings, camera.size(), saved);
+  saved.pair_visibility.resize(lists.num_pairs());
   dispatch(scalar, input.channels, [&]<class T, int kChannels>() {
     for_each_tile(input, lists, camera.size(), settings.near_plane, [&](const TileContext& tile) {
-      forward_tile<T, kChannels>(tile, settings, *saved_, output);
+      forward_tile<T, kChannels>(tile, settings, saved, output);
     });
   });
   parallel_for(input.count, 2048, [&](std::size_t i) {
     float sum = 0;
     for (std::uint32_t pair = lists.pair_begin[i]; pair < lists.pair_begin[i + 1]; ++pair)
-      sum += saved_->pair_visibility[pair];
+      sum += saved.pair_visibility[pair];
     output.visibility[i] = sum;
     output.in_view[i] = lists.boxes[i].empty() ? 0 : 1;
   });
 }
 
-void Rasterizer::backward(
+void rasterize_backward_cpu(
     const RasterInput& input,
     const Camera& camera,
     const RasterSettings& settings,
     const RasterOutput& output,
     const RasterOutputGradient& dL_doutput,
     RasterGradient& gradient,
-    bool scalar
+    bool scalar,
+    RasterSaved& saved
 ) {
-  check_input(input, camera);
-  const std::size_t n = input.count;
-  gradient.means.resize(3 * n);
-  gradient.scales.resize(2 * n);
-  gradient.rotations.resize(4 * n);
-  gradient.opacities.resize(n);
-  gradient.features.resize(n * input.channels);
-  gradient.screen.resize(2 * n);
-  const TileLists& lists = saved_->lists;
-  saved_->pair_gradients.resize(lists.num_pairs() * splat_sums(input.channels));
+  const TileLists& lists = saved.lists;
+  saved.pair_gradients.resize(lists.num_pairs() * splat_sums(input.channels));
   dispatch(scalar, input.channels, [&]<class T, int kChannels>() {
     for_each_tile(input, lists, camera.size(), settings.near_plane, [&](const TileContext& tile) {
-      backward_tile<T, kChannels>(tile, settings, *saved_, output, dL_doutput);
+      backward_tile<T, kChannels>(tile, settings, saved, output, dL_doutput);
     });
   });
-  surfel_vjp(input, camera, settings.near_plane, *saved_, scalar, gradient);
+  surfel_vjp(input, camera, settings.near_plane, saved, scalar, gradient);
+}
+
+std::size_t raster_pixel_pairs(const RasterSaved& saved) {
+  std::size_t sum = 0;
+  for (const PixelBox& box : saved.lists.boxes) sum += box.num_pixels();
+  return sum;
 }
 
 }  // namespace glint
