@@ -93,8 +93,8 @@ void sh_vjp_lanes(
     Vec3f eye,
     int degree,
     std::size_t i,
+    const ActivatedSurfels& a,
     const RasterGradient& g,
-    int channels,
     SurfelCloud& out
 ) {
   const ViewDirection<T> view = view_direction<T>(cloud, eye, i);
@@ -103,8 +103,9 @@ void sh_vjp_lanes(
   sh_basis(degree, view.unit, basis);
   for (int k = 0; k < count; ++k) dL_dbasis[k] = T(0);
   for (int c = 0; c < 3; ++c) {
-    const T dL_dsum = sh_color_vjp(
-        sh_sum(cloud, i, count, basis, c), load_strided<T>(&g.features[i * channels + c], channels)
+    const std::size_t at = i * a.channels + c;
+    const T dL_dsum = clamped_color_vjp(
+        load_strided<T>(&a.features[at], a.channels), load_strided<T>(&g.features[at], a.channels)
     );
     add_strided(&out.sh_dc[3 * i + c], 3, dL_dsum * basis[0]);
     for (int k = 1; k < count; ++k) {
@@ -131,7 +132,7 @@ void activate_vjp_lanes(
     const RasterGradient& g,
     SurfelCloud& out
 ) {
-  sh_vjp_lanes<T>(cloud, eye, degree, i, g, a.channels, out);
+  sh_vjp_lanes<T>(cloud, eye, degree, i, a, g, out);
   for (int axis = 0; axis < 2; ++axis) {
     const std::size_t at = 2 * i + axis;
     const T scale = load_strided<T>(&a.scales[at], 2);
