@@ -3,6 +3,7 @@
 // outputs and gradients have their shapes.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "glint/render/pixel_pass.h"
@@ -17,7 +18,9 @@ struct RasterSaved {
   // Of the distortion loss, [H][W][1]: depth of the first hit; sum w m, sum w m^2 relative to it.
   Image first_depth, moment1, moment2;
   std::vector<float> pair_visibility;  // [pairs]
-  std::vector<float> pair_gradients;   // [pairs][slot_width]
+  // [pairs] blocks of the tile where a pixel has a hit, one bit each: backward looks at no others.
+  std::vector<std::uint8_t> pair_blocks;
+  std::vector<float> pair_gradients;  // [pairs][slot_width]
 };
 
 inline DistortionRange distortion_range(const RasterSettings& settings) {

@@ -16,34 +16,44 @@ template <class T, int kChannels>
 struct ForwardVisitor {
   const TileContext& tile;
   const DistortionRange range;
-  float* pair_visibility;
+  RasterSaved& saved;
   const int channels;
   PixelSums<T, kChannels> sums[kGroupsPerTile<T>];
   T visibility;
+  unsigned blocks;
   const float* feature;
   const Splat* splat;
 
-  ForwardVisitor(const TileContext& tile, const RasterSettings& settings, float* pair_visibility)
-      : tile(tile),
-        range(distortion_range(settings)),
-        pair_visibility(pair_visibility),
-        channels(tile.input.channels) {
+  ForwardVisitor(const TileContext& tile, const RasterSettings& settings, RasterSaved& saved)
+      : tile(tile), range(distortion_range(settings)), saved(saved), channels(tile.input.channels) {
     for (auto& group : sums) group.clear();
   }
 
+  std::uint64_t groups(TileEntry entry) const {
+    return groups_of_blocks<T>(blocks_of(tile, tile.lists.boxes[entry.surfel]));
+  }
   void begin(TileEntry entry) {
     visibility = T(0);
+    blocks = 0;
     feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
     splat = &tile.lists.splats[entry.surfel];
   }
   void hit(int g, const SplatHit<T>& hit) {
     visibility += hit.weight;
+    const bool counts = any(hit.transmittance_behind < hit.transmittance);  // or stops a pixel
+    blocks |= static_cast<unsigned>(counts) << (g / kGroupsPerBlock<T>);
     sums[g].add(hit, feature, channels, splat->normal, range);
   }
-  void end(TileEntry entry) { pair_visibility[entry.pair] = lane_sum(visibility); }
-  void skip(TileEntry entry) { pair_visibility[entry.pair] = 0; }
+  void end(TileEntry entry) {
+    saved.pair_visibility[entry.pair] = lane_sum(visibility);
+    saved.pair_blocks[entry.pair] = static_cast<std::uint8_t>(blocks);
+  }
+  void skip(TileEntry entry) {
+    saved.pair_visibility[entry.pair] = 0;
+    saved.pair_blocks[entry.pair] = 0;
+  }
 
-  void store(const TilePixels<T>& pixels, RasterOutput& out, RasterSaved& saved) const {
+  void store(const TilePixels<T>& pixels, RasterOutput& out) const {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) {
       const PixelSums<T, kChannels>& s = sums[g];
       const T alpha = T(1) - pixels.final_transmittance(g);
@@ -67,9 +77,9 @@ void forward_tile(
     const TileContext& tile, const RasterSettings& settings, RasterSaved& saved, RasterOutput& out
 ) {
   TilePixels<T> pixels(tile);
-  ForwardVisitor<T, kChannels> visitor(tile, settings, saved.pair_visibility.data());
+  ForwardVisitor<T, kChannels> visitor(tile, settings, saved);
   for_each_hit(tile, pixels, visitor);
-  visitor.store(pixels, out, saved);
+  visitor.store(pixels, out);
 }
 
 // ---- backward ----------------------------------------------------------------------------------
@@ -128,6 +138,9 @@ struct BackwardVisitor {
     p.start(s, load(saved.final_transmittance, i, 0), channels, range.on);
   }
 
+  std::uint64_t groups(TileEntry entry) const {
+    return groups_of_blocks<T>(saved.pair_blocks[entry.pair]);
+  }
   void begin(TileEntry entry) {
     std::fill_n(sums, splat_sums(channels), T(0));
     feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
@@ -139,7 +152,7 @@ struct BackwardVisitor {
   float* slot_of(TileEntry entry) const {
     return &saved.pair_gradients[entry.pair * static_cast<std::size_t>(splat_sums(channels))];
   }
-  void skip(TileEntry entry) { std::fill_n(slot_of(entry), splat_sums(channels), 0.0f); }
+  void skip(TileEntry) {}  // sum_pairs() leaves out pairs without blocks
   void end(TileEntry entry) {
     const int width = splat_sums(channels);
     float* slot = slot_of(entry);
@@ -187,12 +200,12 @@ void for_each_tile(
 
 // ---- sums over a surfel's tiles ----------------------------------------------------------------
 
-void sum_pairs(
-    const TileLists& lists, std::size_t surfel, const float* slots, int width, float* sums
-) {
+void sum_pairs(const RasterSaved& saved, std::size_t surfel, int width, float* sums) {
+  const std::vector<std::uint32_t>& pair_begin = saved.lists.pair_begin;
   std::fill_n(sums, width, 0.0f);
-  for (std::uint32_t pair = lists.pair_begin[surfel]; pair < lists.pair_begin[surfel + 1]; ++pair) {
-    const float* slot = slots + static_cast<std::size_t>(pair) * width;
+  for (std::uint32_t pair = pair_begin[surfel]; pair < pair_begin[surfel + 1]; ++pair) {
+    if (saved.pair_blocks[pair] == 0) continue;
+    const float* slot = &saved.pair_gradients[static_cast<std::size_t>(pair) * width];
     for (int i = 0; i < width; i += 8)
       (Float8::load(sums + i) + Float8::load(slot + i)).store(sums + i);
   }
@@ -240,7 +253,7 @@ void surfel_vjp_lanes(
   alignas(32) float sums[8 * kMaxSums];
   float z[8], num_pairs[8];
   for (int i = 0; i < kLanesOf<T>; ++i) {
-    sum_pairs(saved.lists, first + i, saved.pair_gradients.data(), width, sums + i * width);
+    sum_pairs(saved, first + i, width, sums + i * width);
     std::copy_n(
         sums + i * width + kSumFeatures, input.channels, &out.features[(first + i) * input.channels]
     );
@@ -301,6 +314,7 @@ void rasterize_forward_cpu(
   build_tile_lists(input, camera, settings.near_plane, scalar, lists);
   fit_saved(settings, camera.size(), saved);
   saved.pair_visibility.resize(lists.num_pairs());
+  saved.pair_blocks.resize(lists.num_pairs());
   dispatch(scalar, input.channels, [&]<class T, int kChannels>() {
     for_each_tile(input, lists, camera.size(), settings.near_plane, [&](const TileContext& tile) {
       forward_tile<T, kChannels>(tile, settings, saved, output);

@@ -126,9 +126,10 @@ struct ActivateVjp {
     sh_basis(degree, view.unit, basis);
     for (int k = 0; k < count; ++k) dL_dbasis[k] = T(0);
     for (int c = 0; c < 3; ++c) {
-      const float* g_color = g.features + i * static_cast<std::size_t>(channels()) + c;
-      const T dL_dsum =
-          sh_color_vjp(sh_sum(cloud, i, count, basis, c), load_strided<T>(g_color, channels()));
+      const std::size_t at = i * static_cast<std::size_t>(channels()) + static_cast<std::size_t>(c);
+      const T dL_dsum = clamped_color_vjp(
+          load_strided<T>(features + at, channels()), load_strided<T>(g.features + at, channels())
+      );
       add_strided(out.sh_dc + 3 * i + c, 3, dL_dsum * basis[0]);
       for (int k = 1; k < count; ++k) {
         add_strided(out.sh_rest + 45 * i + 3 * (k - 1) + c, 45, dL_dsum * basis[k]);

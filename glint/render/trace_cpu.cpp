@@ -336,7 +336,7 @@ void prepare(
   const std::size_t n = input.count;
   const bool refit = saved.surfels.size() == n && ++saved.updates % kRebuildInterval != 0;
   if (!refit) {
-    saved.slot_of_surfel = morton_slots(input.means);
+    saved.slot_of_surfel = cluster_slots(input.means);
     saved.updates = 0;
   }
   saved.surfels.resize(n);
