@@ -30,9 +30,9 @@ SurfelCloud cloud_of(const Method& method, const char* name) {
 
 // Whether an array differs between two clouds of one size.
 bool same(const SurfelCloud& a, const SurfelCloud& b, const std::string& array) {
-  std::vector<std::vector<float>> values;
+  std::vector<FloatArray> values;
   for (const SurfelCloud* cloud : {&a, &b})
-    cloud->for_each_array([&](const char* name, const std::vector<float>& data, std::size_t) {
+    cloud->for_each_array([&](const char* name, const FloatArray& data, std::size_t) {
       if (array == name) values.push_back(data);
     });
   REQUIRE(values.size() == 2);

@@ -111,7 +111,7 @@ RasterGradient backward(const Case& c) {
 struct Parameter {
   const char* name;
   std::vector<double> ReferenceInput::*values;
-  std::vector<float> RasterGradient::*gradient;
+  FloatArray RasterGradient::*gradient;
   DifferenceStep step;
 };
 constexpr DifferenceStep kAbsolute{2e-5, 1}, kRelative{1e-4, 0};
@@ -149,7 +149,7 @@ void check_gradients(const Case& c) {
   }
   REQUIRE(largest > 1e-6);
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    const std::vector<float>& gradient = actual.*kParameters[i].gradient;
+    const FloatArray& gradient = actual.*kParameters[i].gradient;
     REQUIRE(gradient.size() == expected[i].size());
     const GradientError error = gradient_error<float>(gradient, expected[i]);
     INFO(kParameters[i].name << ": norm " << error.norm << ", worst at " << error.worst_index);
@@ -237,7 +237,7 @@ TEST_CASE("The backward pass reproduces the golden derivatives of rho and depth"
     c.dL_doutput.alpha = at_pixel(-4.0581995682 / alpha);
   }
   const RasterGradient gradient = backward(c);
-  const auto check = [](const std::vector<float>& actual, const auto& expected) {
+  const auto check = [](const FloatArray& actual, const auto& expected) {
     // Float rounding of terms that cancel: a few 1e-6 of the largest derivative, which is 2.4.
     for (std::size_t i = 0; i < expected.size(); ++i)
       CHECK(static_cast<double>(actual[i]) == Approx(expected[i]).epsilon(1e-5).margin(1e-5));
@@ -254,7 +254,7 @@ TEST_CASE("A clamped alpha passes no gradient to opacity and shape, but to featu
   c.surfels.add(c.camera.to_world(mean), {0.5, 0.5}, {1, 0.1, 0.2, 0}, 1, {1, 1, 1});
   Image weights(24, 18, 1);
   weights.at(12, 9) = 1;
-  const auto total = [](const std::vector<float>& values) {
+  const auto total = [](const FloatArray& values) {
     float sum = 0;
     for (const float value : values) sum += std::abs(value);
     return sum;
@@ -286,7 +286,7 @@ TEST_CASE("The screen gradient is that of a shift of the projected centre, in ND
   const RasterGradient gradient = backward(c);
   REQUIRE(gradient.screen.size() == 2 * c.surfels.count());
   for (std::size_t i = 0; i < c.surfels.count(); ++i) {
-    const auto vector = [i](const std::vector<float>& values) {
+    const auto vector = [i](const auto& values) {
       return cast<double>(Vec3f{values[3 * i], values[3 * i + 1], values[3 * i + 2]});
     };
     // A pixel's shift at fixed depth z moves the centre by z / f metres in the camera plane.
@@ -304,12 +304,12 @@ TEST_CASE("Without output gradients every gradient is zero and has its input's s
   Case c = random_case(smooth_surfels(), Map::kAll, 1);
   c.dL_doutput = {};
   const RasterGradient gradient = backward(c);
-  CHECK(gradient.means == std::vector<float>(c.surfels.means.size(), 0.0f));
-  CHECK(gradient.scales == std::vector<float>(c.surfels.scales.size(), 0.0f));
-  CHECK(gradient.rotations == std::vector<float>(c.surfels.rotations.size(), 0.0f));
-  CHECK(gradient.opacities == std::vector<float>(c.surfels.opacities.size(), 0.0f));
-  CHECK(gradient.features == std::vector<float>(c.surfels.features.size(), 0.0f));
-  CHECK(gradient.screen == std::vector<float>(2 * c.surfels.count(), 0.0f));
+  CHECK(gradient.means == FloatArray(c.surfels.means.size(), 0.0f));
+  CHECK(gradient.scales == FloatArray(c.surfels.scales.size(), 0.0f));
+  CHECK(gradient.rotations == FloatArray(c.surfels.rotations.size(), 0.0f));
+  CHECK(gradient.opacities == FloatArray(c.surfels.opacities.size(), 0.0f));
+  CHECK(gradient.features == FloatArray(c.surfels.features.size(), 0.0f));
+  CHECK(gradient.screen == FloatArray(2 * c.surfels.count(), 0.0f));
 }
 
 TEST_CASE("A surfel that reaches no tile has exactly zero gradient, even when it is not finite") {

@@ -354,7 +354,7 @@ TEST_CASE("What lies wholly before the near plane or beside the image is out of 
   add_facing(surfels, {0, -30, 2}, 1, 0.9, 1);
   add_facing(surfels, {0, 0, 2}, 1, 0.9, 1);
   const RasterOutput output = rasterize(surfels, small_camera());
-  CHECK(output.in_view == std::vector<std::uint8_t>{0, 0, 0, 0, 1});
+  CHECK(output.in_view == Array<std::uint8_t>{0, 0, 0, 0, 1});
   for (std::size_t i = 0; i < 4; ++i) CHECK(output.visibility[i] == 0);
   CHECK(output.visibility[4] > 0);
 }

@@ -17,7 +17,7 @@ SurfelCloud random_cloud(std::size_t count) {
   cloud.extra_names = {"transparency", "specular"};
   cloud.resize(count);
   Rng rng(3);
-  cloud.for_each_array([&](const char*, std::vector<float>& array, std::size_t) {
+  cloud.for_each_array([&](const char*, FloatArray& array, std::size_t) {
     for (float& value : array) value = rng.uniform(-1, 1);
   });
   return cloud;
@@ -69,7 +69,7 @@ TEST_CASE("activate_vjp matches central differences of the formulas in double") 
   activate(cloud, cast<float>(eye), 3, a);
   RasterGradient g;
   Rng rng(5);
-  const auto fill = [&](std::vector<float>& array, std::size_t size) {
+  const auto fill = [&](FloatArray& array, std::size_t size) {
     array.resize(size);
     for (float& value : array) value = rng.uniform(-1, 1);
   };
@@ -95,13 +95,13 @@ TEST_CASE("activate_vjp matches central differences of the formulas in double") 
                static_cast<double>(g.rotations[4 * i + k]);
       return sum;
     };
-    std::vector<std::vector<float>*> arrays, gradients;
+    std::vector<FloatArray*> arrays, gradients;
     std::vector<std::size_t> widths;
-    cloud.for_each_array([&](const char*, std::vector<float>& array, std::size_t width) {
+    cloud.for_each_array([&](const char*, FloatArray& array, std::size_t width) {
       arrays.push_back(&array);
       widths.push_back(width);
     });
-    gradient.for_each_array([&](const char*, std::vector<float>& array, std::size_t) {
+    gradient.for_each_array([&](const char*, FloatArray& array, std::size_t) {
       gradients.push_back(&array);
     });
     for (std::size_t k = 0; k < arrays.size(); ++k)

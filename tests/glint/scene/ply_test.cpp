@@ -19,19 +19,19 @@ SurfelCloud random_cloud(std::size_t count, std::vector<std::string> extra_names
   cloud.extra_names = std::move(extra_names);
   cloud.resize(count);
   Rng rng(3);
-  cloud.for_each_array([&](const char*, std::vector<float>& array, std::size_t) {
+  cloud.for_each_array([&](const char*, FloatArray& array, std::size_t) {
     for (float& value : array) value = rng.uniform(-2, 2);
   });
   return cloud;
 }
 
 void check_same(const SurfelCloud& a, const SurfelCloud& b) {
-  std::vector<std::vector<float>> arrays;
-  a.for_each_array([&](const char*, const std::vector<float>& array, std::size_t) {
+  std::vector<FloatArray> arrays;
+  a.for_each_array([&](const char*, const FloatArray& array, std::size_t) {
     arrays.push_back(array);
   });
   std::size_t i = 0;
-  b.for_each_array([&](const char* name, const std::vector<float>& array, std::size_t) {
+  b.for_each_array([&](const char* name, const FloatArray& array, std::size_t) {
     INFO(name);
     CHECK(array == arrays[i++]);
   });
@@ -120,8 +120,8 @@ TEST_CASE("a surfel PLY of SH degree 1 without third scale is read") {
           "101 102 103 104 105 106 107 108 109\n"
   );
   const SurfelCloud cloud = read_surfel_ply(folder / "x.ply");
-  CHECK(cloud.rotations == std::vector<float>{10, 11, 12, 13});
-  CHECK(cloud.log_scales == std::vector<float>{8, 9});
+  CHECK(cloud.rotations == FloatArray{10, 11, 12, 13});
+  CHECK(cloud.log_scales == FloatArray{8, 9});
   CHECK(cloud.sh_rest[0] == 101);  // coefficient 1: R, G, B
   CHECK(cloud.sh_rest[1] == 104);
   CHECK(cloud.sh_rest[2] == 107);

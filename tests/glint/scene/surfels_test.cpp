@@ -107,7 +107,7 @@ TEST_CASE("random rotations have no preferred direction") {
 
 TEST_CASE("resizing keeps rows and adds zero ones") {
   SurfelCloud cloud = surfels_from_points(random_points(5), {});
-  const std::vector<float> before = cloud.rotations;
+  const FloatArray before = cloud.rotations;
   cloud.resize(7);
   CHECK(cloud.size() == 7);
   CHECK(cloud.sh_rest.size() == 7 * 45);

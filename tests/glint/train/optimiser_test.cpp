@@ -179,7 +179,7 @@ TEST_CASE("Without opacity resets opacities stay, and large surfels go as they w
   cloud.log_scales[0] = std::log(0.5f);
   SurfelAdam adam;
   adam.step(cloud, gradient, {}, 1);
-  const std::vector<float> before = cloud.opacity_logits;
+  const FloatArray before = cloud.opacity_logits;
   Densifier densifier(config, 1, 0);
   observe(densifier, {0, 0});
   densifier.update(2, cloud, adam);
