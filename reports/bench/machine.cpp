@@ -65,6 +65,7 @@ Json environment_json() {
   const Machine machine = this_machine();
   return {
       {"device", device_name()},
+      {"driver", on_gpu() ? "CUDA " + gpu::cuda_device().driver : ""},
       {"cpu", machine.cpu},
       {"cores", machine.cores},
       {"threads", num_threads()},

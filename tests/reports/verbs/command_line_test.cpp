@@ -5,6 +5,8 @@
 #include <initializer_list>
 #include <vector>
 
+#include "glint/core/device.h"
+#include "glint/cuda/backend.h"
 #include "reports/verbs/verb.h"
 #include "tests/support/temp_folder.h"
 
@@ -53,8 +55,14 @@ TEST_CASE("a predicted run that is none exits with 2, a dataset that is none wit
   CHECK(run({"dataset", "check", "does/not/exist"}) == 3);
 }
 
-TEST_CASE("asking for CUDA in a build without it exits with 6") {
-  CHECK(run({"plan", "--device", "cuda"}) == 6);
+TEST_CASE("a GPU is used where there is one; asking for it elsewhere exits with 6") {
+  const bool has_gpu = gpu::cuda_device().usable;
+  CHECK(run({"plan", "--device", "cuda"}) == (has_gpu ? 0 : 6));
+  CHECK(run({"plan", "--device", "auto"}) == 0);
+  CHECK(on_gpu() == has_gpu);
+  CHECK(run({"plan", "--device", "cpu"}) == 0);
+  CHECK(!on_gpu());
+  CHECK(has_gpu == gpu::cuda_device().why_not.empty());
 }
 
 TEST_CASE("damaged records exit with 2") {
