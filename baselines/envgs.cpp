@@ -4,8 +4,8 @@
 // mirrored rays: rgb = (1 - s) base + s environment, without Fresnel. L1 + SSIM, normal
 // consistency, a monocular normal prior.
 //
-// Deviations: schedules of the published 40,000 iterations are scaled to the run; LPIPS is off, as
-// its network is not built in yet; opacity resets of the environment, colour sabotage, normal
+// Deviations: schedules of the published 40,000 iterations are scaled to the run; LPIPS is off
+// where the user has no weights; opacity resets of the environment, colour sabotage, normal
 // propagation, the cap on surfels and the splitting of large ones are left out, as in the other
 // methods here; SH see unit directions; the grid of the environment and the end of mirrored rays
 // are those of GLINT here (ReflectionGrid, MirrorCutoffs); consistency weighs all depths alike.
@@ -51,6 +51,7 @@ struct EnvGsConfig {
     geometry.near_first = true;
     geometry.min_cosine = NormalPriorLoss::kNoGate;
     perceptual.lpips_from = 21000;
+    perceptual.lpips_unit_range = true;  // as its code does
     densify.until = 21000;
   }
   template <class V>

@@ -9,6 +9,7 @@ find_package(CLI11 REQUIRED CONFIG)
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 find_package(tomlplusplus 3.3 REQUIRED CONFIG)
 find_package(fmt 9 REQUIRED CONFIG)
+find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to set how many threads oneDNN uses
 find_package(Bullet REQUIRED)  # module mode: the config mode has relative include folders
 if(GLINT_TESTS)
   find_package(Catch2 2.13 REQUIRED CONFIG)
@@ -28,3 +29,16 @@ endforeach()
 add_library(bullet INTERFACE)
 target_include_directories(bullet SYSTEM INTERFACE ${BULLET_INCLUDE_DIRS})
 target_link_libraries(bullet INTERFACE ${BULLET_LIBRARIES})
+
+# minizip has no CMake config; oneDNN's wants OpenCL's headers, which its CPU engine does not need.
+macro(glint_find_library name header library)
+  find_path(GLINT_${name}_INCLUDE ${header} REQUIRED)
+  find_library(GLINT_${name} ${library} REQUIRED)
+  add_library(${name} UNKNOWN IMPORTED)
+  set_target_properties(
+    ${name} PROPERTIES IMPORTED_LOCATION ${GLINT_${name}} INTERFACE_INCLUDE_DIRECTORIES
+                                                          ${GLINT_${name}_INCLUDE}
+  )
+endmacro()
+glint_find_library(minizip minizip/unzip.h minizip)
+glint_find_library(onednn oneapi/dnnl/dnnl.hpp dnnl)

@@ -72,6 +72,7 @@ Json glint_release_overrides() {
       {"l1_weight", 1.2},
       {"ssim_weight", 0.4},
       {"lambda_lpips", 0.05},
+      {"lpips_unit_range", true},
       {"lambda_depth", 0.05},
       {"depth_gradient_scales", 4},
       {"lambda_normal", 0.3},

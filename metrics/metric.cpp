@@ -86,8 +86,21 @@ std::map<std::string, double> evaluate_view(const ViewPair& pair) {
 Json metric_protocols() {
   Json protocols = Json::object();
   for (const MetricFamily& family : metric_families())
-    for (const Metric& metric : family.metrics) protocols[metric.id] = metric.protocol;
+    for (const Metric& metric : family.metrics) {
+      protocols[metric.id] = metric.protocol;
+      if (family.files) protocols[metric.id].update(family.files(metric).provenance);
+    }
   return protocols;
+}
+
+std::map<std::string, std::string> missing_metrics() {
+  std::map<std::string, std::string> missing;
+  for (const MetricFamily& family : metric_families())
+    for (const Metric& metric : family.metrics)
+      if (family.files)
+        if (const std::string why = family.files(metric).missing; !why.empty())
+          missing[metric.id] = why;
+  return missing;
 }
 
 }  // namespace glint

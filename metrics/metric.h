@@ -67,11 +67,18 @@ struct Metric {
 // One value per metric of a family, empty where a view has nothing to score.
 using MetricValues = std::vector<std::optional<double>>;
 
+// What a metric has from files of the user, such as the weights of a network.
+struct MetricFiles {
+  std::string missing;               // why there is no value here ("no weights"); empty: there is
+  Json provenance = Json::object();  // recorded with the protocol
+};
+
 // Metrics that come out of one pass over the maps.
 struct MetricFamily {
   std::vector<Metric> metrics;
   // One entry per region, in their order. Errors: see the metric's header.
   std::function<std::vector<MetricValues>(const ViewPair&, std::span<const Region>)> evaluate;
+  std::function<MetricFiles(const Metric&)> files = nullptr;  // null: it needs none
 };
 
 // All families, in the order of their file names.
@@ -85,7 +92,10 @@ const Metric* find_metric(const std::string& id);
 // kBadReference for maps of another size and colours that are not finite.
 std::map<std::string, double> evaluate_view(const ViewPair& pair);
 
-// {"psnr": {...}, ...}: the protocol behind each id.
+// {"psnr": {...}, ...}: the protocol behind each id, with the provenance of its files.
 Json metric_protocols();
+
+// Metrics that no view of this machine can have, each with why: {"lpips-vgg": "no weights"}.
+std::map<std::string, std::string> missing_metrics();
 
 }  // namespace glint

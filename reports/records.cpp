@@ -26,6 +26,7 @@ void visit_fields(R& record, V&& v) {
   v("dataset_hash", record.dataset_hash);
   v("num_surfels", record.num_surfels);
   v("warnings", record.warnings);
+  v("not_measured", record.not_measured);
   v("timings", record.timings);
   v("environment", record.environment);
 }

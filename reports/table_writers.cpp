@@ -23,10 +23,17 @@ std::string status_word(CellStatus status) {
       return "missing";
     case CellStatus::kFailed:
       return "failed";
+    case CellStatus::kUnavailable:
+      return "unavailable";
     case CellStatus::kNotApplicable:
       return "not applicable";
   }
   return "missing";
+}
+
+// Stands in place of a value.
+std::string word_of(const TableCell& cell) {
+  return cell.status == CellStatus::kUnavailable ? cell.text : status_word(cell.status);
 }
 
 std::string group_title(const TableColumn& column) {
@@ -53,7 +60,7 @@ std::string csv_field(const std::string& text) {
 
 std::string csv_value(const TableCell& cell, const TableColumn& column) {
   const bool text = !column.field.empty();
-  if (!has_value(cell)) return status_word(cell.status);
+  if (!has_value(cell)) return csv_field(word_of(cell));
   return csv_field(text || column.published ? cell.text : fmt::format("{:.10g}", cell.value));
 }
 
@@ -95,7 +102,7 @@ Json column_json(const TableColumn& column) {
 
 std::string shown_text(const TableCell& cell, const TableColumn& column) {
   if (cell.status == CellStatus::kNotApplicable) return "–";
-  if (!has_value(cell)) return status_word(cell.status);
+  if (!has_value(cell)) return word_of(cell);
   std::string text = cell.text;
   if (cell.num_seeds > 1) text += fmt::format(" ± {:.{}f}", cell.spread, column.decimals);
   return cell.status == CellStatus::kPartial ? text + "*" : text;

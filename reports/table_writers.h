@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A Table in each format. Missing and failed cells are words, never zeros or blanks; published
+// A Table in each format. Cells without a value are words, never zeros or blanks; published
 // columns carry a dagger, means over fewer scenes an asterisk.
 #pragma once
 

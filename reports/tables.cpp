@@ -117,9 +117,23 @@ std::string format_value(double value, const TableColumn& column) {
   return fmt::format("{:.{}f}", value, column.decimals);
 }
 
+// What a finished run says about why it has no value of the metric; empty: nothing.
+std::string reason_of_absence(const RecordPointers& records, const std::string& metric) {
+  for (const Record* record : records)
+    if (const auto it = record->not_measured.find(metric);
+        record->ok() && it != record->not_measured.end())
+      return it->second;
+  return {};
+}
+
 // Failed only where every run did: a finished one without the value says that it is not measured.
-TableCell cell_without_values(const RecordPointers& records) {
+TableCell cell_without_values(const RecordPointers& records, const TableColumn& column) {
   TableCell cell;
+  if (const std::string reason = reason_of_absence(records, column.metric); !reason.empty()) {
+    cell.status = CellStatus::kUnavailable;
+    cell.text = cell.note = reason;
+    return cell;
+  }
   const bool finished = std::any_of(records.begin(), records.end(), [](const Record* record) {
     return record->ok();
   });
@@ -141,7 +155,7 @@ TableCell measured_cell(
     if (const auto it = record->metrics.find(column.metric);
         record->ok() && it != record->metrics.end())
       scenes_of_seed[record->cell.seed].push_back(it->second * column.scale);
-  if (scenes_of_seed.empty()) return cell_without_values(records);
+  if (scenes_of_seed.empty()) return cell_without_values(records, column);
 
   std::vector<double> seed_means;
   std::size_t fewest = expected;
@@ -172,7 +186,7 @@ TableCell text_cell(const RecordPointers& records, const TableColumn& column) {
   for (const Record* record : records)
     if (const std::string text = text_field(*record, column.field); record->ok() && !text.empty())
       values.insert(text);
-  if (values.empty()) return cell_without_values(records);
+  if (values.empty()) return cell_without_values(records, column);
   TableCell cell;
   cell.status = CellStatus::kOk;
   for (const std::string& value : values) cell.text += (cell.text.empty() ? "" : ", ") + value;

@@ -51,6 +51,7 @@ enum class CellStatus {
   kPartial,        // mean over fewer scenes than others have; never ranked
   kMissing,        // not built or not run
   kFailed,         // every run failed
+  kUnavailable,    // run where the metric's files were missing; `text` says which
   kNotApplicable,  // the paper has no such number
 };
 

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
-// NumPy arrays [H][W] or [H][W][C], format 1 to 3 of numpy.lib.format: magic, version, length of a
-// Python dictionary, the dictionary, the values.
+// NumPy arrays [H][W] or [H][W][C].
 #include <ImathConfig.h>
 #include <half.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cstring>
 #include <limits>
 #include <vector>
 
 #include "glint/core/error.h"
+#include "glint/core/npy.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/image_files_formats.h"
 
@@ -19,62 +17,6 @@ namespace glint {
 namespace {
 
 using namespace std::string_view_literals;
-
-constexpr std::string_view kMagic = "\x93NUMPY"sv;
-
-struct NpyHeader {
-  std::string type;  // e.g. "<f4"
-  std::vector<std::int64_t> shape;
-  bool fortran_order = false;
-  std::size_t values_at = 0;  // bytes
-};
-
-// The text behind 'key': in the dictionary.
-std::string_view value_of(const fs::path& path, std::string_view dictionary, std::string_view key) {
-  const std::size_t at = dictionary.find(fmt::format("'{}':", key));
-  GLINT_CHECK(
-      at != std::string_view::npos,
-      kBadReference,
-      "{}: the NPY header lacks '{}'",
-      path.string(),
-      key
-  );
-  std::string_view value = dictionary.substr(at + key.size() + 3);
-  value.remove_prefix(std::min(value.find_first_not_of(' '), value.size()));
-  return value;
-}
-
-// "(540, 960, 3)" to numbers.
-std::vector<std::int64_t> parse_shape(std::string_view text) {
-  std::vector<std::int64_t> shape;
-  text = text.substr(0, text.find(')'));
-  while (true) {
-    const std::size_t digit = text.find_first_of("0123456789");
-    if (digit == std::string_view::npos) return shape;
-    std::int64_t extent = 0;
-    const auto end = std::from_chars(text.data() + digit, text.data() + text.size(), extent);
-    shape.push_back(end.ec == std::errc{} ? extent : std::numeric_limits<std::int64_t>::max());
-    text.remove_prefix(static_cast<std::size_t>(end.ptr - text.data()));
-  }
-}
-
-NpyHeader parse_header(const fs::path& path, std::string_view file) {
-  if (!file.starts_with(kMagic) || file.size() < 12)
-    detail::fail_incomplete(path, "NPY", "the signature is missing");
-  const std::size_t length_bytes = file[6] == 1 ? 2 : 4;
-  std::size_t length = 0;
-  for (std::size_t i = 0; i < length_bytes; ++i)
-    length |= std::size_t{static_cast<unsigned char>(file[8 + i])} << (8 * i);
-  if (file.size() - 8 - length_bytes < length)
-    detail::fail_incomplete(path, "NPY", "it ends inside the header");
-  const std::string_view dictionary = file.substr(8 + length_bytes, length);
-  const std::string_view type = value_of(path, dictionary, "descr").substr(1);
-  return {
-      std::string(type.substr(0, type.find_first_of("'\""))),
-      parse_shape(value_of(path, dictionary, "shape")),
-      value_of(path, dictionary, "fortran_order").starts_with("True"),
-      8 + length_bytes + length};
-}
 
 template <class T>
 float convert(const char* from) {
@@ -138,7 +80,7 @@ detail::ClaimedSize image_size(const fs::path& path, const NpyHeader& header) {
 
 Image detail::read_npy(const fs::path& path) {
   const std::string file = read_file(path);
-  const NpyHeader header = parse_header(path, file);
+  const NpyHeader header = parse_npy_header(file, path.string());
   const ValueType& type = find_type(path, header.type);
   const ClaimedSize size = image_size(path, header);
   check_claimed_size(path, size, file.size());
@@ -166,10 +108,10 @@ void write_npy(const fs::path& path, ImageView image) {
   std::string dictionary =
       fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}), }}", shape);
   // Values start at a multiple of 64 bytes; the header ends in a newline.
-  const std::size_t preamble = kMagic.size() + 4;
+  const std::size_t preamble = kNpyMagic.size() + 4;
   dictionary.resize((preamble + dictionary.size() + 1 + 63) / 64 * 64 - preamble - 1, ' ');
   dictionary += '\n';
-  std::string file(kMagic);
+  std::string file(kNpyMagic);
   file += "\x01\x00"sv;
   file += static_cast<char>(dictionary.size() & 0xff);
   file += static_cast<char>(dictionary.size() >> 8);

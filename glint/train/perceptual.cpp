@@ -1,12 +1,38 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/perceptual.h"
 
-#include <fmt/format.h>
+#include "metrics/lpips.h"
 
 namespace glint {
+namespace {
 
-std::unique_ptr<PerceptualLoss> make_perceptual_loss(std::string& why) {
-  why = "its network is not built in";
+class LpipsLoss final : public PerceptualLoss {
+ public:
+  LpipsLoss(std::shared_ptr<const LpipsWeights> weights, LpipsRange range)
+      : lpips_(std::move(weights), range) {}
+
+  // The network runs on the host on either device: it waits for what ops still write, and adds to
+  // the gradient before the next op begins.
+  double evaluate(const Image& rendered, const Image& target, float weight, Image& dL_drendered)
+      override {
+    synchronize();
+    return lpips_.evaluate(rendered, target, weight, dL_drendered.ref());
+  }
+
+ private:
+  Lpips lpips_;
+};
+
+}  // namespace
+
+std::unique_ptr<PerceptualLoss> make_perceptual_loss(bool unit_range, std::string& note) {
+  const LpipsRange range = unit_range ? LpipsRange::kUnit : LpipsRange::kSymmetric;
+  for (const char* network : {"vgg", "alex"})
+    if (auto weights = lpips_weights_at(lpips_weights_place(), network)) {
+      note = fmt::format("{}, sha256 {}", network, weights->sha256);
+      return std::make_unique<LpipsLoss>(std::move(weights), range);
+    }
+  note = "no weights";
   return nullptr;
 }
 
@@ -14,12 +40,10 @@ std::unique_ptr<PerceptualLoss> wanted_perceptual_loss(
     PerceptualConfig& config, const std::string& method, std::vector<std::string>& warnings
 ) {
   if (config.lambda_lpips <= 0) return nullptr;
-  std::string why;
-  auto loss = make_perceptual_loss(why);
-  if (loss == nullptr) {
-    config.lambda_lpips = 0;
-    warnings.push_back(fmt::format("{}: LPIPS is off: {}", method, why));
-  }
+  std::string note;
+  auto loss = make_perceptual_loss(config.lpips_unit_range, note);
+  if (loss == nullptr) config.lambda_lpips = 0;
+  warnings.push_back(fmt::format("{}: LPIPS is {}: {}", method, loss ? "on" : "off", note));
   return loss;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The seam for LPIPS as a training loss [Zhang18]: a network and its weights are no part of this
-// layer.
+// LPIPS as a training loss [Zhang18], with weights that the user has (metrics/lpips_weights.h).
 #pragma once
 
 #include <memory>
@@ -26,19 +25,22 @@ class PerceptualLoss {
 struct PerceptualConfig {
   float lambda_lpips = 0.01f;
   int lpips_from = 45000;
+  bool lpips_unit_range = false;
 
   template <class V>
   void visit(V&& v) {
     v("lambda_lpips", lambda_lpips, "weight of LPIPS");
     v("lpips_from", lpips_from, "first published iteration of LPIPS");
+    v("lpips_unit_range", lpips_unit_range, "its network is fed [0, 1] instead of [-1, 1]");
   }
 };
 
-// Null where no network is built in; `why` says so.
-std::unique_ptr<PerceptualLoss> make_perceptual_loss(std::string& why);
+// With VGG16 where its weights are found, otherwise with AlexNet; `note` says which. Null without
+// weights; `note` says so. Errors (kEnvironment): weights that cannot be used.
+std::unique_ptr<PerceptualLoss> make_perceptual_loss(bool unit_range, std::string& note);
 
-// The loss that the config asks for, null without; where there is none, its weight becomes 0, and
-// the warning says why.
+// The loss that the config asks for, null without; where there is none, its weight becomes 0. A
+// warning says which network it is, or why there is none, so that the record of the run has it.
 std::unique_ptr<PerceptualLoss> wanted_perceptual_loss(
     PerceptualConfig& config, const std::string& method, std::vector<std::string>& warnings
 );

@@ -40,7 +40,7 @@ class DepthTool final : public MetricTool {
         ->excludes("--ray");
   }
 
-  void check_options() const override {
+  void check_options() override {
     GLINT_CHECK(
         intrinsics_.empty() || (intrinsics_[0] > 0 && intrinsics_[1] > 0),
         kUsage,

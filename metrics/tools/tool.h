@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the programs glint-psnr, glint-ssim, glint-depth and glint-normal share: command line, files
-// in pairs, masks and regions, and the three forms of output. A program adds how a pair is scored.
+// What the programs glint-psnr, glint-ssim, glint-lpips, glint-depth and glint-normal share:
+// command line, files in pairs, masks and regions, and the three forms of output. A program adds
+// how a pair is scored.
 #pragma once
 
 #include <iosfwd>
@@ -44,8 +45,8 @@ class MetricTool {
   virtual FolderLayout reference_layout() const = 0;
 
   virtual void add_options(CLI::App&) {}
-  // After parsing. Errors: kUsage.
-  virtual void check_options() const {}
+  // After parsing, before the first pair. Errors: kUsage; kEnvironment for files it needs.
+  virtual void check_options() {}
 
   // One of a pair's files as the metric wants it. Errors (kBadReference): see image_files.h.
   virtual Image load_prediction(const fs::path& path) const = 0;
@@ -69,6 +70,7 @@ std::unique_ptr<MetricTool> make_psnr_tool();
 std::unique_ptr<MetricTool> make_ssim_tool();
 std::unique_ptr<MetricTool> make_depth_tool();
 std::unique_ptr<MetricTool> make_normal_tool();
+std::unique_ptr<MetricTool> make_lpips_tool();
 
 // ".png", ".jpg", ".jpeg": integers, so that values are multiples of a step.
 bool is_integer_format(const fs::path& path);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glint/method.h"
+#include "metrics/metric.h"
 #include "reports/revision.h"
 
 namespace glint {
@@ -33,6 +34,17 @@ std::string config_hash_of(const PlanCell& cell, int iterations) {
       {"seed", cell.cell.seed},
       {"sources", source_hash()}};
   return hash_text(identity.dump());
+}
+
+// What the machine lacked for some metric then, it has now.
+bool can_measure_more(const Record& record) {
+  if (record.not_measured.empty()) return false;
+  const std::map<std::string, std::string> missing = missing_metrics();
+  return std::any_of(
+      record.not_measured.begin(),
+      record.not_measured.end(),
+      [&](const auto& entry) { return !missing.contains(entry.first); }
+  );
 }
 
 }  // namespace
@@ -72,7 +84,8 @@ CellState state_of(
   if (!record) return CellState::kPending;
   const bool same_data = dataset_hash.empty() || record->dataset_hash == dataset_hash;
   if (record->config_hash != cell.config_hash || !same_data) return CellState::kStale;
-  return record->ok() ? CellState::kDone : CellState::kFailed;
+  if (!record->ok()) return CellState::kFailed;
+  return can_measure_more(*record) ? CellState::kStale : CellState::kDone;
 }
 
 std::string_view state_name(CellState state) {

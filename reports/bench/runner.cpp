@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "glint/core/progress.h"
+#include "metrics/metric.h"
 #include "reports/bench/interrupt.h"
 #include "reports/bench/machine.h"
 
@@ -84,6 +85,7 @@ void run_stages(
   record.metrics = render_and_score(
       spec, loaded.scene, *method, {options.profile.timing_frames, options.profile.timing_warmup}
   );
+  record.not_measured = missing_metrics();
   record.num_surfels = method->num_surfels();
   record.warnings = method->warnings();
   const Camera& camera = loaded.scene.test.front().camera;

@@ -70,6 +70,26 @@ TEST_CASE("methods that were not run are missing, in every format a word") {
   CHECK_FALSE(table_json(table)["rows"][1]["cells"]["psnr"].contains("value"));
 }
 
+TEST_CASE("a metric that the machine had no weights for says so in every format") {
+  Record record;
+  record.dataset = "glassroom";
+  record.cell = {"room_1", "2dgs", 0};
+  record.metrics["psnr"] = 30;
+  record.not_measured["lpips-vgg-3dgs"] = "no weights";
+  const Table table = build_table(definition_of("table1_photometric"), {record});
+  CHECK(cell_of(table, "2dgs", "lpips-vgg-3dgs").status == CellStatus::kUnavailable);
+  CHECK(cell_of(table, "2dgs", "lpips-vgg-3dgs").rank == 0);
+  CHECK(cell_of(table, "2dgs", "ssim-3dgs").status == CellStatus::kMissing);
+  CHECK(table_csv(table).find("\n2dgs,30,missing,no weights,") != std::string::npos);
+  for (const std::string& text :
+       {table_markdown(table), table_latex(table), table_terminal(table, false)})
+    CHECK(text.find("no weights") != std::string::npos);
+  const Json cell = table_json(table)["rows"][0]["cells"]["lpips-vgg-3dgs"];
+  CHECK(cell["status"] == "unavailable");
+  CHECK(cell["note"] == "no weights");
+  CHECK_FALSE(cell.contains("value"));
+}
+
 TEST_CASE("a method that failed everywhere says why") {
   const TableCell cell = cell_of(golden_table("table1_photometric"), "tsgs", "psnr");
   CHECK(cell.status == CellStatus::kFailed);

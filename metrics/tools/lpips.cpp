@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/lpips.h"
+
+#include <CLI/CLI.hpp>
+
+#include "glint/scene/image_files.h"
+#include "metrics/tools/tool.h"
+
+namespace glint {
+namespace {
+
+class LpipsTool final : public MetricTool {
+ public:
+  std::string name() const override { return "glint-lpips"; }
+  std::string description() const override {
+    return "LPIPS 0.1: distance in the features of AlexNet, SqueezeNet 1.1 or VGG16. Weights are a "
+           "file of yours, made by scripts/convert_lpips_weights.py.";
+  }
+  std::string example() const override {
+    return "glint-lpips renders/ images/ --weights lpips_alex_v0.1.npz --mask masks/";
+  }
+  FolderLayout prediction_layout() const override { return {{"renders"}, {"rgb.exr", "rgb.png"}}; }
+  FolderLayout reference_layout() const override {
+    return {{"images"}, {"000000.png", "000000.jpg"}};
+  }
+
+  void add_options(CLI::App& app) override {
+    app.add_option(
+        "--weights",
+        place_,
+        "npz file, or folder of lpips_<net>_v0.1.npz; otherwise GLINT_LPIPS_WEIGHTS, then " +
+            lpips_weights_place().string()
+    );
+    app.add_option("--net", network_, "alex, squeeze or vgg; otherwise the file's, or alex")
+        ->check(CLI::IsMember({"alex", "squeeze", "vgg"}));
+    app.add_option(
+           "--range", range_, "lpips: the network is fed [-1, 1]; 3dgs: [0, 1], as 3DGS does"
+    )
+        ->check(CLI::IsMember({"lpips", "3dgs"}))
+        ->capture_default_str();
+  }
+
+  void check_options() override {
+    const fs::path place = place_.empty() ? lpips_weights_place() : place_;
+    const auto weights = lpips_weights_at(place, network_);
+    const std::string network = network_.empty() ? "alex" : network_;
+    GLINT_CHECK(
+        weights != nullptr,
+        kEnvironment,
+        "no LPIPS weights of {0} at '{1}'; make lpips_{0}_v0.1.npz with "
+        "scripts/convert_lpips_weights.py and put it there, or name it by --weights or "
+        "GLINT_LPIPS_WEIGHTS",
+        network,
+        place.string()
+    );
+    protocol_.network = weights->network;
+    protocol_.range = range_ == "3dgs" ? LpipsRange::kUnit : LpipsRange::kSymmetric;
+    lpips_ = std::make_unique<Lpips>(weights, protocol_.range);
+  }
+
+  Image load_prediction(const fs::path& path) const override { return read_image(path, 3); }
+  Image load_reference(const fs::path& path) const override { return read_image(path, 3); }
+
+  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
+      const override {
+    const std::vector<LpipsMap> taps = lpips_->tap_maps(pair.prediction, pair.reference);
+    std::vector<ToolScores> scores(regions.size());
+    for (std::size_t r = 0; r < regions.size(); ++r)
+      if (const auto value = lpips_mean(taps, regions[r].mask))
+        scores[r].emplace_back(metric_id(), *value);
+    return scores;
+  }
+
+  Json protocol(const std::string&) const override {
+    Json protocol = config_to_json(protocol_);
+    protocol.update(lpips_provenance(lpips_->weights()));
+    return protocol;
+  }
+
+ private:
+  std::string metric_id() const {
+    return "lpips-" + protocol_.network +
+           (protocol_.range == LpipsRange::kUnit ? "-3dgs" : std::string());
+  }
+
+  fs::path place_;
+  std::string network_, range_ = "lpips";
+  LpipsProtocol protocol_;
+  std::unique_ptr<Lpips> lpips_;
+};
+
+}  // namespace
+
+std::unique_ptr<MetricTool> make_lpips_tool() { return std::make_unique<LpipsTool>(); }
+
+}  // namespace glint
