@@ -126,7 +126,7 @@ std::vector<std::vector<float>> read_lin(
   for (const FeatureStep& step : steps) {
     if (!step.tap) continue;
     const std::string name = fmt::format("lin{}.weight", lin.size());
-    lin.push_back(reader.take(name, {1, step.out_channels, 1, 1}));
+    lin.push_back(reader.take(name, {step.out_channels}));
     const bool distance = *std::min_element(lin.back().begin(), lin.back().end()) >= 0;
     GLINT_CHECK(
         distance,

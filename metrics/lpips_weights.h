@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The weights of an LPIPS network, a file that the user has (scripts/convert_lpips_weights.py makes
 // it). Arrays are named as in the published files: features.N.weight [out][in][k][k],
-// features.N.bias [out], linK.weight [1][channels][1][1] for the K-th tap.
+// features.N.bias [out], linK.weight [channels] of the K-th tap.
 #pragma once
 
 #include <memory>

@@ -63,7 +63,7 @@ def lin_arrays(path, net):
         name = f"lin{tap}.model.1.weight"
         if name not in state:
             fail(f"{path}: no '{name}'; expected the v0.1 file of {net}")
-        arrays[f"lin{tap}.weight"] = state[name]
+        arrays[f"lin{tap}.weight"] = state[name].flatten()  # [1][channels][1][1] in the file
     if f"lin{NUM_TAPS[net]}.model.1.weight" in state:
         fail(f"{path}: more than {NUM_TAPS[net]} taps; this is not the file of {net}")
     return arrays

@@ -56,8 +56,7 @@ inline NpzArrays random_arrays(const LpipsNetwork& network) {
       add_random_convolution(arrays, layer.name + ".expand3x3", channels / 2, layer.squeeze, 3);
     }
     if (layer.tap)
-      arrays[fmt::format("lin{}.weight", num_taps++)] =
-          random_array({1, channels, 1, 1}, 0.0f, 1.0f);
+      arrays[fmt::format("lin{}.weight", num_taps++)] = random_array({channels}, 0.0f, 1.0f);
   }
   return arrays;
 }
