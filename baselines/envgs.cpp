@@ -189,7 +189,7 @@ class EnvGs final : public Method {
   }
   void set_up_losses() {
     warnings_ = geometry_.set_up(windows_.geometry, *scene_, "envgs");
-    perceptual_ = wanted_perceptual_loss(windows_.perceptual, "envgs", warnings_);
+    perceptual_ = wanted_perceptual_loss(windows_.perceptual, *scene_, "envgs", warnings_);
     warn_without_points(*scene_, "envgs", warnings_);
   }
 

@@ -47,6 +47,10 @@ function(glint_add_test)
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   add_test(NAME ${path} COMMAND ${target} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
   set_tests_properties(
-    ${path} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600
+    ${path}
+    PROPERTIES LABELS "${ARG_LABELS}"
+               TIMEOUT 600
+               # Not what this machine's user has there, such as weights of LPIPS.
+               ENVIRONMENT "XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/no_cache"
   )
 endfunction()

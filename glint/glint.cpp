@@ -139,7 +139,7 @@ class Glint final : public Method {
   }
   void set_up_losses() {
     warnings_.clear();
-    perceptual_ = wanted_perceptual_loss(windows_.perceptual, "glint", warnings_);
+    perceptual_ = wanted_perceptual_loss(windows_.perceptual, *scene_, "glint", warnings_);
     warn_without_points(*scene_, "glint", warnings_);
     for (const auto& of_losses :
          {geometry_.set_up(windows_.geometry, *scene_, "glint"),

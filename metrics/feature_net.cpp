@@ -32,7 +32,11 @@ int out_extent(int extent, const FeatureStep& step) {
 }
 
 ImageSize out_size(ImageSize size, const FeatureStep& step) {
-  const ImageSize out{out_extent(size.width, step), out_extent(size.height, step)};
+  return {out_extent(size.width, step), out_extent(size.height, step)};
+}
+
+ImageSize checked_out_size(ImageSize size, const FeatureStep& step) {
+  const ImageSize out = out_size(size, step);
   GLINT_CHECK(
       out.width > 0 && out.height > 0,
       kBadReference,
@@ -70,7 +74,8 @@ class Compiler {
   Compiler(const dnnl::engine& engine, dnnl::stream& stream) : engine_(engine), stream_(stream) {}
 
   Stage compile(const FeatureStep& step, ImageSize in) {
-    Stage stage{in, out_size(in, step), step.in_channels, step.out_channels, step.pools, step.tap};
+    Stage stage{
+        in, checked_out_size(in, step), step.in_channels, step.out_channels, step.pools, step.tap};
     if (step.pools)
       compile_pooling(step, stage);
     else
@@ -263,6 +268,14 @@ class FeatureNet::Impl {
   std::size_t largest_ = 0;        // values of a stage's output
   std::vector<float> gradients_[2];
 };
+
+bool FeatureNet::accepts(const std::vector<FeatureStep>& steps, ImageSize size) {
+  for (const FeatureStep& step : steps) {
+    size = out_size(size, step);
+    if (size.width < 1 || size.height < 1) return false;
+  }
+  return true;
+}
 
 FeatureNet::FeatureNet(const std::vector<FeatureStep>& steps, ImageSize size)
     : impl_(std::make_unique<Impl>(steps, size)) {}

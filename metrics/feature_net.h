@@ -15,6 +15,9 @@ namespace glint {
 
 class FeatureNet {
  public:
+  // Whether something is left of images of that size at the end of the chain.
+  static bool accepts(const std::vector<FeatureStep>& steps, ImageSize size);
+
   // `steps` is not kept. Errors (kBadReference): images too small for the chain.
   FeatureNet(const std::vector<FeatureStep>& steps, ImageSize size);
   ~FeatureNet();

@@ -167,6 +167,7 @@ double Lpips::evaluate(ImageView rendered, ImageView target, float weight, Image
   return mean;
 }
 
+bool Lpips::accepts(ImageSize size) const { return FeatureNet::accepts(weights().steps, size); }
 const LpipsWeights& Lpips::weights() const { return impl_->weights(); }
 LpipsRange Lpips::range() const { return impl_->range(); }
 

@@ -62,6 +62,8 @@ class Lpips {
   // dL_drendered. Errors: as tap_maps().
   double evaluate(ImageView rendered, ImageView target, float weight, ImageRef dL_drendered);
 
+  // False: images too small for the network.
+  bool accepts(ImageSize size) const;
   const LpipsWeights& weights() const;
   LpipsRange range() const;
 

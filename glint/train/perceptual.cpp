@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/perceptual.h"
 
+#include "glint/scene/scene.h"
 #include "metrics/lpips.h"
 
 namespace glint {
@@ -10,6 +11,8 @@ class LpipsLoss final : public PerceptualLoss {
  public:
   LpipsLoss(std::shared_ptr<const LpipsWeights> weights, LpipsRange range)
       : lpips_(std::move(weights), range) {}
+
+  bool accepts(ImageSize size) const override { return lpips_.accepts(size); }
 
   // The network runs on the host on either device: it waits for what ops still write, and adds to
   // the gradient before the next op begins.
@@ -37,11 +40,19 @@ std::unique_ptr<PerceptualLoss> make_perceptual_loss(bool unit_range, std::strin
 }
 
 std::unique_ptr<PerceptualLoss> wanted_perceptual_loss(
-    PerceptualConfig& config, const std::string& method, std::vector<std::string>& warnings
+    PerceptualConfig& config,
+    const Scene& scene,
+    const std::string& method,
+    std::vector<std::string>& warnings
 ) {
   if (config.lambda_lpips <= 0) return nullptr;
   std::string note;
   auto loss = make_perceptual_loss(config.lpips_unit_range, note);
+  for (const View& view : scene.train)
+    if (loss != nullptr && !loss->accepts(view.camera.size())) {
+      loss = nullptr;
+      note = fmt::format("{} is too small for the network", view.name);
+    }
   if (loss == nullptr) config.lambda_lpips = 0;
   warnings.push_back(fmt::format("{}: LPIPS is {}: {}", method, loss ? "on" : "off", note));
   return loss;

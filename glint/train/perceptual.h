@@ -14,6 +14,8 @@ namespace glint {
 class PerceptualLoss {
  public:
   virtual ~PerceptualLoss() = default;
+  // False: images too small for the network.
+  virtual bool accepts(ImageSize size) const = 0;
   // rendered, target: [H][W][3]. Adds weight * gradient to dL_drendered and returns the unweighted
   // loss.
   virtual double evaluate(
@@ -39,10 +41,14 @@ struct PerceptualConfig {
 // weights; `note` says so. Errors (kEnvironment): weights that cannot be used.
 std::unique_ptr<PerceptualLoss> make_perceptual_loss(bool unit_range, std::string& note);
 
-// The loss that the config asks for, null without; where there is none, its weight becomes 0. A
-// warning says which network it is, or why there is none, so that the record of the run has it.
+// The loss that the config asks for, null without; where there is none, or some training view is
+// too small for it, its weight becomes 0. A warning says which network it is, or why there is none,
+// so that the record of the run has it.
 std::unique_ptr<PerceptualLoss> wanted_perceptual_loss(
-    PerceptualConfig& config, const std::string& method, std::vector<std::string>& warnings
+    PerceptualConfig& config,
+    const Scene& scene,
+    const std::string& method,
+    std::vector<std::string>& warnings
 );
 
 // Adds the weighted loss to stats.terms and its gradient to dL_drendered, once its iteration has

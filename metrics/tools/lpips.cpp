@@ -28,8 +28,8 @@ class LpipsTool final : public MetricTool {
     app.add_option(
         "--weights",
         place_,
-        "npz file, or folder of lpips_<net>_v0.1.npz; otherwise GLINT_LPIPS_WEIGHTS, then " +
-            lpips_weights_place().string()
+        "npz file, or folder of lpips_<net>_v0.1.npz; otherwise GLINT_LPIPS_WEIGHTS, then "
+        "~/.cache/glint-bench/lpips"
     );
     app.add_option("--net", network_, "alex, squeeze or vgg; otherwise the file's, or alex")
         ->check(CLI::IsMember({"alex", "squeeze", "vgg"}));

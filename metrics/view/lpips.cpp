@@ -36,6 +36,7 @@ std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region>
     const auto weights = weights_of(kVariants[v].network);
     if (weights == nullptr) continue;
     Lpips lpips(weights, kVariants[v].range);
+    if (!lpips.accepts(pair.true_rgb.size())) continue;
     const std::vector<LpipsMap> taps = lpips.tap_maps(pair.rgb, pair.true_rgb);
     for (std::size_t r = 0; r < regions.size(); ++r)
       values[r][v] = lpips_mean(taps, regions[r].mask);

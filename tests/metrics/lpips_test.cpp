@@ -184,6 +184,8 @@ TEST_CASE("Images that LPIPS cannot compare are errors") {
   const std::string small =
       bad_reference([&] { lpips.distance(prediction(9, 9), reference(9, 9)); });
   CHECK(small.find("too small for LPIPS") != std::string::npos);
+  CHECK_FALSE(lpips.accepts({9, 9}));
+  CHECK(lpips.accepts({kWidth, kHeight}));
 }
 
 TEST_CASE("LPIPS of real image pairs agrees with the published code, tap by tap") {
