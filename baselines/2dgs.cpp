@@ -5,13 +5,13 @@
 // Deviations: images are compared as stored (sRGB-encoded), as the official code does; published
 // schedules are scaled to the run's iterations (scaled_step); pruning by screen size is left out,
 // as it has no effect in the official code (its statistic is cleared before it is read).
-#include <numeric>
-
+#include "glint/core/kernel.h"
 #include "glint/method.h"
 #include "glint/render/blend.h"
 #include "glint/scene/ply.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/initial_points.h"
+#include "glint/train/map_kernels.h"
 #include "glint/train/photometric.h"
 #include "glint/train/surfel_set.h"
 #include "glint/train/trainer.h"
@@ -104,17 +104,17 @@ class TwoDgs final : public Method {
   }
 
   RenderOutput render(const Camera& camera) const override {
-    ActivatedSurfels activated;
-    activate(set_.cloud(), cast<float>(camera.center()), sh_degree_, activated);
-    Rasterizer rasterizer;
-    RasterOutput out;
-    rasterizer.forward(raster_input(set_.cloud(), activated), camera, {}, out);
+    const RasterOutput& out = set_.forward(camera, sh_degree_, {}, {}, render_pass_);
     RenderOutput result;
     expected_depth_map(out, result.depth);
     result.normal = unit_normals(out.normal);
-    result.rgb = std::move(out.features);
-    result.alpha = std::move(out.alpha);
+    result.rgb = out.features;
+    result.alpha = out.alpha;
     return result;
+  }
+
+  void draw(const Camera& camera) const override {
+    set_.forward(camera, sh_degree_, {}, {}, render_pass_);
   }
 
   void save(const std::string& folder) const override {
@@ -139,17 +139,18 @@ class TwoDgs final : public Method {
   }
   void add_distortion(const RasterOutput& out, StepStats& stats) {
     const double count = static_cast<double>(out.distortion.num_pixels());
-    const std::span<const float> values = out.distortion.values();
-    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+    const double mean = sum_kernel(out.distortion.size(), SumPixels{out.distortion}) / count;
     stats.terms["distortion"] = static_cast<double>(config_.lambda_distortion) * mean;
     const float weight = config_.lambda_distortion / static_cast<float>(count);
-    gradient_.distortion = Image(out.distortion.width(), out.distortion.height(), 1, weight);
+    fit(gradient_.distortion, out.distortion.size(), 1);
+    fill(gradient_.distortion.data(), out.distortion.num_pixels(), weight);
   }
 
   TwoDgsConfig config_, windows_;
   const Scene* scene_ = nullptr;
   std::vector<std::string> warnings_;
   SurfelSet set_;
+  mutable RasterPass render_pass_;
   ViewSampler views_;
   int sh_degree_ = 3;
   RasterSettings settings_;

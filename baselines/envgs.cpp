@@ -120,7 +120,7 @@ class EnvGs final : public Method {
         std::clamp((iteration - windows_.environment_from) / windows_.sh_interval, 0, 3);
     const Image& image = forward(view.camera);
     clear_gradient(view.camera.size(), kBaseChannels, dL_dbase_);
-    dL_dimage_ = Image(view.camera.width, view.camera.height, 3);
+    clear_image(dL_dimage_, view.camera.size(), 3);
     const PhotometricWeights weights{1 - config_.lambda_ssim, config_.lambda_ssim};
     const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);
     stats.terms["photometric"] = photo.weighted(weights);
@@ -138,22 +138,23 @@ class EnvGs final : public Method {
   }
 
   RenderOutput render(const Camera& camera) const override {
-    EnvGs copy(config_, *this);
     RenderOutput out;
-    out.rgb = copy.forward(camera);
-    const GlassBuffer& buffer = copy.transport_.buffer();
+    out.rgb = forward(camera);
+    const GlassBuffer& buffer = transport_.buffer();
     out.depth = buffer.depth;
     out.normal = buffer.normal;
-    out.alpha = copy.base_output_->alpha;
+    out.alpha = base_output_->alpha;
     out.layers["specularity"] = buffer.mirrored;
-    out.layers["interface"] = copy.layers_.interface;
+    out.layers["interface"] = layers_.interface;
     if (!with_environment_) return out;
-    out.layers["reflection"] = copy.layers_.reflection;
-    Image& reflected = out.layers["reflected"] = copy.layers_.reflection;
+    out.layers["reflection"] = layers_.reflection;
+    Image& reflected = out.layers["reflected"] = layers_.reflection;
     for (std::size_t i = 0; i < reflected.values().size(); ++i)
       reflected.values()[i] *= buffer.mirrored.data()[i / 3];
     return out;
   }
+
+  void draw(const Camera& camera) const override { forward(camera); }
 
   void save(const std::string& folder) const override {
     write_surfel_ply(fs::path(folder) / "interface.ply", base_.cloud());
@@ -182,15 +183,6 @@ class EnvGs final : public Method {
   std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
-  // What rendering needs of a method in training, with fresh buffers.
-  EnvGs(const EnvGsConfig& config, const EnvGs& from)
-      : config_(config),
-        base_(from.base_.cloud(), {}, {}, 1, 0),
-        environment_(from.environment_.cloud(), {}, {}, 1, 0),
-        with_environment_(from.with_environment_),
-        base_degree_(from.base_degree_),
-        environment_degree_(from.environment_degree_) {}
-
   SurfelSet new_set(SurfelCloud cloud, const DensifyConfig& densify, std::uint64_t seed) const {
     return SurfelSet(std::move(cloud), windows_.rates, densify, scene_->spatial_scale, seed);
   }
@@ -200,7 +192,8 @@ class EnvGs final : public Method {
     warn_without_points(*scene_, "envgs", warnings_);
   }
 
-  const Image& forward(const Camera& camera) {
+  // Rendering goes through the buffers of training.
+  const Image& forward(const Camera& camera) const {
     GlassOptions options;
     options.transmission = options.fresnel = false;
     options.reflection = with_environment_;
@@ -209,16 +202,18 @@ class EnvGs final : public Method {
     const GlassBuffer& buffer = transport_.read_interface(camera, *base_output_);
     copy_color(base_output_->features, layers_.interface);
     if (with_environment_)
-      layers_.reflection =
+      copy_color(
           environment_.trace(buffer.reflected, environment_degree_, config_.mirror.settings())
-              .color;
+              .color,
+          layers_.reflection
+      );
     return transport_.compose(layers_);
   }
   void backward(const Camera& camera) {
     const GlassLayers& dL_dlayers = transport_.compose_vjp(layers_, dL_dimage_);
     const Rays* dL_drays = nullptr;
     if (with_environment_) {
-      dL_dtrace_.color = dL_dlayers.reflection;
+      copy_color(dL_dlayers.reflection, dL_dtrace_.color);
       dL_drays = &environment_.trace_backward(
           transport_.buffer().reflected, environment_degree_, config_.mirror.settings(), dL_dtrace_
       );
@@ -231,12 +226,12 @@ class EnvGs final : public Method {
   const Scene* scene_ = nullptr;
   std::vector<std::string> warnings_;
   ViewSampler views_;
-  SurfelSet base_, environment_;
+  mutable SurfelSet base_, environment_;
   bool with_environment_ = false;
   int base_degree_ = 0, environment_degree_ = 0;
-  GlassTransport transport_;
-  const RasterOutput* base_output_ = nullptr;
-  GlassLayers layers_;
+  mutable GlassTransport transport_;
+  mutable const RasterOutput* base_output_ = nullptr;
+  mutable GlassLayers layers_;
   PhotometricLoss photometric_;
   std::unique_ptr<PerceptualLoss> perceptual_;
   GeometryLosses geometry_;

@@ -77,10 +77,10 @@ class Glint final : public Method {
     return stats;
   }
 
-  // Rendering needs the same buffers as training: a copy keeps this call const.
   RenderOutput render(const Camera& camera) const override {
-    return model_.copy().render(camera, config_, phase_);
+    return model_.render(camera, config_, phase_);
   }
+  void draw(const Camera& camera) const override { model_.forward(camera, config_, phase_); }
 
   void save(const std::string& folder) const override {
     write_surfel_ply(fs::path(folder) / "interface.ply", model_.interface.cloud());
@@ -162,8 +162,8 @@ class Glint final : public Method {
   }
 
   void clear_gradients(ImageSize size) {
-    dL_dimage_ = Image(size.width, size.height, 3);
-    dL_dtransparency_ = Image(size.width, size.height, 1);
+    clear_image(dL_dimage_, size, 3);
+    clear_image(dL_dtransparency_, size, 1);
     clear_gradient(size, kInterfaceChannels, dL_dinterface_);
   }
   void add_map_losses(
@@ -196,7 +196,7 @@ class Glint final : public Method {
   const Scene* scene_ = nullptr;
   std::vector<std::string> warnings_;
   ViewSampler views_;
-  GlintModel model_;
+  mutable GlintModel model_;  // rendering goes through the buffers of training
   GlintPhase phase_;
   bool frozen_ = false;
   PhotometricLoss photometric_;

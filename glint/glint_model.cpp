@@ -3,18 +3,14 @@
 
 #include <algorithm>
 
+#include "glint/core/kernel.h"
+#include "glint/train/map_kernels.h"
+
 namespace glint {
 
 namespace {
 
-// Camera rays that start at a planar depth: the parameter of a ray with camera-space z = 1.
-Rays rays_behind(const Camera& camera, const Image& depth) {
-  Rays rays = camera_rays(camera);
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
-    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
-      rays.origins.data()[k] += depth.data()[i] * rays.directions.data()[k];
-  return rays;
-}
+constexpr std::size_t kGrain = 4096;  // pixels a block
 
 Image scaled_by_pixel(const Image& color, const Image& factor) {
   Image result = color;
@@ -35,20 +31,34 @@ const Image& GlintModel::forward(
   copy_color(interface_output_->features, layers_.interface);
   if (phase.transmission) render_transmission(camera, config);
   if (phase.reflection)
-    layers_.reflection =
-        reflection.trace(buffer.reflected, phase.reflection_degree, config.mirror.settings()).color;
+    copy_color(
+        reflection.trace(buffer.reflected, phase.reflection_degree, config.mirror.settings()).color,
+        layers_.reflection
+    );
   return transport_.compose(layers_);
 }
 
 void GlintModel::render_transmission(const Camera& camera, const GlintConfig& config) {
-  near_limit_ = buffer().depth;
-  for (float& z : near_limit_.values()) z += z > 0 ? config.secondary_near : 0;
+  fit(near_limit_, camera.size(), 1);
+  const std::size_t pixels = near_limit_.num_pixels();
+  run_kernel(
+      pixels, kGrain, ShiftDepth{buffer().depth.data(), config.secondary_near, near_limit_.data()}
+  );
   if (config.transmission == "trace") {
-    through_ = rays_behind(camera, near_limit_);
-    layers_.transmission = transmission.trace(through_, phase_.transmission_degree, {}).color;
+    camera_rays(camera, through_);
+    run_kernel(
+        pixels,
+        kGrain,
+        MoveAlongRays{through_.directions.data(), near_limit_.data(), through_.origins.data()}
+    );
+    copy_color(
+        transmission.trace(through_, phase_.transmission_degree, {}).color, layers_.transmission
+    );
   } else {
-    layers_.transmission =
-        transmission.forward(camera, phase_.transmission_degree, {}, near_limit_).features;
+    copy_color(
+        transmission.forward(camera, phase_.transmission_degree, {}, near_limit_).features,
+        layers_.transmission
+    );
   }
 }
 
@@ -56,10 +66,10 @@ void GlintModel::transmission_vjp(
     const Camera& camera, const GlintConfig& config, const Image& dL_dradiance
 ) {
   if (config.transmission == "trace") {
-    dL_dtrace_.color = dL_dradiance;
+    copy_color(dL_dradiance, dL_dtrace_.color);
     transmission.trace_backward(through_, phase_.transmission_degree, {}, dL_dtrace_);
   } else {
-    dL_dtransmission_.features = dL_dradiance;
+    copy_color(dL_dradiance, dL_dtransmission_.features);
     transmission.backward(camera, phase_.transmission_degree, {}, dL_dtransmission_, near_limit_);
   }
 }
@@ -75,7 +85,7 @@ void GlintModel::backward(
   const GlassLayers& dL_dlayers = transport_.compose_vjp(layers_, dL_dimage);
   const Rays* dL_drays = nullptr;
   if (phase_.reflection) {
-    dL_dtrace_.color = dL_dlayers.reflection;
+    copy_color(dL_dlayers.reflection, dL_dtrace_.color);
     dL_drays = &reflection.trace_backward(
         buffer().reflected, phase_.reflection_degree, config.mirror.settings(), dL_dtrace_
     );
@@ -88,10 +98,10 @@ void GlintModel::backward(
 
 // Median depth of the transmission set behind the interface, which a few faint surfels between the
 // layers do not move; where nothing is, the interface's.
-Image GlintModel::behind_depth(const Camera& camera) const {
-  RasterPass pass;
+Image GlintModel::behind_depth(const Camera& camera) {
   Image depth =
-      transmission.forward(camera, phase_.transmission_degree, {}, near_limit_, pass).depth_median;
+      transmission.forward(camera, phase_.transmission_degree, {}, near_limit_, behind_pass_)
+          .depth_median;
   for (std::size_t i = 0; i < depth.num_pixels(); ++i)
     if (depth.data()[i] <= 0) depth.data()[i] = buffer().depth.data()[i];
   return depth;
@@ -124,14 +134,6 @@ RenderOutput GlintModel::render(
   if (phase.reflection) out.layers["reflection"] = layers_.reflection;
   add_components(out);
   return out;
-}
-
-GlintModel GlintModel::copy() const {
-  GlintModel fresh;
-  fresh.interface = SurfelSet(interface.cloud(), {}, {}, 1, 0);
-  fresh.transmission = SurfelSet(transmission.cloud(), {}, {}, 1, 0);
-  fresh.reflection = SurfelSet(reflection.cloud(), {}, {}, 1, 0);
-  return fresh;
 }
 
 }  // namespace glint

@@ -40,13 +40,11 @@ class GlintModel {
 
   // All maps of a view (docs/RECORDS.md).
   RenderOutput render(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
-  // The same surfels with fresh buffers.
-  GlintModel copy() const;
 
  private:
   void render_transmission(const Camera& camera, const GlintConfig& config);
   void transmission_vjp(const Camera& camera, const GlintConfig& config, const Image& dL_dradiance);
-  Image behind_depth(const Camera& camera) const;
+  Image behind_depth(const Camera& camera);
   void add_components(RenderOutput& out) const;
 
   GlintPhase phase_;
@@ -55,6 +53,7 @@ class GlintModel {
   GlassLayers layers_;
   Image near_limit_;
   Rays through_;
+  RasterPass behind_pass_;
   RasterOutputGradient dL_dtransmission_;
   TraceOutputGradient dL_dtrace_;
 };

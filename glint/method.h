@@ -47,6 +47,8 @@ class Method {
   virtual void initialize(const Scene& scene, const RunOptions& options) = 0;
   virtual StepStats step(int iteration) = 0;  // iteration counts from 0
   virtual RenderOutput render(const Camera& camera) const = 0;
+  // The picture alone, left on the device where it was made: what FPS counts.
+  virtual void draw(const Camera& camera) const { render(camera); }
   // Surfel sets as PLY files and whatever else is needed to render again.
   virtual void save(const std::string& folder) const = 0;
   virtual void load(const std::string& folder) = 0;

@@ -29,7 +29,13 @@ const std::vector<Layer>& layers() {
       {"glint/core/", {"glint/core/"}},
       {"glint/scene/", {"glint/core/", "glint/scene/"}},
       {"glint/render/", {"glint/core/", "glint/scene/", "glint/render/"}},
-      {"glint/cuda/", {"glint/core/", "glint/scene/", "glint/render/", "glint/cuda/"}},
+      {"glint/cuda/",
+       {"glint/core/",
+        "glint/scene/",
+        "glint/render/",
+        "glint/train/",
+        "glint/cuda/",
+        "metrics/ssim_formula.h"}},
       {"glint/method.h", {"glint/core/", "glint/scene/"}},  // what the trainer drives
       {"glint/train/",
        {"glint/core/",
@@ -73,7 +79,7 @@ std::vector<SourceFile> source_files() {
   for (const char* folder : {"glint", "metrics", "baselines", "datasets", "reports", "tests"})
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       const std::string extension = entry.path().extension().string();
-      if (extension == ".h" || extension == ".cpp" || extension == ".cu")
+      if (extension == ".h" || extension == ".cpp" || extension == ".cu" || extension == ".cuh")
         files.push_back({entry.path().generic_string(), read_file(entry.path())});
     }
   std::sort(files.begin(), files.end(), [](const SourceFile& a, const SourceFile& b) {

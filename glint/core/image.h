@@ -6,13 +6,15 @@
 #include <cstddef>
 #include <span>
 #include <utility>
-#include <vector>
+
+#include "glint/core/arrays.h"
+#include "glint/core/real.h"
 
 namespace glint {
 
 struct ImageSize {
   int width = 0, height = 0;
-  std::size_t num_pixels() const {
+  GLINT_HD std::size_t num_pixels() const {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
@@ -23,15 +25,40 @@ struct BasicImageView {
   const T* data = nullptr;
   int width = 0, height = 0, channels = 0;
 
-  ImageSize size() const { return {width, height}; }
-  bool empty() const { return data == nullptr; }
-  std::size_t num_pixels() const { return size().num_pixels(); }
-  const T* pixel(int x, int y) const {
-    return data + (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                   static_cast<std::size_t>(x)) *
-                      static_cast<std::size_t>(channels);
+  GLINT_HD ImageSize size() const { return {width, height}; }
+  GLINT_HD bool empty() const { return data == nullptr; }
+  GLINT_HD std::size_t num_pixels() const { return size().num_pixels(); }
+  GLINT_HD const T* pixel(int x, int y) const { return data + offset(x, y); }
+  GLINT_HD T at(int x, int y, int c = 0) const { return pixel(x, y)[c]; }
+  GLINT_HD std::size_t offset(int x, int y) const {
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+            static_cast<std::size_t>(x)) *
+           static_cast<std::size_t>(channels);
   }
-  T at(int x, int y, int c = 0) const { return pixel(x, y)[c]; }
+};
+
+// A borrowed image that kernels write.
+template <class T>
+struct BasicImageRef {
+  T* data = nullptr;
+  int width = 0, height = 0, channels = 0;
+
+  GLINT_HD T* pixel(int x, int y) const {
+    return data + BasicImageView<T>{data, width, height, channels}.offset(x, y);
+  }
+  GLINT_HD T& at(int x, int y, int c = 0) const { return pixel(x, y)[c]; }
+};
+
+// The host copies only what is there.
+struct SynchronizedCopy {
+  SynchronizedCopy() = default;
+  SynchronizedCopy(const SynchronizedCopy&) { synchronize(); }
+  SynchronizedCopy(SynchronizedCopy&&) noexcept {}
+  SynchronizedCopy& operator=(const SynchronizedCopy&) {
+    synchronize();
+    return *this;
+  }
+  SynchronizedCopy& operator=(SynchronizedCopy&&) noexcept { return *this; }
 };
 
 template <class T>
@@ -66,13 +93,24 @@ class BasicImage {
   T at(int x, int y, int c = 0) const { return pixel(x, y)[c]; }
 
   operator BasicImageView<T>() const { return {data_.data(), width_, height_, channels_}; }
+  BasicImageView<T> view() const { return *this; }
+  BasicImageRef<T> ref() { return {data_.data(), width_, height_, channels_}; }
 
  private:
   int width_ = 0, height_ = 0, channels_ = 0;
-  std::vector<T> data_;
+  [[no_unique_address]] SynchronizedCopy before_data_;
+  Array<T> data_;
 };
 
+// Gives an image this shape; its values are not kept when it had another.
+template <class T>
+void fit(BasicImage<T>& image, ImageSize size, int channels) {
+  if (image.size() != size || image.channels() != channels)
+    image = BasicImage<T>(size.width, size.height, channels);
+}
+
 using Image = BasicImage<float>;
+using ImageRef = BasicImageRef<float>;
 using ImageView = BasicImageView<float>;
 using MaskImage = BasicImage<unsigned char>;  // one channel; non-zero means "counts"
 using MaskView = BasicImageView<unsigned char>;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -92,6 +93,25 @@ GLINT_HD double exp_fast(double x) { return exp(x); }
 template <class T>
 GLINT_HD T square(T a) {
   return a * a;
+}
+
+// Lane i of a T is at p[i * stride]: one field of kLanesOf<T> consecutive rows. This one: scalars.
+template <class T>
+struct StridedLanes {
+  GLINT_HD static T load(const float* p, std::ptrdiff_t) { return T(*p); }
+  GLINT_HD static void store(float* p, std::ptrdiff_t, T value) { *p = static_cast<float>(value); }
+};
+template <class T>
+GLINT_HD T load_strided(const float* p, std::ptrdiff_t stride) {
+  return StridedLanes<T>::load(p, stride);
+}
+template <class T>
+GLINT_HD void store_strided(float* p, std::ptrdiff_t stride, T value) {
+  StridedLanes<T>::store(p, stride, value);
+}
+template <class T>
+GLINT_HD void add_strided(float* p, std::ptrdiff_t stride, T value) {
+  store_strided(p, stride, load_strided<T>(p, stride) + value);
 }
 
 }  // namespace glint

@@ -128,12 +128,9 @@ GLINT_SIMD_INLINE Float8 load_lanes<Float8>(const float* p) {
 }
 GLINT_SIMD_INLINE void store_lanes(float* p, float v) { *p = v; }
 GLINT_SIMD_INLINE void store_lanes(float* p, Float8 v) { v.store(p); }
-// Lane i reads p[i * stride]: one field of kLanesOf<T> consecutive rows.
-template <class T>
-GLINT_SIMD_INLINE T load_strided(const float* p, std::ptrdiff_t stride) {
-  if constexpr (kLanesOf<T> == 1) {
-    return T(*p);
-  } else {
+template <>
+struct StridedLanes<Float8> {
+  static GLINT_SIMD_INLINE Float8 load(const float* p, std::ptrdiff_t stride) {
     return Float8::Lanes{
         p[0],
         p[stride],
@@ -144,14 +141,9 @@ GLINT_SIMD_INLINE T load_strided(const float* p, std::ptrdiff_t stride) {
         p[6 * stride],
         p[7 * stride]};
   }
-}
-template <class T>
-GLINT_SIMD_INLINE void store_strided(float* p, std::ptrdiff_t stride, T value) {
-  if constexpr (kLanesOf<T> == 1) {
-    *p = static_cast<float>(value);
-  } else {
+  static GLINT_SIMD_INLINE void store(float* p, std::ptrdiff_t stride, Float8 value) {
     for (int i = 0; i < 8; ++i) p[i * stride] = value[i];
   }
-}
+};
 
 }  // namespace glint

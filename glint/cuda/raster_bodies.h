@@ -108,6 +108,17 @@ struct FindTileRanges {
   }
 };
 
+struct ResetVisibility {
+  const std::uint32_t* num_tiles;
+  float* visibility;
+  std::uint8_t* in_view;  // 1: reached at least one tile
+
+  GLINT_HD void operator()(std::size_t i) const {
+    visibility[i] = 0;
+    in_view[i] = num_tiles[i] > 0 ? 1 : 0;
+  }
+};
+
 // What both passes over a tile read.
 struct TilePass {
   const Splat* splats;

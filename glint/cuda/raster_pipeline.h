@@ -4,6 +4,8 @@
 // exclusive_sum, sort_pairs and fill_zero.
 #pragma once
 
+#include <vector>
+
 #include "glint/cuda/raster_bodies.h"
 
 namespace glint::gpu {
@@ -21,14 +23,15 @@ class RasterPipeline {
       const CameraOf<float>& camera,
       const float* near_limit,
       const DistortionRange& range,
-      const DeviceImages& out
+      const DeviceImages& out,
+      float* visibility,
+      std::uint8_t* in_view
   ) {
     list_tiles(surfels, camera);
+    exec_.for_each(surfels.count, ResetVisibility{num_tiles_.data(), visibility, in_view});
     const auto pixels = static_cast<std::size_t>(pass_.width * pass_.height);
     final_transmittance_.resize(pixels);
     for (auto* image : {&first_depth_, &moment1_, &moment2_}) image->resize(range.on ? pixels : 0);
-    visibility_.resize(surfels.count);
-    exec_.fill_zero(visibility_);
     pass_.splats = splats_.data();
     pass_.features = surfels.features;
     pass_.pairs = pair_surfels_.data();
@@ -38,7 +41,7 @@ class RasterPipeline {
     pass_.channels = surfels.channels;
     pass_.range = range;
     with_channels([&]<int kChannels>() {
-      exec_.launch(ranges_.size(), ForwardTile<kChannels>{pass_, out, sums(), visibility_.data()});
+      exec_.launch(ranges_.size(), ForwardTile<kChannels>{pass_, out, sums(), visibility});
     });
   }
 
@@ -72,8 +75,15 @@ class RasterPipeline {
     });
   }
 
-  Buffer<float>& visibility() { return visibility_; }
   std::size_t num_pairs() const { return num_pairs_; }
+  // Pixels inside the surfels' screen boxes. Waits for the device.
+  std::size_t num_pixel_pairs() {
+    std::vector<PixelBox> boxes(boxes_.size());
+    exec_.download(boxes_, boxes.size(), boxes.data());
+    std::size_t sum = 0;
+    for (const PixelBox& box : boxes) sum += box.num_pixels();
+    return sum;
+  }
 
  private:
   void list_tiles(const DeviceSurfels& surfels, const CameraOf<float>& camera) {
@@ -125,7 +135,7 @@ class RasterPipeline {
   Buffer<std::uint32_t> num_tiles_, first_pair_, pair_surfels_;
   Buffer<std::uint64_t> keys_;
   Buffer<PairRange> ranges_;
-  Buffer<float> visibility_, final_transmittance_, first_depth_, moment1_, moment2_;
+  Buffer<float> final_transmittance_, first_depth_, moment1_, moment2_;
   Buffer<float> gradient_sums_;
 };
 

@@ -2,6 +2,9 @@
 // The order of kernels that traces rays, forward and backward, for an executor (raster_pipeline.h).
 #pragma once
 
+#include <numeric>
+#include <vector>
+
 #include "glint/cuda/trace_bodies.h"
 
 namespace glint::gpu {
@@ -55,6 +58,13 @@ class TracePipeline {
             dL_ddirections}
     );
     exec_.for_each(input.count, DiscVjp{input, sums_.data(), gradients});
+  }
+
+  // Contributors of all rays of the last forward call. Waits for the device.
+  std::size_t num_hits() {
+    std::vector<std::uint32_t> counts(num_rays_);
+    exec_.download(counts_, num_rays_, counts.data());
+    return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   }
 
  private:

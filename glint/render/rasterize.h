@@ -46,21 +46,17 @@ struct RasterOutput {
   Image depth_median;  // [H][W][1] z of the last contributor met while transmittance > 0.5; 0: none
   Image normal;        // [H][W][3] sum w n in camera space, each n facing the camera; not unit
   Image distortion;    // [H][W][1] sum_ij w_i w_j (m_i - m_j)^2, j < i; empty unless asked for
-  std::vector<float> visibility;      // [N] sum over pixels of w
-  std::vector<std::uint8_t> in_view;  // [N] 1: reached at least one tile
+  FloatArray visibility;        // [N] sum over pixels of w
+  Array<std::uint8_t> in_view;  // [N] 1: reached at least one tile
 };
-
-// What backward needs from forward. Opaque to callers; reusable between calls (no allocation in
-// steady state).
-struct RasterSaved;
 
 struct RasterOutputGradient {  // dL/d(output); empty images count as zero
   Image features, alpha, depth_sum, depth_median, normal, distortion;
 };
 
 struct RasterGradient {
-  std::vector<float> means, scales, rotations, opacities, features;  // shapes of RasterInput
-  std::vector<float> screen;  // [N][2] dL/d(projected centre) x (W/2, H/2): NDC, for densification
+  FloatArray means, scales, rotations, opacities, features;  // shapes of RasterInput
+  FloatArray screen;  // [N][2] dL/d(projected centre) x (W/2, H/2): NDC, for densification
 };
 
 class Rasterizer {
@@ -94,7 +90,8 @@ class Rasterizer {
   std::size_t num_pixel_pairs() const;
 
  private:
-  std::unique_ptr<RasterSaved> saved_;
+  struct Backends;  // what backward needs from forward; reused between calls
+  std::unique_ptr<Backends> backends_;
 };
 
 }  // namespace glint

@@ -3,60 +3,57 @@
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
-#include "glint/render/rasterize.h"
+#include "glint/render/raster_saved.h"
 #include "glint/render/tile_kernel.h"
 
 namespace glint {
-
-struct RasterSaved {
-  TileLists lists;
-  Image final_transmittance;  // [H][W][1]
-  // Of the distortion loss, [H][W][1]: depth of the first hit; sum w m, sum w m^2 relative to it.
-  Image first_depth, moment1, moment2;
-  std::vector<float> pair_visibility;  // [pairs]
-  std::vector<float> pair_gradients;   // [pairs][slot_width]
-};
 
 namespace {
 
 // ---- forward -----------------------------------------------------------------------------------
 
-DistortionRange distortion_range(const RasterSettings& settings) {
-  return {settings.with_distortion, settings.distortion_near, settings.distortion_far};
-}
-
 template <class T, int kChannels>
 struct ForwardVisitor {
   const TileContext& tile;
   const DistortionRange range;
-  float* pair_visibility;
+  RasterSaved& saved;
   const int channels;
   PixelSums<T, kChannels> sums[kGroupsPerTile<T>];
   T visibility;
+  unsigned blocks;
   const float* feature;
   const Splat* splat;
 
-  ForwardVisitor(const TileContext& tile, const RasterSettings& settings, float* pair_visibility)
-      : tile(tile),
-        range(distortion_range(settings)),
-        pair_visibility(pair_visibility),
-        channels(tile.input.channels) {
+  ForwardVisitor(const TileContext& tile, const RasterSettings& settings, RasterSaved& saved)
+      : tile(tile), range(distortion_range(settings)), saved(saved), channels(tile.input.channels) {
     for (auto& group : sums) group.clear();
   }
 
+  std::uint64_t groups(TileEntry entry) const {
+    return groups_of_blocks<T>(blocks_of(tile, tile.lists.boxes[entry.surfel]));
+  }
   void begin(TileEntry entry) {
     visibility = T(0);
+    blocks = 0;
     feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
     splat = &tile.lists.splats[entry.surfel];
   }
   void hit(int g, const SplatHit<T>& hit) {
     visibility += hit.weight;
+    const bool counts = any(hit.transmittance_behind < hit.transmittance);  // or stops a pixel
+    blocks |= static_cast<unsigned>(counts) << (g / kGroupsPerBlock<T>);
     sums[g].add(hit, feature, channels, splat->normal, range);
   }
-  void end(TileEntry entry) { pair_visibility[entry.pair] = lane_sum(visibility); }
-  void skip(TileEntry entry) { pair_visibility[entry.pair] = 0; }
+  void end(TileEntry entry) {
+    saved.pair_visibility[entry.pair] = lane_sum(visibility);
+    saved.pair_blocks[entry.pair] = static_cast<std::uint8_t>(blocks);
+  }
+  void skip(TileEntry entry) {
+    saved.pair_visibility[entry.pair] = 0;
+    saved.pair_blocks[entry.pair] = 0;
+  }
 
-  void store(const TilePixels<T>& pixels, RasterOutput& out, RasterSaved& saved) const {
+  void store(const TilePixels<T>& pixels, RasterOutput& out) const {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) {
       const PixelSums<T, kChannels>& s = sums[g];
       const T alpha = T(1) - pixels.final_transmittance(g);
@@ -80,9 +77,9 @@ void forward_tile(
     const TileContext& tile, const RasterSettings& settings, RasterSaved& saved, RasterOutput& out
 ) {
   TilePixels<T> pixels(tile);
-  ForwardVisitor<T, kChannels> visitor(tile, settings, saved.pair_visibility.data());
+  ForwardVisitor<T, kChannels> visitor(tile, settings, saved);
   for_each_hit(tile, pixels, visitor);
-  visitor.store(pixels, out, saved);
+  visitor.store(pixels, out);
 }
 
 // ---- backward ----------------------------------------------------------------------------------
@@ -141,6 +138,9 @@ struct BackwardVisitor {
     p.start(s, load(saved.final_transmittance, i, 0), channels, range.on);
   }
 
+  std::uint64_t groups(TileEntry entry) const {
+    return groups_of_blocks<T>(saved.pair_blocks[entry.pair]);
+  }
   void begin(TileEntry entry) {
     std::fill_n(sums, splat_sums(channels), T(0));
     feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
@@ -152,7 +152,7 @@ struct BackwardVisitor {
   float* slot_of(TileEntry entry) const {
     return &saved.pair_gradients[entry.pair * static_cast<std::size_t>(splat_sums(channels))];
   }
-  void skip(TileEntry entry) { std::fill_n(slot_of(entry), splat_sums(channels), 0.0f); }
+  void skip(TileEntry) {}  // sum_pairs() leaves out pairs without blocks
   void end(TileEntry entry) {
     const int width = splat_sums(channels);
     float* slot = slot_of(entry);
@@ -200,12 +200,12 @@ void for_each_tile(
 
 // ---- sums over a surfel's tiles ----------------------------------------------------------------
 
-void sum_pairs(
-    const TileLists& lists, std::size_t surfel, const float* slots, int width, float* sums
-) {
+void sum_pairs(const RasterSaved& saved, std::size_t surfel, int width, float* sums) {
+  const std::vector<std::uint32_t>& pair_begin = saved.lists.pair_begin;
   std::fill_n(sums, width, 0.0f);
-  for (std::uint32_t pair = lists.pair_begin[surfel]; pair < lists.pair_begin[surfel + 1]; ++pair) {
-    const float* slot = slots + static_cast<std::size_t>(pair) * width;
+  for (std::uint32_t pair = pair_begin[surfel]; pair < pair_begin[surfel + 1]; ++pair) {
+    if (saved.pair_blocks[pair] == 0) continue;
+    const float* slot = &saved.pair_gradients[static_cast<std::size_t>(pair) * width];
     for (int i = 0; i < width; i += 8)
       (Float8::load(sums + i) + Float8::load(slot + i)).store(sums + i);
   }
@@ -237,7 +237,7 @@ void zero_unseen(Mask<T> seen, SurfelGeometry<T>& g, Vec3<T>& dL_dm) {
 }
 
 template <class T>
-void store3(std::vector<float>& array, std::size_t i, Vec3<T> v) {
+void store3(FloatArray& array, std::size_t i, Vec3<T> v) {
   for (int k = 0; k < 3; ++k) store_strided(&array[3 * i + k], 3, v[k]);
 }
 
@@ -253,7 +253,7 @@ void surfel_vjp_lanes(
   alignas(32) float sums[8 * kMaxSums];
   float z[8], num_pairs[8];
   for (int i = 0; i < kLanesOf<T>; ++i) {
-    sum_pairs(saved.lists, first + i, saved.pair_gradients.data(), width, sums + i * width);
+    sum_pairs(saved, first + i, width, sums + i * width);
     std::copy_n(
         sums + i * width + kSumFeatures, input.channels, &out.features[(first + i) * input.channels]
     );
@@ -294,123 +294,65 @@ void surfel_vjp(
   });
 }
 
-void check_input(const RasterInput& input, const Camera& camera) {
-  GLINT_CHECK(
-      input.channels >= 1 && input.channels <= kMaxChannels,
-      kUsage,
-      "rasterize: {} feature channels, expected 1 to {}",
-      input.channels,
-      kMaxChannels
-  );
-  const std::size_t n = input.count;
-  const bool sizes_agree = input.means.size() == 3 * n && input.scales.size() == 2 * n &&
-                           input.rotations.size() == 4 * n && input.opacities.size() == n &&
-                           input.features.size() == n * input.channels;
-  GLINT_CHECK(sizes_agree, kUsage, "rasterize: array sizes do not match {} surfels", n);
-  GLINT_CHECK(
-      input.near_limit.empty() || input.near_limit.size() == camera.size(),
-      kUsage,
-      "rasterize: near_limit is {}x{}, the camera {}x{}",
-      input.near_limit.width,
-      input.near_limit.height,
-      camera.width,
-      camera.height
-  );
-}
-
-void fit(Image& image, ImageSize size, int channels) {
-  if (image.size() != size || image.channels() != channels)
-    image = Image(size.width, size.height, channels);
-}
-
-void fit_outputs(
-    const RasterInput& input,
-    const RasterSettings& settings,
-    ImageSize size,
-    RasterOutput& out,
-    RasterSaved& saved
-) {
-  fit(out.features, size, input.channels);
-  fit(out.normal, size, 3);
-  for (Image* image : {&out.alpha, &out.depth_sum, &out.depth_median, &saved.final_transmittance})
-    fit(*image, size, 1);
-  out.visibility.resize(input.count);
-  out.in_view.resize(input.count);
-  if (settings.with_distortion)
-    for (Image* image : {&out.distortion, &saved.first_depth, &saved.moment1, &saved.moment2})
-      fit(*image, size, 1);
-  else
-    out.distortion = Image();
+void fit_saved(const RasterSettings& settings, ImageSize size, RasterSaved& saved) {
+  fit(saved.final_transmittance, size, 1);
+  if (!settings.with_distortion) return;
+  for (Image* image : {&saved.first_depth, &saved.moment1, &saved.moment2}) fit(*image, size, 1);
 }
 
 }  // namespace
 
-Rasterizer::Rasterizer() : saved_(std::make_unique<RasterSaved>()) {}
-Rasterizer::~Rasterizer() = default;
-Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
-Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
-
-std::size_t Rasterizer::num_pairs() const { return saved_->lists.num_pairs(); }
-
-std::size_t Rasterizer::num_pixel_pairs() const {
-  std::size_t sum = 0;
-  for (const PixelBox& box : saved_->lists.boxes)
-    if (!box.empty())
-      sum += static_cast<std::size_t>(box.x_max - box.x_min) * (box.y_max - box.y_min);
-  return sum;
-}
-
-void Rasterizer::forward(
+void rasterize_forward_cpu(
     const RasterInput& input,
     const Camera& camera,
     const RasterSettings& settings,
     RasterOutput& output,
-    bool scalar
+    bool scalar,
+    RasterSaved& saved
 ) {
-  check_input(input, camera);
-  TileLists& lists = saved_->lists;
+  TileLists& lists = saved.lists;
   build_tile_lists(input, camera, settings.near_plane, scalar, lists);
-  fit_outputs(input, settings, camera.size(), output, *saved_);
-  saved_->pair_visibility.resize(lists.num_pairs());
+  fit_saved(settings, camera.size(), saved);
+  saved.pair_visibility.resize(lists.num_pairs());
+  saved.pair_blocks.resize(lists.num_pairs());
   dispatch(scalar, input.channels, [&]<class T, int kChannels>() {
     for_each_tile(input, lists, camera.size(), settings.near_plane, [&](const TileContext& tile) {
-      forward_tile<T, kChannels>(tile, settings, *saved_, output);
+      forward_tile<T, kChannels>(tile, settings, saved, output);
     });
   });
   parallel_for(input.count, 2048, [&](std::size_t i) {
     float sum = 0;
     for (std::uint32_t pair = lists.pair_begin[i]; pair < lists.pair_begin[i + 1]; ++pair)
-      sum += saved_->pair_visibility[pair];
+      sum += saved.pair_visibility[pair];
     output.visibility[i] = sum;
     output.in_view[i] = lists.boxes[i].empty() ? 0 : 1;
   });
 }
 
-void Rasterizer::backward(
+void rasterize_backward_cpu(
     const RasterInput& input,
     const Camera& camera,
     const RasterSettings& settings,
     const RasterOutput& output,
     const RasterOutputGradient& dL_doutput,
     RasterGradient& gradient,
-    bool scalar
+    bool scalar,
+    RasterSaved& saved
 ) {
-  check_input(input, camera);
-  const std::size_t n = input.count;
-  gradient.means.resize(3 * n);
-  gradient.scales.resize(2 * n);
-  gradient.rotations.resize(4 * n);
-  gradient.opacities.resize(n);
-  gradient.features.resize(n * input.channels);
-  gradient.screen.resize(2 * n);
-  const TileLists& lists = saved_->lists;
-  saved_->pair_gradients.resize(lists.num_pairs() * splat_sums(input.channels));
+  const TileLists& lists = saved.lists;
+  saved.pair_gradients.resize(lists.num_pairs() * splat_sums(input.channels));
   dispatch(scalar, input.channels, [&]<class T, int kChannels>() {
     for_each_tile(input, lists, camera.size(), settings.near_plane, [&](const TileContext& tile) {
-      backward_tile<T, kChannels>(tile, settings, *saved_, output, dL_doutput);
+      backward_tile<T, kChannels>(tile, settings, saved, output, dL_doutput);
     });
   });
-  surfel_vjp(input, camera, settings.near_plane, *saved_, scalar, gradient);
+  surfel_vjp(input, camera, settings.near_plane, saved, scalar, gradient);
+}
+
+std::size_t raster_pixel_pairs(const RasterSaved& saved) {
+  std::size_t sum = 0;
+  for (const PixelBox& box : saved.lists.boxes) sum += box.num_pixels();
+  return sum;
 }
 
 }  // namespace glint

@@ -11,10 +11,10 @@
 namespace glint {
 
 struct ActivatedSurfels {
-  int channels = 3;              // 3 + number of extra channels
-  std::vector<float> scales;     // [N][2] metres
-  std::vector<float> opacities;  // [N]
-  std::vector<float> features;   // [N][channels]: colour, then extra channels
+  int channels = 3;      // 3 + number of extra channels
+  FloatArray scales;     // [N][2] metres
+  FloatArray opacities;  // [N]
+  FloatArray features;   // [N][channels]: colour, then extra channels
 };
 
 // eye: camera centre, metres. sh_degree: 0..3 (coefficients above are ignored).

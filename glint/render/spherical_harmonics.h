@@ -72,9 +72,14 @@ template <class T>
 GLINT_HD T sh_color(T sum) {
   return max_of(sum + T(0.5f), T(0));
 }
+// From the colour, which is above zero exactly where it is not clamped.
+template <class T>
+GLINT_HD T clamped_color_vjp(T color, T dL_dcolor) {
+  return select(color > T(0), dL_dcolor, T(0));
+}
 template <class T>
 GLINT_HD T sh_color_vjp(T sum, T dL_dcolor) {
-  return select(sum + T(0.5f) > T(0), dL_dcolor, T(0));
+  return clamped_color_vjp(sum + T(0.5f), dL_dcolor);
 }
 
 }  // namespace glint

@@ -29,6 +29,11 @@ struct PixelBox {
   int tile_x_max() const { return (x_max + kTileSize - 1) / kTileSize; }
   int tile_y_max() const { return (y_max + kTileSize - 1) / kTileSize; }
   int tiles_across() const { return tile_x_max() - tile_x_min(); }
+  GLINT_HD std::size_t num_pixels() const {
+    return empty()
+               ? 0
+               : static_cast<std::size_t>(x_max - x_min) * static_cast<std::size_t>(y_max - y_min);
+  }
   int num_tiles() const { return empty() ? 0 : tiles_across() * (tile_y_max() - tile_y_min()); }
 };
 

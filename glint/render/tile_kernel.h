@@ -131,29 +131,33 @@ void visit_group(
   if (counts) visitor.hit(g, hit);
 }
 
-// Groups of a tile whose blocks a splat's box overlaps, one bit each.
+// The groups of some of a tile's blocks; one bit each, as the blocks have.
 template <class T>
-std::uint64_t groups_of(const TileContext& tile, const PixelBox& box) {
+std::uint64_t groups_of_blocks(unsigned blocks) {
+  if constexpr (kGroupsPerBlock<T> == 1) return blocks;
+  std::uint64_t groups = 0;
+  for (int block = 0; block < kTileSize; ++block)
+    groups |= (std::uint64_t{blocks} >> block & 1) * 0xff << (block * kGroupsPerBlock<T>);
+  return groups;
+}
+
+// Blocks of a tile that a splat's box overlaps.
+inline unsigned blocks_of(const TileContext& tile, const PixelBox& box) {
   const int x0 = box.x_min - tile.x0(), x1 = box.x_max - tile.x0();
   const int y0 = std::max(0, box.y_min - tile.y0()) / kBlockHeight;
   const int y1 = (std::min(kTileSize, box.y_max - tile.y0()) + kBlockHeight - 1) / kBlockHeight;
   static_assert(kBlocksAcross == 2);
   const unsigned columns = (x0 < kBlockWidth ? 0x55u : 0u) | (x1 > kBlockWidth ? 0xaau : 0u);
   const unsigned rows = (1u << (2 * y1)) - (1u << (2 * y0));
-  const std::uint64_t blocks = columns & rows;
-  if constexpr (kGroupsPerBlock<T> == 1) return blocks;
-  std::uint64_t groups = 0;
-  for (int block = 0; block < kTileSize; ++block)
-    groups |= (blocks >> block & 1) * 0xff << (block * kGroupsPerBlock<T>);
-  return groups;
+  return columns & rows;
 }
 
 // Entries between two looks at which groups are still live: rarely, because the groups of the next
 // splat would otherwise wait for the transmittance behind the last.
 inline constexpr std::uint32_t kEntriesPerLook = 16;
 
-// All hits of a tile, front to back. Visitor: begin(entry), hit(group, hit), end(entry);
-// skip(entry) for those behind everything.
+// All hits of a tile, front to back. Visitor: groups(entry), those to look at; begin(entry),
+// hit(group, hit), end(entry); skip(entry) for those without such groups or behind everything.
 template <class T, class Visitor>
 void for_each_hit(const TileContext& tile, TilePixels<T>& pixels, Visitor& visitor) {
   const std::uint32_t begin = tile.list_begin(), end = tile.list_end();
@@ -162,10 +166,14 @@ void for_each_hit(const TileContext& tile, TilePixels<T>& pixels, Visitor& visit
   for (; k < end; ++k) {
     if ((k - begin) % kEntriesPerLook == 0 && (live = pixels.live_groups()) == 0) break;
     const TileEntry entry = tile.lists.entries[k];
+    std::uint64_t groups = visitor.groups(entry) & live;
+    if (groups == 0) {
+      visitor.skip(entry);
+      continue;
+    }
     visitor.begin(entry);
     const Splat& splat = tile.lists.splats[entry.surfel];
     const PixelPlaneMap<T> map = broadcast_map<T>(splat.map);
-    std::uint64_t groups = groups_of<T>(tile, tile.lists.boxes[entry.surfel]) & live;
     for (; groups != 0; groups &= groups - 1)
       visit_group(splat, map, std::countr_zero(groups), pixels, visitor);
     visitor.end(entry);

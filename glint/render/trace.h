@@ -70,14 +70,11 @@ struct TraceOutputGradient {  // dL/d(output); empty images count as zero
 };
 
 struct TraceGradient {
-  std::vector<float> means, scales, rotations, opacities, sh_dc, sh_rest;  // shapes of TraceInput
+  FloatArray means, scales, rotations, opacities, sh_dc, sh_rest;  // shapes of TraceInput
   Rays rays;
-  std::vector<float> visibility;  // [N] sum over rays of w
-  std::vector<float>
-      half_depths;  // [N][3] sum over hits of dL/dmean t / 2, for densification [EnvGS]
+  FloatArray visibility;   // [N] sum over rays of w
+  FloatArray half_depths;  // [N][3] sum over hits of dL/dmean t / 2, for densification [EnvGS]
 };
-
-struct TraceSaved;
 
 class Tracer {
  public:
@@ -102,7 +99,8 @@ class Tracer {
   std::size_t num_hits() const;  // contributors of all rays of the last forward call
 
  private:
-  std::unique_ptr<TraceSaved> saved_;
+  struct Backends;
+  std::unique_ptr<Backends> backends_;
 };
 
 // Adds dL/d(raw parameters) to `dL_dcloud`.

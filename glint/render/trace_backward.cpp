@@ -376,46 +376,30 @@ void surfel_vjp(
   g.sh.unpack(&out.sh_dc[3 * i], &out.sh_rest[45 * i]);
 }
 
-void fit_gradient(const TraceInput& input, ImageSize size, TraceGradient& out) {
-  const std::size_t n = input.count;
-  out.means.resize(3 * n);
-  out.scales.resize(2 * n);
-  out.rotations.resize(4 * n);
-  out.opacities.resize(n);
-  out.sh_dc.resize(3 * n);
-  out.sh_rest.resize(45 * n);
-  out.visibility.resize(n);
-  out.half_depths.resize(3 * n);
-  fit(out.rays.origins, size, 3);
-  fit(out.rays.directions, size, 3);
-}
-
 }  // namespace
 
-void Tracer::backward(
+void trace_backward_cpu(
     const TraceInput& input,
     const Rays& rays,
-    const TraceSettings&,
     const TraceOutput& output,
     const TraceOutputGradient& dL_doutput,
-    TraceGradient& gradient
+    TraceGradient& gradient,
+    TraceSaved& saved
 ) {
-  check_trace_arguments(input, rays);
-  fit_gradient(input, rays.origins.size(), gradient);
   const BackwardCall call{input, rays, output, dL_doutput};
-  const std::vector<std::size_t> ends = slice_ends(*saved_, num_hits());
-  saved_->slices.resize(ends.size());
+  const std::vector<std::size_t> ends = slice_ends(saved, trace_num_hits(saved));
+  saved.slices.resize(ends.size());
   parallel_for(ends.size(), 1, [&](std::size_t i) {
     const std::size_t begin = i == 0 ? 0 : ends[i - 1];
-    backward_blocks(call, begin, ends[i], *saved_, saved_->slices[i], gradient);
+    backward_blocks(call, begin, ends[i], saved, saved.slices[i], gradient);
   });
   parallel_for(input.count, kSurfelGrain, [&](std::size_t i) {
-    const auto& slots = saved_->slot_of_surfel;
+    const auto& slots = saved.slot_of_surfel;
     const std::uint32_t ahead = slots[std::min(i + kSurfelsAhead, input.count - 1)];
-    for (const GradientSlice& slice : saved_->slices) prefetch_sum(slice, ahead);
-    surfel_vjp(input, i, collect(slots[i], saved_->slices), gradient);
+    for (const GradientSlice& slice : saved.slices) prefetch_sum(slice, ahead);
+    surfel_vjp(input, i, collect(slots[i], saved.slices), gradient);
   });
-  for (GradientSlice& slice : saved_->slices) slice.rows.clear();
+  for (GradientSlice& slice : saved.slices) slice.rows.clear();
 }
 
 }  // namespace glint

@@ -7,10 +7,11 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
-#include "glint/render/morton.h"
 
 namespace glint {
 
@@ -101,39 +102,70 @@ void write_quad(const SurfelFields<float>& s, float* corners) {
                  : std::numeric_limits<float>::quiet_NaN();  // Embree skips such triangles
 }
 
-struct Extent {
-  Vec3f low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
-};
-
 bool is_finite(const float* mean) { return std::isfinite(mean[0] + mean[1] + mean[2]); }
 
-Extent extent_of(std::span<const float> means) {
-  Extent extent;
-  for (std::size_t i = 0; i < means.size(); i += 3) {
-    if (!is_finite(&means[i])) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      extent.low[axis] = std::min(extent.low[axis], means[i + static_cast<std::size_t>(axis)]);
-      extent.high[axis] = std::max(extent.high[axis], means[i + static_cast<std::size_t>(axis)]);
+// Neighbours [begin, end) of an order of surfels.
+struct Range {
+  std::size_t begin, end;
+  std::size_t size() const { return end - begin; }
+};
+
+int widest_axis(std::span<const float> means, std::span<const std::uint32_t> order) {
+  float low[3] = {kInfinity, kInfinity, kInfinity};
+  float high[3] = {-kInfinity, -kInfinity, -kInfinity};
+  for (const std::uint32_t i : order)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], means[3 * i + axis]);
+      high[axis] = std::max(high[axis], means[3 * i + axis]);
     }
-  }
-  return extent;
+  int widest = 0;
+  for (int axis = 1; axis < 3; ++axis)
+    if (high[axis] - low[axis] > high[widest] - low[widest]) widest = axis;
+  return widest;
+}
+
+// Sorts the halves of a range apart along its widest axis, at a whole number of clusters.
+std::size_t halve(std::span<const float> means, Range range, std::vector<std::uint32_t>& order) {
+  const std::size_t num_clusters = (range.size() + kLanes - 1) / kLanes;
+  const std::size_t middle = range.begin + (num_clusters + 1) / 2 * kLanes;
+  const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+  const int axis = widest_axis(means, std::span(order).subspan(range.begin, range.size()));
+  const auto place = [&](std::uint32_t i) {
+    return std::pair(means[3 * i + static_cast<std::size_t>(axis)], i);
+  };
+  std::nth_element(
+      at(range.begin),
+      at(middle),
+      at(range.end),
+      [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); }
+  );
+  return middle;
 }
 
 }  // namespace
 
-std::vector<std::uint32_t> morton_slots(std::span<const float> means) {
-  const Extent extent = extent_of(means);
-  std::vector<std::uint64_t> keys(means.size() / 3);
-  parallel_for(keys.size(), 4096, [&](std::size_t i) {
-    const float* mean = &means[3 * i];
-    const std::uint32_t code =
-        is_finite(mean) ? morton_code({mean[0], mean[1], mean[2]}, extent.low, extent.high) : ~0u;
-    keys[i] = std::uint64_t{code} << 32 | i;
+// Clusters are the leaves of a k-d tree: smaller boxes than pieces of a space-filling curve have,
+// which also loses its resolution to surfels far away.
+std::vector<std::uint32_t> cluster_slots(std::span<const float> means) {
+  std::vector<std::uint32_t> order(means.size() / 3);
+  std::iota(order.begin(), order.end(), 0u);
+  const auto finite = std::stable_partition(order.begin(), order.end(), [&](std::uint32_t i) {
+    return is_finite(&means[3 * i]);
   });
-  std::sort(keys.begin(), keys.end());
-  std::vector<std::uint32_t> slots(keys.size());
-  for (std::size_t slot = 0; slot < keys.size(); ++slot)
-    slots[keys[slot] & ~0u] = static_cast<std::uint32_t>(slot);
+  std::vector<Range> ranges = {{0, static_cast<std::size_t>(finite - order.begin())}};
+  // The first of the ranges is as large as any.
+  for (std::vector<Range> halves; ranges.front().size() > kLanes; ranges.swap(halves)) {
+    halves.resize(2 * ranges.size());
+    parallel_for(ranges.size(), 1, [&](std::size_t i) {
+      const Range range = ranges[i];
+      const std::size_t middle = range.size() > kLanes ? halve(means, range, order) : range.end;
+      halves[2 * i] = {range.begin, middle};
+      halves[2 * i + 1] = {middle, range.end};
+    });
+  }
+  std::vector<std::uint32_t> slots(order.size());
+  for (std::size_t slot = 0; slot < order.size(); ++slot)
+    slots[order[slot]] = static_cast<std::uint32_t>(slot);
   return slots;
 }
 

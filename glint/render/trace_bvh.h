@@ -15,9 +15,9 @@
 
 namespace glint {
 
-// Slots [N] of surfels at `means` [N][3], along a Morton curve. Means that are not finite come
-// last.
-std::vector<std::uint32_t> morton_slots(std::span<const float> means);
+// Slots [N] of surfels at `means` [N][3]: eight consecutive ones are neighbours. Means that are not
+// finite come last.
+std::vector<std::uint32_t> cluster_slots(std::span<const float> means);
 
 class SurfelBvh {
  public:

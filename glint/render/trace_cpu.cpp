@@ -336,7 +336,7 @@ void prepare(
   const std::size_t n = input.count;
   const bool refit = saved.surfels.size() == n && ++saved.updates % kRebuildInterval != 0;
   if (!refit) {
-    saved.slot_of_surfel = morton_slots(input.means);
+    saved.slot_of_surfel = cluster_slots(input.means);
     saved.updates = 0;
   }
   saved.surfels.resize(n);
@@ -366,58 +366,26 @@ RayState ray_at(const Rays& rays, int sh_degree, std::size_t i) {
   return ray;
 }
 
-void check_trace_arguments(const TraceInput& input, const Rays& rays) {
-  const std::size_t n = input.count;
-  const bool sizes_agree = input.means.size() == 3 * n && input.scales.size() == 2 * n &&
-                           input.rotations.size() == 4 * n && input.opacities.size() == n &&
-                           input.sh_dc.size() == 3 * n && input.sh_rest.size() == 45 * n;
-  GLINT_CHECK(sizes_agree, kUsage, "trace: array sizes do not match {} surfels", n);
-  GLINT_CHECK(
-      rays.origins.size() == rays.directions.size() && rays.origins.channels() == 3 &&
-          rays.directions.channels() == 3,
-      kUsage,
-      "trace: origins are {}x{}x{}, directions {}x{}x{}, expected two images of 3 channels",
-      rays.origins.width(),
-      rays.origins.height(),
-      rays.origins.channels(),
-      rays.directions.width(),
-      rays.directions.height(),
-      rays.directions.channels()
-  );
-}
-
-void fit(Image& image, ImageSize size, int channels) {
-  if (image.size() != size || image.channels() != channels)
-    image = Image(size.width, size.height, channels);
-}
-
-Tracer::Tracer() : saved_(std::make_unique<TraceSaved>()) {}
-Tracer::~Tracer() = default;
-Tracer::Tracer(Tracer&&) noexcept = default;
-Tracer& Tracer::operator=(Tracer&&) noexcept = default;
-
-std::size_t Tracer::num_hits() const {
+std::size_t trace_num_hits(const TraceSaved& saved) {
   std::size_t hits = 0;
-  for (const auto& block : saved_->blocks) hits += block.size();
+  for (const auto& block : saved.blocks) hits += block.size();
   return hits;
 }
 
-void Tracer::forward(
-    const TraceInput& input, const Rays& rays, const TraceSettings& settings, TraceOutput& output
+void trace_forward_cpu(
+    const TraceInput& input,
+    const Rays& rays,
+    const TraceSettings& settings,
+    TraceOutput& output,
+    TraceSaved& saved
 ) {
-  check_trace_arguments(input, rays);
   const std::size_t num_rays = rays.origins.num_pixels();
-  const ImageSize size = rays.origins.size();
-  fit(output.color, size, 3);
-  fit(output.normal, size, 3);
-  fit(output.alpha, size, 1);
-  fit(output.depth_sum, size, 1);
-  prepare(input, settings, num_rays, *saved_);
-  const ForwardCall call{input, rays, settings, *saved_, output};
+  prepare(input, settings, num_rays, saved);
+  const ForwardCall call{input, rays, settings, saved, output};
   parallel_for_blocks(num_rays, kRaysPerTile, [&](std::size_t begin, std::size_t end) {
-    auto scratch = saved_->scratch.take();
+    auto scratch = saved.scratch.take();
     forward_tile(call, begin, end, *scratch);
-    saved_->scratch.give_back(std::move(scratch));
+    saved.scratch.give_back(std::move(scratch));
   });
 }
 

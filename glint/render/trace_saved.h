@@ -119,7 +119,22 @@ inline void prefetch_hit(const TraceSaved& saved, std::uint32_t slot) {
   for (const auto& color : saved.sh[slot].colors) __builtin_prefetch(color);
 }
 
-void check_trace_arguments(const TraceInput& input, const Rays& rays);
-void fit(Image& image, ImageSize size, int channels);
+// Tracer on the CPU. Arguments are checked, outputs and gradients have their shapes.
+void trace_forward_cpu(
+    const TraceInput& input,
+    const Rays& rays,
+    const TraceSettings& settings,
+    TraceOutput& output,
+    TraceSaved& saved
+);
+void trace_backward_cpu(
+    const TraceInput& input,
+    const Rays& rays,
+    const TraceOutput& output,
+    const TraceOutputGradient& dL_doutput,
+    TraceGradient& gradient,
+    TraceSaved& saved
+);
+std::size_t trace_num_hits(const TraceSaved& saved);
 
 }  // namespace glint

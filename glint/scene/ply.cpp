@@ -87,7 +87,7 @@ Vec3f surfel_normal(const float* wxyz) {
 }
 
 void append_surfel(std::string& bytes, const SurfelCloud& cloud, std::size_t i) {
-  const auto append_row = [&](const std::vector<float>& array, std::size_t width) {
+  const auto append_row = [&](const FloatArray& array, std::size_t width) {
     for (std::size_t k = 0; k < width; ++k) append(bytes, array[i * width + k]);
   };
   append_row(cloud.means, 3);
@@ -131,7 +131,7 @@ void copy_column(
     const PlyFile& file,
     const PlyElement& element,
     const std::string& name,
-    std::vector<float>& array,
+    FloatArray& array,
     std::size_t width,
     std::size_t at
 ) {
@@ -149,7 +149,7 @@ void copy_columns(
     const PlyFile& file,
     const PlyElement& element,
     const std::vector<std::string>& names,
-    std::vector<float>& array
+    FloatArray& array
 ) {
   for (std::size_t at = 0; at < names.size(); ++at)
     copy_column(file, element, names[at], array, names.size(), at);

@@ -47,7 +47,7 @@ void random_rotation(Rng& rng, float* wxyz) {
 }  // namespace
 
 void SurfelCloud::resize(std::size_t count) {
-  for_each_array([count](const char*, std::vector<float>& array, std::size_t width) {
+  for_each_array([count](const char*, FloatArray& array, std::size_t width) {
     array.resize(count * width);
   });
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "glint/core/arrays.h"
 #include "glint/core/vec.h"
 
 namespace glint {
@@ -18,13 +19,13 @@ inline constexpr int kShCoefficients = 16;  // degree 3
 
 // One parameter array of a cloud: `width` floats a surfel.
 struct SurfelCloud {
-  std::vector<float> means;              // [N][3] metres, world
-  std::vector<float> log_scales;         // [N][2]
-  std::vector<float> rotations;          // [N][4] quaternion w x y z, not normalised
-  std::vector<float> opacity_logits;     // [N][1]
-  std::vector<float> sh_dc;              // [N][3] coefficient 0 of R, G, B
-  std::vector<float> sh_rest;            // [N][15][3] coefficients 1..15, colour fastest
-  std::vector<float> extra_logits;       // [N][extra_names.size()]
+  FloatArray means;                      // [N][3] metres, world
+  FloatArray log_scales;                 // [N][2]
+  FloatArray rotations;                  // [N][4] quaternion w x y z, not normalised
+  FloatArray opacity_logits;             // [N][1]
+  FloatArray sh_dc;                      // [N][3] coefficient 0 of R, G, B
+  FloatArray sh_rest;                    // [N][15][3] coefficients 1..15, colour fastest
+  FloatArray extra_logits;               // [N][extra_names.size()]
   std::vector<std::string> extra_names;  // e.g. "transparency", "specular"
 
   std::size_t size() const { return opacity_logits.size(); }

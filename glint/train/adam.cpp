@@ -7,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "glint/core/parallel.h"
+#include "glint/core/error.h"
+#include "glint/core/kernel.h"
+#include "glint/train/adam_kernel.h"
 
 namespace glint {
 
@@ -32,20 +34,23 @@ std::vector<float> rates_of(
   std::vector<float> columns;
   for (const std::string& name : cloud.extra_names)
     columns.push_back(name == "transparency" ? rates.transparency : rates.specular);
+  GLINT_CHECK(columns.size() <= kMaxRates, kUsage, "Adam: {} extra channels", columns.size());
   return columns;
 }
 
-// p -= rate(i) * m / (sqrt(v) + eps) with bias-corrected moments folded into rate and `scale_v`.
-template <class Rate>
-void adam_block(
-    float* p, float* g, float* m, float* v, std::size_t count, Rate&& rate, float scale_v
-) {
-  for (std::size_t i = 0; i < count; ++i) {
-    m[i] = SurfelAdam::kBeta1 * m[i] + (1 - SurfelAdam::kBeta1) * g[i];
-    v[i] = SurfelAdam::kBeta2 * v[i] + (1 - SurfelAdam::kBeta2) * g[i] * g[i];
-    p[i] -= rate(i) * m[i] / (std::sqrt(v[i] * scale_v) + SurfelAdam::kEpsilon);
-    g[i] = 0;
-  }
+// The parts of one array.
+struct AdamArrays {
+  FloatArray *p = nullptr, *g = nullptr, *m = nullptr, *v = nullptr;
+  std::vector<float> rates;  // of the columns
+};
+
+template <bool kOneRate>
+void update(const AdamArrays& a, float correction1, float correction2) {
+  AdamKernel<kOneRate> kernel{a.p->data(), a.g->data(), a.m->data(), a.v->data(), {}, 0, 0};
+  kernel.columns = a.rates.size();
+  kernel.scale_v = 1 / correction2;
+  for (std::size_t c = 0; c < a.rates.size(); ++c) kernel.rates[c] = a.rates[c] / correction1;
+  run_kernel(a.p->size(), kGrain, kernel);
 }
 
 }  // namespace
@@ -82,46 +87,25 @@ void SurfelAdam::step(
   }
   const float position = position_rate(rates, steps_) * extent;
   ++steps_;
-  const float correction1 = 1 - std::pow(kBeta1, static_cast<float>(steps_));
-  const float correction2 = 1 - std::pow(kBeta2, static_cast<float>(steps_));
-  struct Arrays {
-    std::vector<float>*p, *g, *m, *v;
-    std::vector<float> rates;  // of the columns
-  };
-  std::array<Arrays, 7> arrays{};
+  const float correction1 = 1 - std::pow(AdamKernel<true>::kBeta1, static_cast<float>(steps_));
+  const float correction2 = 1 - std::pow(AdamKernel<true>::kBeta2, static_cast<float>(steps_));
+  std::array<AdamArrays, 7> arrays{};
   std::size_t k = 0;
-  cloud.for_each_array([&](const char* name, std::vector<float>& array, std::size_t) {
+  cloud.for_each_array([&](const char* name, FloatArray& array, std::size_t) {
     arrays[k++] = {&array, nullptr, nullptr, nullptr, rates_of(name, cloud, rates, position)};
   });
   k = 0;
-  gradient.for_each_array([&](const char*, std::vector<float>& a, std::size_t) {
-    arrays[k++].g = &a;
-  });
+  gradient.for_each_array([&](const char*, FloatArray& a, std::size_t) { arrays[k++].g = &a; });
   k = 0;
-  first_.for_each_array([&](const char*, std::vector<float>& a, std::size_t) { arrays[k++].m = &a; }
-  );
+  first_.for_each_array([&](const char*, FloatArray& a, std::size_t) { arrays[k++].m = &a; });
   k = 0;
-  second_.for_each_array([&](const char*, std::vector<float>& a, std::size_t) {
-    arrays[k++].v = &a;
-  });
-  for (const Arrays& a : arrays)
-    parallel_for_blocks(a.p->size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      const auto update = [&](auto&& rate) {
-        adam_block(
-            a.p->data() + begin,
-            a.g->data() + begin,
-            a.m->data() + begin,
-            a.v->data() + begin,
-            end - begin,
-            rate,
-            1 / correction2
-        );
-      };
-      if (a.rates.size() == 1)
-        update([rate = a.rates[0] / correction1](std::size_t) { return rate; });
-      else
-        update([&](std::size_t i) { return a.rates[(begin + i) % a.rates.size()] / correction1; });
-    });
+  second_.for_each_array([&](const char*, FloatArray& a, std::size_t) { arrays[k++].v = &a; });
+  for (const AdamArrays& a : arrays) {
+    if (a.rates.size() == 1)
+      update<true>(a, correction1, correction2);
+    else
+      update<false>(a, correction1, correction2);
+  }
 }
 
 }  // namespace glint

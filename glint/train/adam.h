@@ -45,8 +45,6 @@ float position_rate(const SurfelRates& rates, int step);
 
 class SurfelAdam {
  public:
-  static constexpr float kBeta1 = 0.9f, kBeta2 = 0.999f, kEpsilon = 1e-15f;
-
   // One step; sets `gradient` back to zero. All clouds have the same size.
   void step(SurfelCloud& cloud, SurfelCloud& gradient, const SurfelRates& rates, float extent);
 

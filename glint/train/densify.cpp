@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glint/core/kernel.h"
 #include "glint/render/activations.h"
 
 namespace glint {
 
 namespace {
 
+constexpr std::size_t kGrain = 4096;  // surfels a block
 constexpr int kChildren = 2;
 constexpr float kChildShrink = 1.6f;  // children's scale = parent's / 1.6
 
@@ -20,7 +22,7 @@ float max_scale_of(const SurfelCloud& cloud, std::size_t i) {
 }  // namespace
 
 void append_rows(SurfelCloud& cloud, const std::vector<std::uint32_t>& rows) {
-  cloud.for_each_array([&](const char*, std::vector<float>& array, std::size_t width) {
+  cloud.for_each_array([&](const char*, FloatArray& array, std::size_t width) {
     array.reserve(array.size() + rows.size() * width);
     for (const std::uint32_t row : rows)
       for (std::size_t k = 0; k < width; ++k) array.push_back(array[row * width + k]);
@@ -28,7 +30,7 @@ void append_rows(SurfelCloud& cloud, const std::vector<std::uint32_t>& rows) {
 }
 
 void keep_rows(SurfelCloud& cloud, const std::vector<std::uint8_t>& keep) {
-  cloud.for_each_array([&](const char*, std::vector<float>& array, std::size_t width) {
+  cloud.for_each_array([&](const char*, FloatArray& array, std::size_t width) {
     std::size_t next = 0;
     for (std::size_t row = 0; row < keep.size(); ++row) {
       if (keep[row] == 0) continue;
@@ -42,30 +44,37 @@ void keep_rows(SurfelCloud& cloud, const std::vector<std::uint8_t>& keep) {
 Densifier::Densifier(DensifyConfig config, float extent, std::uint64_t seed)
     : config_(config), extent_(extent), rng_(seed, hash_name("densify")) {}
 
-void Densifier::observe(const RasterOutput& output, const RasterGradient& gradient) {
-  const std::size_t count = output.in_view.size();
+DensifyStatistics Densifier::statistics(std::size_t count) {
   gradient_sum_.resize(count, 0.0f);
   views_.resize(count, 0);
-  const float scale =
-      static_cast<float>(output.alpha.height()) / static_cast<float>(config_.reference_rows);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (output.in_view[i] == 0) continue;
-    gradient_sum_[i] += scale * std::hypot(gradient.screen[2 * i], gradient.screen[2 * i + 1]);
-    ++views_[i];
-  }
+  return {gradient_sum_.data(), views_.data()};
+}
+
+float Densifier::scale_of(int rows) const {
+  return static_cast<float>(rows) / static_cast<float>(config_.reference_rows);
+}
+
+void Densifier::observe(const RasterOutput& output, const RasterGradient& gradient) {
+  const std::size_t count = output.in_view.size();
+  const float scale = scale_of(output.alpha.height());
+  run_kernel(
+      count,
+      kGrain,
+      ObserveRaster{statistics(count), output.in_view.data(), gradient.screen.data(), scale}
+  );
 }
 
 void Densifier::observe(const TraceGradient& gradient, int rows) {
   const std::size_t count = gradient.visibility.size();
-  gradient_sum_.resize(count, 0.0f);
-  views_.resize(count, 0);
-  const float scale = static_cast<float>(rows) / static_cast<float>(config_.reference_rows);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (gradient.visibility[i] <= 0) continue;
-    const float* g = &gradient.half_depths[3 * i];
-    gradient_sum_[i] += scale * std::hypot(g[0], g[1], g[2]);
-    ++views_[i];
-  }
+  run_kernel(
+      count,
+      kGrain,
+      ObserveTrace{
+          statistics(count),
+          gradient.visibility.data(),
+          gradient.half_depths.data(),
+          scale_of(rows)}
+  );
 }
 
 // Children are drawn from the parent's Gaussian in its plane.
@@ -120,11 +129,13 @@ DensifyCounts Densifier::update(int step, SurfelCloud& cloud, SurfelAdam& adam) 
   DensifyCounts counts;
   if (step >= config_.until) return counts;
   if (step > config_.from && step % config_.interval == 0) {
+    synchronize();
     counts = densify(cloud, adam, step > config_.reset_interval);
     gradient_sum_.assign(cloud.size(), 0.0f);
     views_.assign(cloud.size(), 0);
   }
   if (config_.resets && step % config_.reset_interval == 0) {
+    synchronize();
     const float ceiling = logit(config_.reset_opacity);
     for (float& value : cloud.opacity_logits) value = std::min(value, ceiling);
     std::fill(adam.first().opacity_logits.begin(), adam.first().opacity_logits.end(), 0.0f);

@@ -11,6 +11,7 @@
 #include "glint/render/trace.h"
 #include "glint/scene/surfels.h"
 #include "glint/train/adam.h"
+#include "glint/train/densify_kernels.h"
 
 namespace glint {
 
@@ -63,13 +64,15 @@ class Densifier {
 
  private:
   DensifyCounts densify(SurfelCloud& cloud, SurfelAdam& adam, bool prune_large);
+  DensifyStatistics statistics(std::size_t count);
+  float scale_of(int rows) const;  // that brings gradients to reference_rows
   void append_splits(SurfelCloud& cloud, const std::vector<std::uint32_t>& parents);
 
   DensifyConfig config_;
   float extent_;
   Rng rng_;
-  std::vector<float> gradient_sum_;
-  std::vector<std::uint32_t> views_;
+  FloatArray gradient_sum_;
+  Array<std::uint32_t> views_;
 };
 
 // Rows of every array: appended copies, and only the rows with keep[i] != 0 in their order.

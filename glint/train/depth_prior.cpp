@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/depth_prior.h"
 
-#include "glint/train/pixel_sums.h"
+#include "glint/core/kernel.h"
+#include "glint/train/check_fits.h"
+#include "glint/train/depth_prior_kernels.h"
 
 namespace glint {
 
@@ -10,37 +12,7 @@ namespace {
 // A relative variance of the depths below this is rounding of float, and no slope can be fitted.
 constexpr double kConstantDepth = 1e-12;
 
-// The pixels that count.
-template <class T>
-struct DepthPairs {
-  const BasicImage<T>& depth;
-  const Image& prior;
-  const Image& pixel_weight;
-  T z(int x, int y) const { return depth.at(x, y); }
-  T target(int x, int y) const { return static_cast<T>(prior.at(x, y)); }
-  // m, 0 where not valid.
-  T weight(int x, int y) const {
-    if (!(z(x, y) > 0) || !(prior.at(x, y) > 0)) return 0;
-    return pixel_weight.empty() ? T(1) : static_cast<T>(pixel_weight.at(x, y));
-  }
-};
-
-struct Moments {
-  double pixels = 0, m = 0, z = 0, p = 0, zz = 0, zp = 0;
-  Moments& operator+=(const Moments& o) {
-    pixels += o.pixels, m += o.m, z += o.z, p += o.p, zz += o.zz, zp += o.zp;
-    return *this;
-  }
-};
-template <class T>
-Moments moments_at(const DepthPairs<T>& pairs, int x, int y) {
-  const auto m = static_cast<double>(pairs.weight(x, y));
-  if (!(m > 0)) return {};
-  const auto z = static_cast<double>(pairs.z(x, y)), p = static_cast<double>(pairs.target(x, y));
-  return {1, m, m * z, m * p, m * z * z, m * z * p};
-}
-
-DepthFit fit_of(const Moments& sum) {
+DepthFit fit_of(const DepthMoments& sum) {
   DepthFit fit;
   if (sum.pixels < 2) return fit;
   fit.weight_sum = sum.m;
@@ -55,17 +27,15 @@ DepthFit fit_of(const Moments& sum) {
 }
 
 template <class T>
-struct FittedPairs : DepthPairs<T> {
-  DepthFit fit;
-  T scale = static_cast<T>(fit.scale), shift = static_cast<T>(fit.shift);
-  T residual(int x, int y) const { return scale * this->z(x, y) + shift - this->target(x, y); }
-  // dw/dz without the factor m.
-  T dscale_dz(int x, int y) const {
-    const T prior_offset = this->target(x, y) - static_cast<T>(fit.mean_prior);
-    const T depth_offset = this->z(x, y) - static_cast<T>(fit.mean_depth);
-    return (prior_offset - 2 * scale * depth_offset) / static_cast<T>(fit.depth_variation);
-  }
-};
+FittedPairs<T> fitted_pairs(const DepthPairs<T>& pairs, const DepthFit& fit) {
+  return {
+      pairs,
+      static_cast<T>(fit.scale),
+      static_cast<T>(fit.shift),
+      static_cast<T>(fit.mean_depth),
+      static_cast<T>(fit.mean_prior),
+      static_cast<T>(fit.depth_variation)};
+}
 
 // The gradient-matching term and its gradient with respect to the residuals, and from there to w.
 template <class T>
@@ -73,57 +43,25 @@ struct GradientMatching {
   double loss = 0;
   BasicImage<T> dL_dresidual;  // [H][W][1], empty without the term
   T dL_dscale = 0;
-  T dL_dresidual_at(int x, int y) const {
-    return dL_dresidual.empty() ? T(0) : dL_dresidual.at(x, y);
-  }
 };
 
-// Sum of m m' |r' - r| over the pixel's forward differences; adds scale * its gradient.
 template <class T>
-double match_pixel(
-    const FittedPairs<T>& pairs, int x, int y, int stride, T scale, BasicImage<T>& dL_dresidual
-) {
-  const T m = pairs.weight(x, y);
-  if (!(m > 0)) return 0;
-  double loss = 0;
-  const auto add_difference = [&](int nx, int ny, bool is_forward) {
-    if (nx < 0 || ny < 0 || nx >= pairs.depth.width() || ny >= pairs.depth.height()) return;
-    const T pair_weight = m * pairs.weight(nx, ny);
-    if (!(pair_weight > 0)) return;
-    const T difference = pairs.residual(x, y) - pairs.residual(nx, ny);
-    dL_dresidual.at(x, y) += scale * pair_weight * sign_of(difference);
-    if (is_forward) loss += static_cast<double>(pair_weight * abs_of(difference));
-  };
-  add_difference(x + stride, y, true);
-  add_difference(x, y + stride, true);
-  add_difference(x - stride, y, false);
-  add_difference(x, y - stride, false);
-  return loss;
-}
-
-template <class T>
-GradientMatching<T> match_gradients(const FittedPairs<T>& pairs, const DepthPriorLoss& options) {
+GradientMatching<T> match_gradients(const FittedPairs<T>& fitted, const DepthPriorLoss& options) {
   GradientMatching<T> result;
   if (options.gradient_scales <= 0) return result;
-  const int width = pairs.depth.width(), height = pairs.depth.height();
-  result.dL_dresidual = BasicImage<T>(width, height, 1);
+  const ImageSize size = fitted.pairs.depth.size();
+  result.dL_dresidual = BasicImage<T>(size.width, size.height, 1);
   for (int s = 0, stride = 1; s < options.gradient_scales; ++s, stride *= 2) {
-    const ImageSize grid{(width + stride - 1) / stride, (height + stride - 1) / stride};
-    const double count = sum_over_pixels(grid, [&](int i, int j) {
-      return static_cast<double>(pairs.weight(i * stride, j * stride));
-    });
+    const ImageSize grid{(size.width + stride - 1) / stride, (size.height + stride - 1) / stride};
+    const double count = sum_kernel(grid, StridedWeight<T>{fitted.pairs, stride});
     if (!(count > 0)) continue;
     const double scale = static_cast<double>(options.gradient_weight) / count;
-    result.loss +=
-        scale * sum_over_pixels(grid, [&](int i, int j) {
-          return match_pixel(
-              pairs, i * stride, j * stride, stride, static_cast<T>(scale), result.dL_dresidual
-          );
-        });
+    const MatchGradients<T> match{fitted, stride, static_cast<T>(scale), result.dL_dresidual.ref()};
+    result.loss += scale * sum_kernel(grid, match);
   }
-  result.dL_dscale = static_cast<T>(sum_over_pixels(pairs.depth.size(), [&](int x, int y) {
-    return static_cast<double>(result.dL_dresidual.at(x, y) * pairs.z(x, y));
-  }));
+  result.dL_dscale =
+      static_cast<T>(sum_kernel(size, MatchingScaleVjp<T>{fitted.pairs, result.dL_dresidual.view()})
+      );
   return result;
 }
 
@@ -132,8 +70,7 @@ GradientMatching<T> match_gradients(const FittedPairs<T>& pairs, const DepthPrio
 template <class T>
 DepthFit fit_depth(const BasicImage<T>& depth, const Image& prior, const Image& pixel_weight) {
   const DepthPairs<T> pairs{depth, prior, pixel_weight};
-  return fit_of(sum_over_pixels(depth.size(), [&](int x, int y) { return moments_at(pairs, x, y); })
-  );
+  return fit_of(sum_kernel(depth.size(), DepthMomentsAt<T>{pairs}));
 }
 
 template <class T>
@@ -150,19 +87,16 @@ double DepthPriorLoss::evaluate(
     check_fits("weights of the depth prior", pixel_weight, depth.size(), 1);
   const DepthFit fit = fit_depth(depth, prior, pixel_weight);
   if (!fit.valid) return 0;
-  const FittedPairs<T> pairs{{depth, prior, pixel_weight}, fit};
-  const GradientMatching<T> matching = match_gradients(pairs, *this);
-  const T per_weight = static_cast<T>(1 / fit.weight_sum);
-  const double squares = sum_over_pixels(depth.size(), [&](int x, int y) {
-    const T m = pairs.weight(x, y);
-    if (!(m > 0)) return 0.0;
-    const T residual = pairs.residual(x, y);
-    const T dL_dresidual = 2 * per_weight * m * residual + matching.dL_dresidual_at(x, y);
-    const T through_scale = matching.dL_dscale * m * pairs.dscale_dz(x, y);
-    dL_ddepth.at(x, y) += weight * (pairs.scale * dL_dresidual + through_scale);
-    return static_cast<double>(m * residual * residual);
-  });
-  return squares / fit.weight_sum + matching.loss;
+  const FittedPairs<T> fitted = fitted_pairs<T>({depth, prior, pixel_weight}, fit);
+  const GradientMatching<T> matching = match_gradients(fitted, *this);
+  const DepthPriorAt<T> loss_at{
+      fitted,
+      matching.dL_dresidual.view(),
+      matching.dL_dscale,
+      static_cast<T>(1 / fit.weight_sum),
+      weight,
+      dL_ddepth.ref()};
+  return sum_kernel(depth.size(), loss_at) / fit.weight_sum + matching.loss;
 }
 
 template DepthFit fit_depth(const Image&, const Image&, const Image&);

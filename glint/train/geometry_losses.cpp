@@ -82,8 +82,7 @@ void GeometryLosses::add(
     RasterOutputGradient& dL_doutput,
     StepStats& stats
 ) {
-  if (dL_ddepth_.size() != depth.size()) dL_ddepth_ = Image(depth.width(), depth.height(), 1);
-  std::fill(dL_ddepth_.values().begin(), dL_ddepth_.values().end(), 0.0f);
+  clear_image(dL_ddepth_, depth.size(), 1);
   const auto record = [&](const char* name, float weight, double loss) {
     stats.terms[name] = static_cast<double>(weight) * loss;
   };

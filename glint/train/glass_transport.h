@@ -5,19 +5,9 @@
 
 #include "glint/render/rasterize.h"
 #include "glint/render/trace.h"
+#include "glint/train/glass_kernels.h"
 
 namespace glint {
-
-// Feature channels of the interface set: its colour, t, s. A set without t has its s last, too.
-inline constexpr int kTransparencyChannel = 3, kInterfaceChannels = 5;
-
-struct GlassOptions {
-  float f0 = 0.04f;             // of Fresnel's term
-  bool transmission = true;     // off: t counts as 0
-  bool reflection = true;       // off: k_s counts as 0
-  bool detach_origins = false;  // no gradient from reflections to the interface's depth
-  bool fresnel = true;          // off: k_s = s, for methods without it
-};
 
 // What the interface says about each pixel.
 struct GlassBuffer {
@@ -36,7 +26,8 @@ struct GlassLayers {
 };
 
 // Camera rays with camera-space z = 1: t is planar depth.
-Rays camera_rays(const Camera& camera);
+void camera_rays(const Camera& camera, Rays& rays);
+PixelRays pixel_rays(const Camera& camera);
 
 // The colour channels of a rasterised interface.
 void copy_color(const Image& features, Image& color);
@@ -67,6 +58,8 @@ class GlassTransport {
   const GlassBuffer& buffer() const { return buffer_; }
 
  private:
+  GlassInputs inputs(const GlassLayers& layers) const;
+
   GlassOptions options_;
   GlassBuffer buffer_;
   Image image_, dL_dtransparency_, dL_dmirrored_;

@@ -3,8 +3,6 @@
 // normal (not normalised), N_d the normal of the surface depth, A the alpha map held constant.
 #pragma once
 
-#include <vector>
-
 #include "glint/core/image.h"
 #include "glint/scene/camera.h"
 
@@ -28,8 +26,7 @@ class NormalConsistencyLoss {
   static Image depth_normals(const Camera& camera, const Image& depth);
 
  private:
-  std::vector<Vec3f> dL_dx_, dL_dy_;  // [H][W] gradients of the differences
-  std::vector<double> row_loss_;
+  Image dL_dx_, dL_dy_;  // [H][W][3] gradients of the differences
 };
 
 }  // namespace glint

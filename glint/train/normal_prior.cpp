@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "glint/train/pixel_sums.h"
+#include "glint/core/kernel.h"
+#include "glint/train/check_fits.h"
+#include "glint/train/normal_kernels.h"
 
 namespace glint {
 
@@ -45,27 +47,21 @@ double NormalPriorLoss::evaluate(
   check_fits("normal prior", prior, normal.size(), 3);
   if (!pixel_weight.empty())
     check_fits("weights of the normal prior", pixel_weight, normal.size(), 1);
-  const double num_priors = sum_over_pixels(normal.size(), [&](int x, int y) {
-    return length2(load3<T>(prior, x, y)) > 0 ? 1.0 : 0.0;
-  });
+  const double num_priors = sum_kernel(normal.size(), CountNormals{prior});
   if (num_priors == 0) return 0;
-  const T tau = static_cast<T>(min_cosine), scale = weight / static_cast<T>(num_priors);
-  const T along_axes = static_cast<T>(l1);
-  const double sum = sum_over_pixels(normal.size(), [&](int x, int y) {
-    const Vec3<T> target = load3<T>(prior, x, y), composited = load3<T>(normal, x, y);
-    if (!(length2(target) > 0)) return 0.0;
-    const T factor = pixel_weight.empty() ? T(1) : static_cast<T>(pixel_weight.at(x, y));
-    const Vec3<T> unit = unit_normal(composited);
-    Vec3<T> dL_dunit{}, gradient = load3<T>(dL_dnormal, x, y);
-    gated_normal_loss_vjp(unit, target, tau, along_axes, scale * factor, dL_dunit);
-    unit_normal_vjp(composited, dL_dunit, gradient);
-    store3(dL_dnormal, x, y, gradient);
-    return static_cast<double>(factor * gated_normal_loss(unit, target, tau, along_axes));
-  });
-  return sum / num_priors;
+  const NormalPriorAt<T> loss_at{
+      normal,
+      prior,
+      pixel_weight,
+      static_cast<T>(min_cosine),
+      static_cast<T>(l1),
+      weight / static_cast<T>(num_priors),
+      dL_dnormal.ref()};
+  return sum_kernel(normal.size(), loss_at) / num_priors;
 }
 
 Image inverse_depth_weight(const Image& depth) {
+  synchronize();
   const auto [near, far] = central_range(depth);
   Image weights(depth.width(), depth.height(), 1);
   for (std::size_t i = 0; i < depth.num_pixels(); ++i) {

@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "glint/core/error.h"
-#include "glint/core/parallel.h"
+#include "glint/core/kernel.h"
 #include "glint/core/simd.h"
-#include "metrics/ssim.h"
+#include "glint/train/photometric_kernels.h"
 
 namespace glint {
 
@@ -70,7 +70,7 @@ double mean_of(const std::vector<double>& rows, double count) {
 
 }  // namespace
 
-float* PhotometricLoss::plane_row(std::vector<float>& planes, int plane, int y) {
+float* PhotometricLoss::plane_row(FloatArray& planes, int plane, int y) {
   return planes.data() + (static_cast<std::size_t>(plane) * height_ + y) * stride_;
 }
 
@@ -167,6 +167,35 @@ void PhotometricLoss::gradient_rows(
   });
 }
 
+PhotometricTerms PhotometricLoss::evaluate_on_gpu(
+    const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
+) {
+  const std::size_t values = 3 * rendered.num_pixels();
+  const PlaneStack planes{width_, height_};
+  SsimWindow window;
+  const std::array<float, kSsimTaps> taps = ssim_window<float>();
+  std::copy(taps.begin(), taps.end(), window.weights);
+  moments_.resize(kMomentPlanes * values);
+  moment_gradients_.resize(kGradientPlanes * values);
+  float *moments = moments_.data(), *gradients = moment_gradients_.data();
+  run_kernel(values, 1, BlurMomentRows{rendered, target, window, planes, moments});
+  const double ssim = sum_kernel(rendered.size(), SsimAt{window, planes, moments, gradients});
+  run_kernel(kGradientPlanes * values, 1, BlurGradientColumns{window, planes, gradients, moments});
+  const auto count = static_cast<double>(values);
+  const float per_value = 1.0f / static_cast<float>(values);
+  const PhotometricAt loss_at{
+      rendered,
+      target,
+      window,
+      planes,
+      moments,
+      weights.l1 * per_value,
+      -weights.ssim * per_value,
+      gradient.ref()};
+  const PhotometricSums sums = sum_kernel(rendered.size(), loss_at);
+  return {sums.l1 / count, 1.0 - ssim / count, sums.mse / count};
+}
+
 PhotometricTerms PhotometricLoss::evaluate(
     const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
 ) {
@@ -183,6 +212,7 @@ PhotometricTerms PhotometricLoss::evaluate(
   );
   width_ = rendered.width();
   height_ = rendered.height();
+  if (on_gpu()) return evaluate_on_gpu(rendered, target, weights, gradient);
   stride_ = (static_cast<std::size_t>(width_) + 7) / 8 * 8;
   moments_.resize(5 * height_ * stride_);
   moment_gradients_.resize(3 * height_ * stride_);

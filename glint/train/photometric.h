@@ -34,6 +34,9 @@ class PhotometricLoss {
   );
 
  private:
+  PhotometricTerms evaluate_on_gpu(
+      const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
+  );
   void blur_rows(const Image& rendered, const Image& target, int channel);
   void ssim_rows();
   void gradient_rows(
@@ -43,12 +46,12 @@ class PhotometricLoss {
       PhotometricWeights weights,
       Image& gradient
   );
-  float* plane_row(std::vector<float>& planes, int plane, int y);
+  float* plane_row(FloatArray& planes, int plane, int y);
 
   int width_ = 0, height_ = 0;
-  std::size_t stride_ = 0;               // floats a row of a plane, a multiple of 8
-  std::vector<float> moments_;           // [5][H][stride] horizontally blurred x, y, xx, yy, xy
-  std::vector<float> moment_gradients_;  // [3][H][stride] of x, xx, xy
+  std::size_t stride_ = 0;       // floats a row of a plane, a multiple of 8
+  FloatArray moments_;           // [5][H][stride] horizontally blurred x, y, xx, yy, xy
+  FloatArray moment_gradients_;  // [3][H][stride] of x, xx, xy
   std::vector<double> row_ssim_, row_l1_, row_mse_;  // [H] sums, added in order
 };
 

@@ -4,10 +4,14 @@
 #include <cmath>
 
 #include "glint/core/error.h"
-#include "glint/core/parallel.h"
-#include "glint/render/blend.h"
+#include "glint/core/kernel.h"
+#include "glint/train/map_kernels.h"
 
 namespace glint {
+
+namespace {
+constexpr std::size_t kPixelGrain = 4096;  // pixels a block
+}
 
 SurfelSet::SurfelSet(
     SurfelCloud cloud, SurfelRates rates, DensifyConfig densify, float extent, std::uint64_t seed
@@ -106,7 +110,7 @@ DensifyCounts SurfelSet::update(int step) {
 }
 
 void check_finite(const SurfelCloud& cloud, const std::string& set_name) {
-  cloud.for_each_array([&](const char* name, const std::vector<float>& array, std::size_t width) {
+  cloud.for_each_array([&](const char* name, const FloatArray& array, std::size_t width) {
     for (std::size_t i = 0; i < array.size(); ++i)
       GLINT_CHECK(
           std::isfinite(array[i]),
@@ -121,44 +125,44 @@ void check_finite(const SurfelCloud& cloud, const std::string& set_name) {
 }
 
 void expected_depth_map(const RasterOutput& output, Image& depth) {
-  if (depth.size() != output.alpha.size())
-    depth = Image(output.alpha.width(), output.alpha.height(), 1);
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
-    depth.data()[i] = expected_depth(output.depth_sum.data()[i], output.alpha.data()[i]);
+  fit(depth, output.alpha.size(), 1);
+  run_kernel(
+      depth.num_pixels(),
+      kPixelGrain,
+      ExpectedDepth{output.depth_sum.data(), output.alpha.data(), depth.data()}
+  );
 }
 
 void expected_depth_map_vjp(
     const RasterOutput& output, const Image& dL_ddepth, RasterOutputGradient& dL_doutput
 ) {
-  for (std::size_t i = 0; i < dL_ddepth.num_pixels(); ++i)
-    expected_depth_vjp(
-        output.depth_sum.data()[i],
-        output.alpha.data()[i],
-        dL_ddepth.data()[i],
-        dL_doutput.depth_sum.data()[i],
-        dL_doutput.alpha.data()[i]
-    );
+  run_kernel(
+      dL_ddepth.num_pixels(),
+      kPixelGrain,
+      ExpectedDepthVjp{
+          output.depth_sum.data(),
+          output.alpha.data(),
+          dL_ddepth.data(),
+          dL_doutput.depth_sum.data(),
+          dL_doutput.alpha.data()}
+  );
+}
+
+void clear_image(Image& image, ImageSize size, int channels) {
+  fit(image, size, channels);
+  fill(image.data(), image.values().size(), 0.0f);
 }
 
 void clear_gradient(ImageSize size, int features, RasterOutputGradient& dL_doutput) {
-  const auto clear = [&](Image& image, int channels) {
-    if (image.size() != size || image.channels() != channels)
-      image = Image(size.width, size.height, channels);
-    std::fill(image.values().begin(), image.values().end(), 0.0f);
-  };
-  clear(dL_doutput.features, features);
-  clear(dL_doutput.normal, 3);
-  clear(dL_doutput.alpha, 1);
-  clear(dL_doutput.depth_sum, 1);
+  clear_image(dL_doutput.features, size, features);
+  clear_image(dL_doutput.normal, size, 3);
+  clear_image(dL_doutput.alpha, size, 1);
+  clear_image(dL_doutput.depth_sum, size, 1);
 }
 
 Image unit_normals(const Image& normal) {
-  Image result = normal;
-  for (std::size_t i = 0; i < result.num_pixels(); ++i) {
-    float* n = result.data() + 3 * i;
-    const float norm = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int k = 0; k < 3; ++k) n[k] = norm > 1e-6f ? n[k] / norm : 0.0f;
-  }
+  Image result(normal.width(), normal.height(), 3);
+  run_kernel(normal.num_pixels(), kPixelGrain, UnitNormals{normal.data(), result.data()});
   return result;
 }
 

@@ -96,6 +96,8 @@ void expected_depth_map(const RasterOutput& output, Image& depth);
 void expected_depth_map_vjp(
     const RasterOutput& output, const Image& dL_ddepth, RasterOutputGradient& dL_doutput
 );
+// Zeros of a shape.
+void clear_image(Image& image, ImageSize size, int channels);
 // Zeros of the shapes of a rasterised set with so many features.
 void clear_gradient(ImageSize size, int features, RasterOutputGradient& dL_doutput);
 // Camera-space unit normals; zero: nothing hit.

@@ -31,6 +31,7 @@ void check_step(const Method& method, const StepStats& stats, const fs::path& ch
       stats.iteration,
       checkpoint.string()
   );
+  synchronize();
   try {
     method.check_finite();
   } catch (const Error& culprit) {
@@ -90,10 +91,12 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
     if (on_disk && due)
       append_line(options.folder / "log.jsonl", log_line(stats, report.seconds).dump());
     if (on_disk && (i + 1) % options.save_interval == 0) {
+      synchronize();
       method.check_finite();
       method.save(checkpoint.string());
     }
   }
+  synchronize();
   method.check_finite();
   report.num_surfels = method.num_surfels();
   return report;

@@ -50,7 +50,7 @@ void TransmissionLosses::add_plausible(
 ) {
   if (masks_.opaque.empty()) return;
   const float weight = config_.lambda_plausible;
-  dL_ddepth_ = Image(out.alpha.width(), out.alpha.height(), 1);
+  clear_image(dL_ddepth_, out.alpha.size(), 1);
   const double loss =
       depth_.evaluate(direct_depth_, buffer.depth, masks_.opaque, weight, dL_ddepth_) +
       normal_.evaluate(out.normal, view.priors.normal, masks_.opaque, weight, dL_ddirect_.normal);
@@ -96,8 +96,7 @@ void TransmissionLosses::add(
   const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
   if (guided || plausible || config_.lambda_direct > 0) {
     expected_depth_map(transmission.forward(view.camera, sh_degree, {}, {}, pass_), direct_depth_);
-    masks_ =
-        guided || plausible ? guidance_.masks(cues(view, interface, buffer)) : TransparencyMasks{};
+    if (guided || plausible) guidance_.label(cues(view, interface, buffer), masks_);
     add_direct(view, iteration, sh_degree, weights, buffer, transmission, stats);
   }
   if (guided)

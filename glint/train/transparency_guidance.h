@@ -49,8 +49,13 @@ struct TransparencyGuidance {
   static TransparencyGuidance paper() { return {}; }
   static TransparencyGuidance release() { return {GuidanceKind::kBce, 0.005f}; }
 
-  // Empty when a cue that the kind needs is missing.
-  TransparencyMasks masks(const TransparencyCues& cues) const;
+  // Empty masks when a cue that the kind needs is missing.
+  void label(const TransparencyCues& cues, TransparencyMasks& masks) const;
+  TransparencyMasks masks(const TransparencyCues& cues) const {
+    TransparencyMasks result;
+    label(cues, result);
+    return result;
+  }
   // transparency: t [H][W][1]. Adds weight * gradient to dL_dtransparency and returns the
   // unweighted loss; empty masks give 0.
   template <class T>

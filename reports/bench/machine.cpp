@@ -8,7 +8,10 @@
 #include <sstream>
 #include <thread>
 
+#include "glint/core/device.h"
 #include "glint/core/parallel.h"
+#include "glint/core/progress.h"
+#include "glint/cuda/backend.h"
 #include "reports/revision.h"
 
 namespace glint {
@@ -61,7 +64,7 @@ std::uint64_t free_disk_bytes(const fs::path& folder) {
 Json environment_json() {
   const Machine machine = this_machine();
   return {
-      {"device", "cpu"},
+      {"device", device_name()},
       {"cpu", machine.cpu},
       {"cores", machine.cores},
       {"threads", num_threads()},
@@ -83,19 +86,25 @@ double peak_memory_mb() {
   return kib * 1024 / 1e6;
 }
 
-std::string choose_device(const std::string& requested) {
+void choose_device(const std::string& requested) {
   GLINT_CHECK(
-      requested != "cuda",
-      kEnvironment,
-      "--device cuda: this program was built without the CUDA backend; use --device cpu"
-  );
-  GLINT_CHECK(
-      requested == "auto" || requested == "cpu",
+      requested == "auto" || requested == "cpu" || requested == "cuda",
       kUsage,
       "--device {}: expected auto, cpu or cuda",
       requested
   );
-  return "cpu";
+  const gpu::CudaDevice& device = gpu::cuda_device();
+  GLINT_CHECK(
+      requested != "cuda" || device.usable,
+      kEnvironment,
+      "--device cuda: {}; use --device cpu",
+      device.why_not
+  );
+  if (requested == "cpu") return use_cpu();
+  if (device.usable)
+    gpu::use_cuda();
+  else
+    log::info("on the CPU: " + device.why_not);
 }
 
 }  // namespace glint

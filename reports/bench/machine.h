@@ -28,7 +28,9 @@ Json environment_json();
 void reset_peak_memory();
 double peak_memory_mb();
 
-// "auto" and "cpu" give "cpu". Errors: kEnvironment ("cuda" without that backend), kUsage (others).
-std::string choose_device(const std::string& requested);
+// Where ops run from now on: "cpu", "cuda", or "auto": the GPU where one is usable, else the CPU,
+// with one line that says why. Call before the first scene is loaded. Errors: kEnvironment ("cuda"
+// without a usable device), kUsage (others).
+void choose_device(const std::string& requested);
 
 }  // namespace glint

@@ -53,6 +53,7 @@ void render_stage(const RunSpec& spec, const Scene& scene, const Method& method)
   for (const View& view : scene.test) {
     throw_if_interrupted();
     const RenderOutput output = method.render(view.camera);
+    synchronize();
     GLINT_CHECK(
         output.rgb.size() == view.camera.size() && output.rgb.channels() == 3,
         kBadPrediction,
@@ -72,7 +73,8 @@ void render_stage(const RunSpec& spec, const Scene& scene, const Method& method)
 
 double measure_fps(const Method& method, const Scene& scene, const TimingOptions& options) {
   const auto render = [&](int frame) {
-    method.render(scene.test[static_cast<std::size_t>(frame) % scene.test.size()].camera);
+    method.draw(scene.test[static_cast<std::size_t>(frame) % scene.test.size()].camera);
+    synchronize();
   };
   for (int frame = 0; frame < options.warmup; ++frame) render(frame);
   const auto start = Clock::now();

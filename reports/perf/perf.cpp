@@ -5,18 +5,23 @@
 #include <chrono>
 #include <thread>
 
+#include "glint/core/device.h"
 #include "glint/core/files.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
+#include "glint/cuda/backend.h"
 #include "reports/bench/machine.h"
 
 namespace glint {
 
 namespace {
 
+constexpr std::size_t kCopyBytes = std::size_t{256} << 20;  // beyond any cache
+
 double milliseconds(const std::function<void()>& body) {
   const auto start = std::chrono::steady_clock::now();
   body();
+  synchronize();
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
 }
@@ -29,14 +34,16 @@ double median(std::vector<double> values) {
 PerfRow measure(const PerfCase& c, int threads, int runs) {
   set_num_threads(threads);
   std::vector<double> times, ratios;
+  const bool with_scalar = c.run_scalar && !on_gpu();
   c.run();
-  if (c.run_scalar) c.run_scalar();
+  if (with_scalar) c.run_scalar();
   for (int i = 0; i < runs; ++i) {
     times.push_back(milliseconds(c.run));
-    if (c.run_scalar) ratios.push_back(milliseconds(c.run_scalar) / times.back());
+    if (with_scalar) ratios.push_back(milliseconds(c.run_scalar) / times.back());
   }
-  PerfRow row{c.name, c.unit, threads, median(times), 0, 0, 0};
+  PerfRow row{c.name, c.unit, threads, median(times)};
   row.per_second = c.work() / (row.ms / 1000);
+  if (c.bytes) row.bytes_per_second = c.bytes() / (row.ms / 1000);
   if (!ratios.empty()) row.scalar_ratio = median(ratios);
   return row;
 }
@@ -56,7 +63,7 @@ std::vector<PerfRow> run_perf(const PerfOptions& options) {
   for (PerfCase& c : trace_cases(options)) cases.push_back(std::move(c));
   for (PerfCase& c : training_cases(options)) cases.push_back(std::move(c));
   std::vector<PerfRow> rows;
-  const int max_threads = std::thread::hardware_concurrency() > 1 ? 2 : 1;
+  const int max_threads = std::thread::hardware_concurrency() > 1 && !on_gpu() ? 2 : 1;
   Progress progress("perf", cases.size() * static_cast<std::size_t>(max_threads));
   for (const PerfCase& c : cases) {
     if (!glob_match(options.only, c.name)) continue;
@@ -73,12 +80,14 @@ std::vector<PerfRow> run_perf(const PerfOptions& options) {
 Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) {
   Json json = {
       {"cpu", this_machine().cpu},
+      {"device", device_name()},
       {"width", options.width},
       {"height", options.height},
       {"surfels", options.surfels},
       {"overlap", options.overlap},
       {"runs", options.runs},
       {"rows", Json::array()}};
+  if (on_gpu()) json["copy_bytes_per_second"] = gpu::measure_copy_bandwidth(kCopyBytes);
   for (const PerfRow& row : rows)
     json["rows"].push_back(
         {{"op", row.name},
@@ -87,7 +96,8 @@ Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) 
          {"unit", row.unit},
          {"per_second", row.per_second},
          {"scalar_ratio", row.scalar_ratio},
-         {"thread_ratio", row.thread_ratio}}
+         {"thread_ratio", row.thread_ratio},
+         {"bytes_per_second", row.bytes_per_second}}
     );
   return json;
 }
@@ -95,29 +105,35 @@ Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) 
 std::string perf_to_text(const PerfOptions& options, const std::vector<PerfRow>& rows) {
   std::string text = fmt::format(
       "{}x{}, {} surfels (overlap {}), medians of {} runs, {}\n{:<34} {:>7} {:>10} {:>16} {:>10} "
-      "{:>10}\n",
+      "{:>10} {:>10}\n",
       options.width,
       options.height,
       options.surfels,
       options.overlap,
       options.runs,
-      this_machine().cpu,
+      on_gpu() ? device_name() : this_machine().cpu,
       "op",
       "threads",
       "ms",
       "rate",
       "vs scalar",
-      "vs 1 thr."
+      "vs 1 thr.",
+      "moves"
   );
   for (const PerfRow& row : rows)
     text += fmt::format(
-        "{:<34} {:>7} {:>10.3f} {:>16} {:>10} {:>10}\n",
+        "{:<34} {:>7} {:>10.3f} {:>16} {:>10} {:>10} {:>10}\n",
         row.name,
         row.threads,
         row.ms,
         rate(row.per_second, row.unit),
         ratio(row.scalar_ratio),
-        ratio(row.thread_ratio)
+        ratio(row.thread_ratio),
+        row.bytes_per_second > 0 ? rate(row.bytes_per_second, "B") : "-"
+    );
+  if (on_gpu())
+    text += fmt::format(
+        "copies inside the device: {}\n", rate(gpu::measure_copy_bandwidth(kCopyBytes), "B")
     );
   return text;
 }

@@ -17,15 +17,19 @@ struct PerfCase {
   std::function<double()> work;      // units of one run; called once after a run
   std::function<void()> run;         // one run
   std::function<void()> run_scalar;  // the same without SIMD; empty: no such instantiation
+  // Bytes that one run has to move at least: inputs read once, outputs written once. Empty: not
+  // said.
+  std::function<double()> bytes = {};
 };
 
 struct PerfRow {
   std::string name, unit;
   int threads = 1;
-  double ms = 0;            // median of the runs
-  double per_second = 0;    // units per second
-  double scalar_ratio = 0;  // scalar time / SIMD time, median of pairs; 0: none
-  double thread_ratio = 0;  // one thread's time / this; 0 for one thread
+  double ms = 0;                // median of the runs
+  double per_second = 0;        // units per second
+  double scalar_ratio = 0;      // scalar time / SIMD time, median of pairs; 0: none
+  double thread_ratio = 0;      // one thread's time / this; 0 for one thread
+  double bytes_per_second = 0;  // of the bytes it has to move; 0: not said
 };
 
 struct PerfOptions {
@@ -42,8 +46,8 @@ std::vector<PerfCase> raster_cases(const PerfOptions& options);
 std::vector<PerfCase> trace_cases(const PerfOptions& options);
 std::vector<PerfCase> training_cases(const PerfOptions& options);
 
-// Every case at 1 and 2 threads (1 only where the machine has one). Runs of SIMD and scalar
-// alternate, so a machine that slows down slows both.
+// Every case at 1 and 2 threads (1 only where the machine has one), or on the GPU in use. Runs of
+// SIMD and scalar alternate, so a machine that slows down slows both.
 std::vector<PerfRow> run_perf(const PerfOptions& options);
 
 Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows);

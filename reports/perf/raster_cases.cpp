@@ -38,6 +38,12 @@ struct RasterState {
   void backward(bool scalar) {
     rasterizer.backward(input, view.camera, {}, output, dL_doutput, gradient, scalar);
   }
+  // Parameters and gradients of the surfels (12 geometry and feature values each), maps.
+  double bytes(int surfel_moves, int map_moves) const {
+    const double floats = 12.0 * static_cast<double>(cloud.size()) * surfel_moves +
+                          9.0 * static_cast<double>(view.camera.size().num_pixels()) * map_moves;
+    return floats * sizeof(float);
+  }
   // Surfel-pixel pairs: pixels inside the surfels' exact screen boxes.
   double pairs() const { return static_cast<double>(rasterizer.num_pixel_pairs()); }
 };
@@ -51,12 +57,18 @@ std::vector<PerfCase> raster_cases(const PerfOptions& options) {
   const auto pairs = [s] { return s->pairs(); };
   const auto surfels = [s] { return static_cast<double>(s->cloud.size()); };
   return {
-      {"rasterize forward", "pairs", pairs, [s] { s->forward(false); }, [s] { s->forward(true); }},
+      {"rasterize forward",
+       "pairs",
+       pairs,
+       [s] { s->forward(false); },
+       [s] { s->forward(true); },
+       [s] { return s->bytes(1, 1); }},
       {"rasterize forward + backward",
        "pairs",
        pairs,
        [s] { s->forward(false), s->backward(false); },
-       [s] { s->forward(true), s->backward(true); }},
+       [s] { s->forward(true), s->backward(true); },
+       [s] { return s->bytes(3, 3); }},
       {"activate + SH degree 3", "surfels", surfels, [s] { s->shade(); }, {}},
       {"activate + SH degree 3, backward", "surfels", surfels, [s] { s->shade_vjp(); }, {}}};
 }

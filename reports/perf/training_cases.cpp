@@ -16,6 +16,11 @@ namespace glint {
 
 namespace {
 
+// So many floats, each moved so many times.
+double bytes_of(std::size_t floats, int moves) {
+  return static_cast<double>(floats * sizeof(float)) * moves;
+}
+
 PerfCase photometric_case(const PerfOptions& options) {
   struct State {
     Image x, y, gradient;
@@ -30,7 +35,8 @@ PerfCase photometric_case(const PerfOptions& options) {
       "pixels",
       [s] { return static_cast<double>(s->x.num_pixels()); },
       [s] { s->loss.evaluate(s->x, s->y, {}, s->gradient); },
-      {}};
+      {},
+      [s] { return bytes_of(s->x.values().size(), 4); }};
 }
 
 PerfCase normal_case(const PerfOptions& options) {
@@ -65,7 +71,8 @@ PerfCase adam_case(const PerfOptions& options) {
       "surfels",
       [s] { return static_cast<double>(s->cloud.size()); },
       [s] { s->adam.step(s->cloud, s->gradient, {}, 1); },
-      {}};
+      {},
+      [s] { return bytes_of(58 * s->cloud.size(), 8); }};
 }
 
 // The arrays of perf_cloud() in every set that the method saves; extra channels are repeated.
@@ -118,7 +125,8 @@ PerfCase ssim_metric_case() {
 
 std::vector<PerfCase> training_cases(const PerfOptions& options) {
   std::vector<PerfCase> cases = {
-      photometric_case(options), normal_case(options), adam_case(options), ssim_metric_case()};
+      photometric_case(options), normal_case(options), adam_case(options)};
+  if (!on_gpu()) cases.push_back(ssim_metric_case());
   for (const auto& [id, spec] : method_registry())
     if (spec.overrides.empty())
       cases.push_back(step_case(id + " training step", id, Json::object(), options));

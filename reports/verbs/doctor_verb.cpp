@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "glint/core/parallel.h"
+#include "glint/cuda/backend.h"
 #include "reports/bench/machine.h"
 #include "reports/revision.h"
 #include "reports/verbs/verb.h"
@@ -22,6 +23,14 @@ std::string gib(std::uint64_t bytes) {
   return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / static_cast<double>(kGiB));
 }
 
+std::string cuda_text() {
+  const gpu::CudaDevice& device = gpu::cuda_device();
+  if (!device.usable) return "no: " + device.why_not;
+  return fmt::format(
+      "{}, {}, driver for CUDA {}", device.name, gib(device.memory_bytes), device.driver
+  );
+}
+
 std::vector<Examined> examine(const CommonOptions& common) {
   const Machine machine = this_machine();
   const std::uint64_t disk = free_disk_bytes(common.out);
@@ -40,7 +49,7 @@ std::vector<Examined> examine(const CommonOptions& common) {
        fmt::format("{} free for {}", gib(disk), common.out),
        disk >= kNeededDisk,
        "2 GiB are needed; free some or choose another --out"},
-      {"cuda", "no (built without the CUDA backend)", true, ""},
+      {"cuda", cuda_text(), true, ""},
       {"revision", git_revision(), true, ""}};
 }
 

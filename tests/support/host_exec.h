@@ -66,6 +66,10 @@ class HostExec {
   };
 
   template <class T>
+  void download(const Buffer<T>& from, std::size_t count, T* to) {
+    std::copy_n(from.data(), count, to);
+  }
+  template <class T>
   void fill_zero(Buffer<T>& buffer) {
     std::fill_n(buffer.data(), buffer.size(), T{});
   }

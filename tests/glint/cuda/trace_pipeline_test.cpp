@@ -174,7 +174,7 @@ TEST_CASE("The GPU's tracer on the host makes the CPU's gradients") {
   const DeviceRays device_rays{rays.origins.data(), rays.directions.data()};
   gpu.forward(arrays.device(), device_rays, kNumRays, cutoffs_of({}), out.pointers());
   TraceGradient actual = expected;
-  for (std::vector<float>* values :
+  for (FloatArray* values :
        {&actual.means, &actual.scales, &actual.rotations, &actual.sh_dc, &actual.sh_rest})
     std::fill(values->begin(), values->end(), -1.0f);
   gpu.backward(

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Loops whose bodies run on either device. A kernel is a struct of numbers and pointers with
+//   GLINT_HD void operator()(std::size_t i) const;          run_kernel
+//   GLINT_HD Sum operator()(int x, int y) const;            sum_kernel; Sum: a number or +=
+// On the CPU it is a parallel loop. On the GPU it needs an entry in glint/cuda/kernels.h, which
+// fills the pointers below: so the layers under glint/cuda know nothing of it.
+#pragma once
+
+#include <type_traits>
+#include <typeinfo>
+#include <vector>
+
+#include "glint/core/device.h"
+#include "glint/core/image.h"
+#include "glint/core/parallel.h"
+
+namespace glint {
+
+template <class Kernel>
+struct OnGpu {
+  static inline void (*run)(std::size_t count, const Kernel&) = nullptr;
+};
+template <class Kernel>
+using SumOf = decltype(std::declval<const Kernel&>()(0, 0));
+template <class Kernel>
+struct SumOnGpu {
+  static inline SumOf<Kernel> (*run)(ImageSize, const Kernel&) = nullptr;
+};
+
+namespace detail {
+[[noreturn]] void throw_no_gpu_kernel(const char* name);
+}
+
+// kernel(i) for i in [0, count), `grain` at a time on a thread.
+template <class Kernel>
+void run_kernel(std::size_t count, std::size_t grain, const Kernel& kernel) {
+  if (!on_gpu())
+    return parallel_for_blocks(count, grain, [&](std::size_t begin, std::size_t end) {
+      const Kernel local = kernel;  // its numbers in registers, whatever the kernel writes
+      for (std::size_t i = begin; i < end; ++i) local(i);
+    });
+  if (OnGpu<Kernel>::run == nullptr) detail::throw_no_gpu_kernel(typeid(Kernel).name());
+  OnGpu<Kernel>::run(count, kernel);
+}
+
+// Sum of term(x, y) over all pixels: along rows, then over rows, so that the number of threads does
+// not matter. Terms may write to places of their own pixel.
+template <class F>
+auto sum_over_pixels(ImageSize size, F&& term) {
+  using Sum = decltype(term(0, 0));
+  constexpr std::size_t kRowGrain = 8;
+  std::vector<Sum> rows(size.height);
+  parallel_for(size.height, kRowGrain, [&](std::size_t row) {
+    Sum sum{};
+    for (int x = 0; x < size.width; ++x) sum += term(x, static_cast<int>(row));
+    rows[row] = sum;
+  });
+  Sum total{};
+  for (const Sum& row : rows) total += row;
+  return total;
+}
+
+// The same for a kernel, on either device. Waits for the GPU; there, the order of the sum is fixed,
+// too, and another.
+template <class Kernel>
+SumOf<Kernel> sum_kernel(ImageSize size, const Kernel& kernel) {
+  if (!on_gpu()) return sum_over_pixels(size, kernel);
+  if (SumOnGpu<Kernel>::run == nullptr) detail::throw_no_gpu_kernel(typeid(Kernel).name());
+  return SumOnGpu<Kernel>::run(size, kernel);
+}
+
+}  // namespace glint

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// The kernels of run_kernel and sum_kernel (glint/core/kernel.h) on a GPU: one line each in the
+// lists at the end.
+#pragma once
+
+#include <vector>
+
+#include "glint/core/kernel.h"
+#include "glint/cuda/block.h"
+#include "glint/render/shade_kernels.h"
+#include "glint/train/adam_kernel.h"
+#include "glint/train/densify_kernels.h"
+#include "glint/train/depth_prior_kernels.h"
+#include "glint/train/glass_kernels.h"
+#include "glint/train/map_kernels.h"
+#include "glint/train/normal_kernels.h"
+#include "glint/train/photometric_kernels.h"
+#include "glint/train/transparency_kernels.h"
+
+namespace glint::gpu {
+
+// Sums over runs of kThreads pixels, one a block, by halves.
+template <class Kernel>
+struct SumRuns {
+  static constexpr int kThreads = 256;
+  using Sum = SumOf<Kernel>;
+  struct Shared {
+    alignas(alignof(Sum)) unsigned char bytes[kThreads * sizeof(Sum)];
+  };
+  Kernel kernel;
+  ImageSize size;
+  Sum* partial;
+
+  template <class Block>
+  GLINT_HD void operator()(Block& block, Shared& shared) const {
+    Sum* sums = reinterpret_cast<Sum*>(shared.bytes);
+    block.each([&](int thread) {
+      const auto i =
+          static_cast<std::size_t>(block.index) * kThreads + static_cast<std::size_t>(thread);
+      sums[thread] = i < size.num_pixels() ? at(i) : Sum{};
+    });
+    for (int half = kThreads / 2; half > 0; half /= 2)
+      block.each([&](int thread) {
+        if (thread < half) sums[thread] += sums[thread + half];
+      });
+    block.each([&](int thread) {
+      if (thread == 0) partial[block.index] = sums[0];
+    });
+  }
+
+ private:
+  GLINT_HD Sum at(std::size_t i) const {
+    const auto width = static_cast<std::size_t>(size.width);
+    return kernel(static_cast<int>(i % width), static_cast<int>(i / width));
+  }
+};
+
+// Of the process: one device at a time.
+template <class Exec>
+Exec& executor() {
+  static Exec exec;
+  return exec;
+}
+
+template <class Exec, class Kernel>
+void run_on(std::size_t count, const Kernel& kernel) {
+  executor<Exec>().for_each(count, kernel);
+}
+
+template <class Exec, class Kernel>
+SumOf<Kernel> sum_on(ImageSize size, const Kernel& kernel) {
+  using Sum = SumOf<Kernel>;
+  static typename Exec::template Buffer<Sum> partial;
+  static std::vector<Sum> sums;
+  const std::size_t threads = SumRuns<Kernel>::kThreads;
+  const std::size_t blocks = (size.num_pixels() + threads - 1) / threads;
+  partial.resize(blocks);
+  sums.resize(blocks);
+  executor<Exec>().launch(blocks, SumRuns<Kernel>{kernel, size, partial.data()});
+  executor<Exec>().download(partial, blocks, sums.data());
+  Sum total{};
+  for (const Sum& sum : sums) total += sum;
+  return total;
+}
+
+template <class... Kernels>
+struct KernelList {
+  template <class Exec>
+  static void offer_runs() {
+    ((OnGpu<Kernels>::run = run_on<Exec, Kernels>), ...);
+  }
+  template <class Exec>
+  static void offer_sums() {
+    ((SumOnGpu<Kernels>::run = sum_on<Exec, Kernels>), ...);
+  }
+};
+
+using RunKernels = KernelList<
+    ActivateGeometry,
+    ActivateFeatures,
+    ActivateVjp,
+    TraceActivateVjp,
+    AdamKernel<true>,
+    AdamKernel<false>,
+    ObserveRaster,
+    ObserveTrace,
+    CameraRays,
+    ReadInterface,
+    ComposeGlass,
+    ComposeGlassVjp,
+    ReadInterfaceVjp,
+    ExpectedDepth,
+    ExpectedDepthVjp,
+    CopyColor,
+    UnitNormals,
+    ShiftDepth,
+    MoveAlongRays,
+    ConsistencyDepthVjp,
+    LabelL1,
+    LabelBce,
+    ErodeAndWeigh,
+    ViewingCosine,
+    BlurMomentRows,
+    BlurGradientColumns>;
+
+using SumKernels = KernelList<
+    CountNormals,
+    NormalPriorAt<float>,
+    NormalSmoothnessAt<float>,
+    NormalConsistencyAt,
+    DepthMomentsAt<float>,
+    StridedWeight<float>,
+    MatchGradients<float>,
+    MatchingScaleVjp<float>,
+    DepthPriorAt<float>,
+    SumPixels,
+    GuideL1<float>,
+    GuideBce<float>,
+    TransparencyPriorAt<float>,
+    SsimAt,
+    PhotometricAt>;
+
+}  // namespace glint::gpu

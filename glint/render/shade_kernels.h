@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+// Activation of surfels and the way back (shade.h), for as many surfels from i on as T has lanes.
+// Kernels of both devices.
+#pragma once
+
+#include "glint/render/activations.h"
+#include "glint/render/spherical_harmonics.h"
+
+namespace glint {
+
+// Parameter arrays of a cloud (SurfelCloud), or of its gradient with F = float.
+template <class F>
+struct CloudArrays {
+  F *means, *log_scales, *rotations, *opacity_logits, *sh_dc, *sh_rest, *extra_logits;
+  int num_extra;
+};
+using CloudPointers = CloudArrays<const float>;
+using CloudGradientPointers = CloudArrays<float>;
+
+template <class T>
+GLINT_HD Vec3<T> load3_strided(const float* array, std::size_t i) {
+  const float* p = array + 3 * i;
+  return {load_strided<T>(p, 3), load_strided<T>(p + 1, 3), load_strided<T>(p + 2, 3)};
+}
+
+// Unit direction from the eye to a surfel, and its length.
+template <class T>
+struct ViewDirection {
+  Vec3<T> unit;
+  T norm;
+};
+template <class T>
+GLINT_HD ViewDirection<T> view_direction(const CloudPointers& cloud, Vec3f eye, std::size_t i) {
+  const Vec3<T> d = load3_strided<T>(cloud.means, i) - Vec3<T>{T(eye.x), T(eye.y), T(eye.z)};
+  const T norm = max_of(length(d), T(1e-12f));
+  return {(T(1) / norm) * d, norm};
+}
+
+template <class T>
+GLINT_HD T sh_coefficient(const CloudPointers& cloud, std::size_t i, int k, int c) {
+  return k == 0 ? load_strided<T>(cloud.sh_dc + 3 * i + c, 3)
+                : load_strided<T>(cloud.sh_rest + 45 * i + 3 * (k - 1) + c, 45);
+}
+template <class T>
+GLINT_HD T sh_sum(const CloudPointers& cloud, std::size_t i, int count, const T basis[16], int c) {
+  T sum(0);
+  for (int k = 0; k < count; ++k) sum = fma_of(basis[k], sh_coefficient<T>(cloud, i, k, c), sum);
+  return sum;
+}
+
+struct ActivateGeometry {
+  CloudPointers cloud;
+  float *scales, *opacities;
+
+  template <class T>
+  GLINT_HD void lanes(std::size_t i) const {
+    for (std::size_t at = 2 * i; at < 2 * i + 2; ++at)
+      store_strided(scales + at, 2, exp_fast(load_strided<T>(cloud.log_scales + at, 2)));
+    store_strided(opacities + i, 1, sigmoid(load_strided<T>(cloud.opacity_logits + i, 1)));
+  }
+  GLINT_HD void operator()(std::size_t i) const { lanes<float>(i); }
+};
+
+struct ActivateFeatures {
+  CloudPointers cloud;
+  Vec3f eye;
+  int degree;
+  float* features;  // [N][3 + num_extra]
+
+  template <class T>
+  GLINT_HD void lanes(std::size_t i) const {
+    T basis[16];
+    sh_basis(degree, view_direction<T>(cloud, eye, i).unit, basis);
+    const int channels = 3 + cloud.num_extra;
+    float* to = features + i * static_cast<std::size_t>(channels);
+    for (int c = 0; c < 3; ++c)
+      store_strided(
+          to + c, channels, sh_color(sh_sum(cloud, i, sh_coefficients(degree), basis, c))
+      );
+    const float* logits = cloud.extra_logits + i * static_cast<std::size_t>(cloud.num_extra);
+    for (int e = 0; e < cloud.num_extra; ++e)
+      store_strided(to + 3 + e, channels, sigmoid(load_strided<T>(logits + e, cloud.num_extra)));
+  }
+  GLINT_HD void operator()(std::size_t i) const { lanes<float>(i); }
+};
+
+// dL/d(activated) of rasterize().
+struct ActivatedGradient {
+  const float *means, *scales, *rotations, *opacities, *features;
+};
+
+struct ActivateVjp {
+  CloudPointers cloud;
+  Vec3f eye;
+  int degree;
+  const float *scales, *opacities, *features;  // activated
+  ActivatedGradient g;
+  CloudGradientPointers out;  // added to
+
+  template <class T>
+  GLINT_HD void lanes(std::size_t i) const {
+    colors<T>(i);
+    for (std::size_t at = 2 * i; at < 2 * i + 2; ++at)
+      add_strided(
+          out.log_scales + at,
+          2,
+          exp_vjp(load_strided<T>(scales + at, 2), load_strided<T>(g.scales + at, 2))
+      );
+    for (std::size_t at = 4 * i; at < 4 * i + 4; ++at)
+      add_strided(out.rotations + at, 4, load_strided<T>(g.rotations + at, 4));
+    const T opacity = load_strided<T>(opacities + i, 1);
+    add_strided(
+        out.opacity_logits + i, 1, sigmoid_vjp(opacity, load_strided<T>(g.opacities + i, 1))
+    );
+    extra<T>(i);
+  }
+  GLINT_HD void operator()(std::size_t i) const { lanes<float>(i); }
+
+ private:
+  GLINT_HD int channels() const { return 3 + cloud.num_extra; }
+  template <class T>
+  GLINT_HD void colors(std::size_t i) const {
+    const ViewDirection<T> view = view_direction<T>(cloud, eye, i);
+    const int count = sh_coefficients(degree);
+    T basis[16], dL_dbasis[16];
+    sh_basis(degree, view.unit, basis);
+    for (int k = 0; k < count; ++k) dL_dbasis[k] = T(0);
+    for (int c = 0; c < 3; ++c) {
+      const std::size_t at = i * static_cast<std::size_t>(channels()) + static_cast<std::size_t>(c);
+      const T dL_dsum = clamped_color_vjp(
+          load_strided<T>(features + at, channels()), load_strided<T>(g.features + at, channels())
+      );
+      add_strided(out.sh_dc + 3 * i + c, 3, dL_dsum * basis[0]);
+      for (int k = 1; k < count; ++k) {
+        add_strided(out.sh_rest + 45 * i + 3 * (k - 1) + c, 45, dL_dsum * basis[k]);
+        dL_dbasis[k] = fma_of(dL_dsum, sh_coefficient<T>(cloud, i, k, c), dL_dbasis[k]);
+      }
+    }
+    Vec3<T> dL_dd{};
+    sh_basis_vjp(degree, view.unit, dL_dbasis, dL_dd);
+    const Vec3<T> dL_dmean = normalize_vjp(view.unit, view.norm, dL_dd);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t at = 3 * i + static_cast<std::size_t>(axis);
+      add_strided(out.means + at, 3, load_strided<T>(g.means + at, 3) + dL_dmean[axis]);
+    }
+  }
+  template <class T>
+  GLINT_HD void extra(std::size_t i) const {
+    const int n = cloud.num_extra;
+    const std::size_t row = i * static_cast<std::size_t>(channels()) + 3;
+    for (int e = 0; e < n; ++e) {
+      const T value = load_strided<T>(features + row + e, channels());
+      add_strided(
+          out.extra_logits + i * static_cast<std::size_t>(n) + e,
+          n,
+          sigmoid_vjp(value, load_strided<T>(g.features + row + e, channels()))
+      );
+    }
+  }
+};
+
+// dL/d(activated) of trace().
+struct TracedGradient {
+  const float *means, *scales, *rotations, *opacities, *sh_dc, *sh_rest;
+};
+
+struct TraceActivateVjp {
+  const float *scales, *opacities;  // activated
+  TracedGradient g;
+  CloudGradientPointers out;  // added to
+
+  GLINT_HD void operator()(std::size_t i) const {
+    add_row(g.means, i, 3, out.means);
+    add_row(g.rotations, i, 4, out.rotations);
+    add_row(g.sh_dc, i, 3, out.sh_dc);
+    add_row(g.sh_rest, i, 45, out.sh_rest);
+    for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
+      out.log_scales[k] += exp_vjp(scales[k], g.scales[k]);
+    out.opacity_logits[i] += sigmoid_vjp(opacities[i], g.opacities[i]);
+  }
+
+ private:
+  GLINT_HD static void add_row(const float* from, std::size_t i, std::size_t width, float* to) {
+    for (std::size_t k = i * width; k < (i + 1) * width; ++k) to[k] += from[k];
+  }
+};
+
+}  // namespace glint

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Statistics of density control, per surfel and view.
+#pragma once
+
+#include <cstdint>
+
+#include "glint/core/vec.h"
+
+namespace glint {
+
+struct DensifyStatistics {
+  float* gradient_sums;  // [N]
+  std::uint32_t* views;  // [N] in which the surfel was seen
+
+  GLINT_HD void add(std::size_t i, float gradient) const {
+    gradient_sums[i] += gradient;
+    ++views[i];
+  }
+};
+
+struct ObserveRaster {
+  DensifyStatistics statistics;
+  const std::uint8_t* in_view;  // [N]
+  const float* screen;          // [N][2]
+  float scale;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    if (in_view[i] == 0) return;
+    statistics.add(i, scale * hypotf(screen[2 * i], screen[2 * i + 1]));
+  }
+};
+
+// |v| without overflow of the squares.
+GLINT_HD float safe_length(Vec3f v) {
+  const float x = abs_of(v.x), y = abs_of(v.y), z = abs_of(v.z);
+  const float a = max_of(max_of(x, y), z);
+  if (!(a > 0)) return a;
+  return a * sqrt_of(square(x / a) + square(y / a) + square(z / a));
+}
+
+struct ObserveTrace {
+  DensifyStatistics statistics;
+  const float* visibility;   // [N]
+  const float* half_depths;  // [N][3]
+  float scale;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    if (visibility[i] <= 0) return;
+    const float* g = half_depths + 3 * i;
+    statistics.add(i, scale * safe_length({g[0], g[1], g[2]}));
+  }
+};
+
+}  // namespace glint

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// GlassTransport, pixel by pixel.
+#pragma once
+
+#include "glint/render/blend.h"
+#include "glint/render/transport.h"
+#include "glint/train/pixel_losses.h"
+
+namespace glint {
+
+// Feature channels of the interface set: its colour, t, s. A set without t has its s last, too.
+inline constexpr int kTransparencyChannel = 3, kInterfaceChannels = 5;
+
+struct GlassOptions {
+  float f0 = 0.04f;             // of Fresnel's term
+  bool transmission = true;     // off: t counts as 0
+  bool reflection = true;       // off: k_s counts as 0
+  bool detach_origins = false;  // no gradient from reflections to the interface's depth
+  bool fresnel = true;          // off: k_s = s, for methods without it
+};
+
+GLINT_HD Vec3f get3(const float* image, std::size_t i) {
+  if (image == nullptr) return {};
+  return {image[3 * i], image[3 * i + 1], image[3 * i + 2]};
+}
+GLINT_HD void put3(float* image, std::size_t i, Vec3f v) {
+  image[3 * i] = v.x;
+  image[3 * i + 1] = v.y;
+  image[3 * i + 2] = v.z;
+}
+
+// The camera ray of a pixel: camera space with z = 1, and its length.
+struct PixelRay {
+  Vec3f in_cam;
+  float norm;
+  GLINT_HD Vec3f unit() const { return (1 / norm) * in_cam; }
+};
+// Of all pixels of a camera.
+struct PixelRays {
+  double fx, fy, cx, cy;
+  std::size_t width;
+  Mat3f rotation;  // camera from world
+  Vec3f eye;       // world
+
+  GLINT_HD PixelRay at(std::size_t i) const {
+    const double x = static_cast<double>(i % width) + 0.5, y = static_cast<double>(i / width) + 0.5;
+    const Vec3f d{static_cast<float>((x - cx) / fx), static_cast<float>((y - cy) / fy), 1.0f};
+    return {d, length(d)};
+  }
+};
+
+struct CameraRays {
+  PixelRays rays;
+  float *origins, *directions;
+  GLINT_HD void operator()(std::size_t i) const {
+    put3(origins, i, rays.eye);
+    put3(directions, i, transpose_times(rays.rotation, rays.at(i).in_cam));
+  }
+};
+
+// Maps of a GlassBuffer.
+struct GlassMaps {
+  float *depth, *normal, *transparency, *specular, *fresnel, *mirrored, *origins, *directions;
+};
+
+struct ReadInterface {
+  static constexpr float kLeastNormal = 1e-6f;  // of a composited normal that has a direction
+  PixelRays rays;
+  GlassOptions options;
+  int channels;
+  const float *features, *alpha, *depth_sum, *normal;
+  GlassMaps out;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const float* feature = features + static_cast<std::size_t>(channels) * i;
+    const float z = expected_depth(depth_sum[i], alpha[i]);
+    const Vec3f raw = get3(normal, i);
+    const float norm = length(raw);
+    const bool hit = z > 0 && norm > kLeastNormal;
+    const Vec3f n = hit ? (1 / norm) * raw : Vec3f{};
+    const PixelRay ray = rays.at(i);
+    const float specular = feature[channels - 1];
+    const float fresnel = keep(options.fresnel, schlick(options.f0, -dot(n, ray.unit())));
+    out.depth[i] = z;
+    put3(out.normal, i, n);
+    out.transparency[i] = options.transmission ? feature[kTransparencyChannel] : 0.0f;
+    out.specular[i] = specular;
+    out.fresnel[i] = fresnel;
+    out.mirrored[i] = keep(hit && options.reflection, mirrored_share(specular, fresnel));
+    const Vec3f w = hit ? mirrored_direction(ray.unit(), n) : Vec3f{};
+    put3(out.origins, i, rays.eye + transpose_times(rays.rotation, z * ray.in_cam));
+    put3(out.directions, i, transpose_times(rays.rotation, w));
+  }
+};
+
+// What the picture is made of; layers that are switched off may be null.
+struct GlassInputs {
+  const float *interface, *transmission, *reflection;  // [H][W][3]
+  const float *transparency, *mirrored;                // [H][W][1]
+  GLINT_HD GlassRadiance<float> at(std::size_t i) const {
+    return {
+        get3(interface, i),
+        get3(transmission, i),
+        get3(reflection, i),
+        transparency[i],
+        mirrored[i]};
+  }
+};
+
+struct ComposeGlass {
+  GlassInputs in;
+  float* image;
+  GLINT_HD void operator()(std::size_t i) const { put3(image, i, outgoing_radiance(in.at(i))); }
+};
+
+struct ComposeGlassVjp {
+  GlassInputs in;
+  GlassOptions options;
+  const float* dL_dimage;
+  float *dL_dinterface, *dL_dtransmission, *dL_dreflection, *dL_dtransparency, *dL_dmirrored;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const GlassRadiance<float> g = outgoing_radiance_vjp(in.at(i), get3(dL_dimage, i));
+    put3(dL_dinterface, i, g.interface);
+    put3(dL_dtransmission, i, g.transmission);
+    put3(dL_dreflection, i, g.reflection);
+    dL_dtransparency[i] = keep(options.transmission, g.transparency);
+    dL_dmirrored[i] = keep(options.reflection, g.mirrored);
+  }
+};
+
+struct ReadInterfaceVjp {
+  PixelRays rays;
+  GlassOptions options;
+  int channels;
+  const float *alpha, *depth_sum, *raw_normal;                   // of the interface
+  const float *normal, *specular, *fresnel;                      // of the buffer
+  const float *dL_dcolor, *dL_dt, *dL_dmirrored;                 // of compose()
+  const float *dL_dmap_t, *dL_dorigins, *dL_ddirections;         // may be null
+  float *dL_dfeatures, *dL_ddepth_sum, *dL_dalpha, *dL_dnormal;  // added to
+
+  GLINT_HD void operator()(std::size_t i) const {
+    float* feature = dL_dfeatures + static_cast<std::size_t>(channels) * i;
+    for (std::size_t c = 0; c < 3; ++c) feature[c] += dL_dcolor[3 * i + c];
+    if (channels == kInterfaceChannels) {
+      feature[kTransparencyChannel] += dL_dt[i];
+      if (dL_dmap_t != nullptr) feature[kTransparencyChannel] += dL_dmap_t[i];
+    }
+    const Vec3f n = get3(normal, i);
+    if (!options.reflection || length2(n) == 0) return;
+    const PixelRay ray = rays.at(i);
+    float dL_dfresnel = 0;
+    mirrored_share_vjp(
+        specular[i], fresnel[i], dL_dmirrored[i], feature[channels - 1], dL_dfresnel
+    );
+    dL_dfresnel = keep(options.fresnel, dL_dfresnel);
+    Vec3f dL_dn = -schlick_vjp(options.f0, -dot(n, ray.unit()), dL_dfresnel) * ray.unit();
+    if (dL_dorigins != nullptr) through_rays(i, ray, n, dL_dn);
+    const float norm = length(get3(raw_normal, i));
+    put3(dL_dnormal, i, get3(dL_dnormal, i) + normalize_vjp(n, norm, dL_dn));
+  }
+
+ private:
+  GLINT_HD void through_rays(std::size_t i, const PixelRay& ray, Vec3f n, Vec3f& dL_dn) const {
+    mirrored_direction_vjp(ray.unit(), n, rays.rotation * get3(dL_ddirections, i), dL_dn);
+    if (options.detach_origins) return;
+    const Vec3f dL_dx = rays.rotation * get3(dL_dorigins, i);
+    expected_depth_vjp(
+        depth_sum[i], alpha[i], dot(dL_dx, ray.in_cam), dL_ddepth_sum[i], dL_dalpha[i]
+    );
+  }
+};
+
+}  // namespace glint

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// Losses on normal maps, pixel by pixel: prior (normal_prior.h), smoothness (normal_smoothness.h),
+// consistency with the depth map (normal_consistency.h).
+#pragma once
+
+#include "glint/render/depth_normal.h"
+#include "glint/train/pixel_access.h"
+
+namespace glint {
+
+struct CountNormals {
+  ImageView prior;
+  GLINT_HD double operator()(int x, int y) const {
+    return length2(load3<float>(prior, x, y)) > 0 ? 1.0 : 0.0;
+  }
+};
+
+template <class T>
+struct NormalPriorAt {
+  BasicImageView<T> normal;
+  ImageView prior, pixel_weight;  // pixel_weight may be empty
+  T tau, along_axes, scale;
+  BasicImageRef<T> dL_dnormal;
+
+  GLINT_HD double operator()(int x, int y) const {
+    const Vec3<T> target = load3<T>(prior, x, y), composited = load3<T>(normal, x, y);
+    if (!(length2(target) > 0)) return 0.0;
+    const T factor = pixel_weight.empty() ? T(1) : static_cast<T>(pixel_weight.at(x, y));
+    const Vec3<T> unit = unit_normal(composited);
+    Vec3<T> dL_dunit{}, gradient{};
+    gated_normal_loss_vjp(unit, target, tau, along_axes, scale * factor, dL_dunit);
+    unit_normal_vjp(composited, dL_dunit, gradient);
+    add3(dL_dnormal, x, y, gradient);
+    return static_cast<double>(factor * gated_normal_loss(unit, target, tau, along_axes));
+  }
+};
+
+// Unit normals of a composited map.
+template <class T>
+struct ReadUnitNormal {
+  BasicImageView<T> normal;
+  GLINT_HD bool operator()(int x, int y, T* out) const {
+    const Vec3<T> unit = unit_normal(load3<T>(normal, x, y));
+    out[0] = unit.x;
+    out[1] = unit.y;
+    out[2] = unit.z;
+    return unit.x != 0 || unit.y != 0 || unit.z != 0;
+  }
+};
+template <class T>
+struct NormalSmoothnessAt {
+  Smoothness<3, T, ReadUnitNormal<T>> smoothness;
+  T scale;
+  BasicImageRef<T> dL_dnormal;
+
+  GLINT_HD double operator()(int x, int y) const {
+    const auto here = smoothness.at(x, y);
+    const Vec3<T> dL_dunit{here.gradient[0], here.gradient[1], here.gradient[2]};
+    Vec3<T> gradient{};
+    unit_normal_vjp(load3<T>(smoothness.read.normal, x, y), scale * dL_dunit, gradient);
+    add3(dL_dnormal, x, y, gradient);
+    return here.loss;
+  }
+};
+
+// Back-projection of a depth map.
+struct Unprojector {
+  ImageView depth;
+  float inverse_fx, inverse_fy, cx, cy;
+
+  GLINT_HD Vec3f ray(int x, int y) const {
+    return {
+        (static_cast<float>(x) + 0.5f - cx) * inverse_fx,
+        (static_cast<float>(y) + 0.5f - cy) * inverse_fy,
+        1.0f};
+  }
+  GLINT_HD Vec3f point(int x, int y) const { return depth.at(x, y) * ray(x, y); }
+  GLINT_HD bool valid(int x, int y) const { return depth.at(x, y) > 0; }
+};
+// Central differences of the points; not valid at the border and beside pixels without depth.
+struct DepthDifferences {
+  bool valid;
+  Vec3f right_left, down_up;
+};
+GLINT_HD DepthDifferences differences_at(const Unprojector& p, int x, int y) {
+  const bool inside = x > 0 && y > 0 && x + 1 < p.depth.width && y + 1 < p.depth.height;
+  if (!inside || !p.valid(x - 1, y) || !p.valid(x + 1, y) || !p.valid(x, y - 1) ||
+      !p.valid(x, y + 1))
+    return {false, {}, {}};
+  return {true, p.point(x + 1, y) - p.point(x - 1, y), p.point(x, y + 1) - p.point(x, y - 1)};
+}
+
+struct NormalConsistencyAt {
+  Unprojector unproject;
+  ImageView normal, alpha;
+  float scale;
+  ImageRef dL_dnormal;
+  ImageRef dL_dx, dL_dy;  // [H][W][3], written: gradients of the differences
+
+  GLINT_HD double operator()(int x, int y) const {
+    const DepthDifferences d = differences_at(unproject, x, y);
+    Vec3f g_right_left{}, g_down_up{};
+    double loss = 1;
+    if (d.valid) {
+      const Vec3f n = load3<float>(normal, x, y);
+      const Vec3f target = alpha.at(x, y) * normal_from_differences(d.right_left, d.down_up);
+      loss -= static_cast<double>(dot(n, target));
+      add3(dL_dnormal, x, y, -scale * target);
+      normal_from_differences_vjp(
+          d.right_left, d.down_up, (-scale * alpha.at(x, y)) * n, g_right_left, g_down_up
+      );
+    }
+    store3(dL_dx, x, y, g_right_left);
+    store3(dL_dy, x, y, g_down_up);
+    return loss;
+  }
+};
+// Each depth takes part in the differences of its four neighbours.
+struct ConsistencyDepthVjp {
+  Unprojector unproject;
+  ImageView dL_dx, dL_dy;
+  ImageRef dL_ddepth;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const int width = dL_dx.width, height = dL_dx.height;
+    const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
+    Vec3f g{};
+    if (x > 0) g += load3<float>(dL_dx, x - 1, y);
+    if (x + 1 < width) g += -load3<float>(dL_dx, x + 1, y);
+    if (y > 0) g += load3<float>(dL_dy, x, y - 1);
+    if (y + 1 < height) g += -load3<float>(dL_dy, x, y + 1);
+    dL_ddepth.at(x, y) += dot(g, unproject.ray(x, y));
+  }
+};
+
+}  // namespace glint

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// The GPU backends that tests compare with the CPU: its kernels run on the host, always, and the
+// CUDA device where there is one.
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "glint/core/image.h"
+#include "glint/cuda/backend.h"
+#include "glint/cuda/ops.h"
+#include "tests/support/host_exec.h"
+
+namespace glint::test {
+
+inline void use_host_kernels() {
+  static const DeviceBackend backend{
+      "kernels on the host",
+      [](std::size_t bytes) { return std::aligned_alloc(64, (bytes + 63) / 64 * 64); },
+      std::free,
+      [](float* to, std::size_t count, float value) { std::fill_n(to, count, value); },
+      [] {}};
+  gpu::use_executor<HostExec>(backend);
+}
+
+// Calls f(name) with each backend in use, and the CPU afterwards.
+template <class F>
+void for_each_gpu_backend(F&& f) {
+  use_host_kernels();
+  f("kernels on the host");
+  use_cpu();
+  if (!gpu::cuda_device().usable) {
+    WARN("no CUDA device: " << gpu::cuda_device().why_not);
+    return;
+  }
+  gpu::use_cuda();
+  f(gpu::cuda_device().name);
+  use_cpu();
+}
+
+// What ops wrote, once they are done.
+template <class Values>
+std::vector<float> read(const Values& values) {
+  synchronize();
+  return {values.begin(), values.end()};
+}
+inline std::vector<float> read(const Image& image) { return read(image.values()); }
+
+// Largest difference, relative to the largest value.
+inline double relative_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  REQUIRE(a.size() == b.size());
+  double largest = 0, scale = 1e-20;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double x = static_cast<double>(a[i]), y = static_cast<double>(b[i]);
+    REQUIRE(std::isfinite(x));
+    largest = std::max(largest, std::abs(x - y));
+    scale = std::max(scale, std::abs(y));
+  }
+  return largest / scale;
+}
+
+// run(): makes its arrays, runs ops and returns what they wrote, by name. On every GPU backend it
+// gives what it gives on the CPU.
+template <class Run>
+void check_same_as_cpu(double tolerance, Run&& run) {
+  const auto expected = run();
+  for_each_gpu_backend([&](const std::string& backend) {
+    INFO(backend);
+    const auto found = run();
+    for (const auto& [name, values] : expected) {
+      INFO(name);
+      CHECK(relative_difference(found.at(name), values) < tolerance);
+    }
+  });
+}
+
+}  // namespace glint::test
