@@ -2,7 +2,7 @@
 # Checks and times everything that needs a GPU, on a bare machine without network, from the folder that
 # scripts/bundle.sh makes:
 #   ./gpu_check.sh [--device cuda|cpu] [--iterations N] [steps...]     steps: machine tests sanitizer perf train
-# Writes summary.md, log.txt, perf.json and evals.json to $OUT (default ./gpu_out). A step that fails or takes
+# Writes summary.md, log.txt, perf.json, steps-*.json and evals.json to $OUT (default ./gpu_out). A step that fails or takes
 # too long does not stop the others. Exit 4 when one failed. --device cpu rehearses all this without a GPU.
 set -uo pipefail
 
@@ -83,6 +83,16 @@ step_sanitizer() {
 
 step_perf() {
   if check "perf, $device" 300 glint-bench perf --device "$device" --json; then cp "$work/last" "$out/perf.json"; fi
+  local size surfels sizes=(240x135 480x270 960x540) counts=(20000 100000 500000)
+  [ "$device" = cuda ] || sizes=(240x135) counts=(20000)
+  for size in "${sizes[@]}"; do
+    for surfels in "${counts[@]}"; do
+      if check "steps, $size, $surfels surfels a set" 150 glint-bench perf --device "$device" --width "${size%x*}" \
+        --height "${size#*x}" --surfels "$surfels" --op '*training step' --runs 9 --json; then
+        cp "$work/last" "$out/steps-$size-$surfels.json"
+      fi
+    done
+  done
 }
 
 # The metric of the last `eval --json`.
