@@ -18,7 +18,7 @@ namespace {
 template <class T>
 TensorToWrite tensor(const std::string& name, std::vector<std::size_t> shape, std::vector<T> v) {
   return {name, {kTensorTypeOf<T>, std::move(shape)}, [v](std::byte* to) {
-            std::memcpy(to, v.data(), v.size() * sizeof(T));
+            if (!v.empty()) std::memcpy(to, v.data(), v.size() * sizeof(T));
           }};
 }
 
