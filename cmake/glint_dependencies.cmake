@@ -2,19 +2,36 @@
 # libopencv-dev, so its modules are found one by one.
 find_package(Threads REQUIRED)
 find_package(TBB 2021 REQUIRED CONFIG)
-find_package(embree 3.13 REQUIRED CONFIG)
 find_package(OpenEXR 3.1 REQUIRED CONFIG)
 find_package(nanoflann 1.4 REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 find_package(tomlplusplus 3.3 REQUIRED CONFIG)
 find_package(fmt 9 REQUIRED CONFIG)
-find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to set how many threads oneDNN uses
-find_package(Bullet REQUIRED)  # module mode: the config mode has relative include folders
 if(GLINT_TESTS)
   find_package(Catch2 2.13 REQUIRED CONFIG)
 endif()
 
+# libpng, static where there is an archive: a bundle carries as few shared libraries as it can.
+find_path(GLINT_PNG_INCLUDE png.h REQUIRED)
+find_library(GLINT_PNG_LIBRARY NAMES libpng.a png REQUIRED)
+find_library(GLINT_Z_LIBRARY NAMES libz.a z REQUIRED)
+add_library(glint_png INTERFACE)
+target_include_directories(glint_png SYSTEM INTERFACE ${GLINT_PNG_INCLUDE})
+target_link_libraries(glint_png INTERFACE ${GLINT_PNG_LIBRARY} ${GLINT_Z_LIBRARY})
+
+if(GLINT_LEAN)
+  set(GLINT_FMT fmt::fmt-header-only)
+  set(GLINT_IMAGE_CODECS glint_png)
+  set(GLINT_RAY_TRACER "")
+  set(GLINT_NETWORKS "")
+  return()
+endif()
+
+find_package(embree 3.13 REQUIRED CONFIG)
+find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to set how many threads oneDNN uses
+find_package(Bullet REQUIRED)  # module mode: the config mode has relative include folders
+find_package(assimp 5.2 REQUIRED CONFIG)  # glTF furniture
 find_path(GLINT_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
 foreach(module core imgproc imgcodecs calib3d)
   find_library(GLINT_OPENCV_${module} opencv_${module} REQUIRED)
@@ -42,3 +59,8 @@ macro(glint_find_library name header library)
 endmacro()
 glint_find_library(minizip minizip/unzip.h minizip)
 glint_find_library(onednn oneapi/dnnl/dnnl.hpp dnnl)
+set(GLINT_NETWORKS onednn OpenMP::OpenMP_CXX minizip)
+
+set(GLINT_FMT fmt::fmt)
+set(GLINT_IMAGE_CODECS opencv::core opencv::imgproc opencv::imgcodecs)
+set(GLINT_RAY_TRACER embree)

@@ -1,3 +1,4 @@
+# glint_pick_lean(list): a file x_lean.cpp stands in for x.cpp in a lean build, and is for none other.
 # glint_add_library(name [OBJECT] SRCS ... [LINK ...]): a library folder::name with our warnings.
 # glint_add_program(name SRCS ... [LINK ...]): a program in bin/.
 # glint_add_test(SRC file [LABELS ...] [LINK ...]): one test program per file, named by its path.
@@ -17,6 +18,21 @@ target_compile_options(
             -Werror>
 )
 target_include_directories(glint_warnings INTERFACE ${CMAKE_SOURCE_DIR})
+
+function(glint_pick_lean list)
+  set(sources ${${list}})
+  if(GLINT_LEAN)
+    foreach(source ${sources})
+      if(source MATCHES "_lean\\.cpp$")
+        string(REPLACE "_lean.cpp" ".cpp" replaced ${source})
+        list(REMOVE_ITEM sources ${replaced})
+      endif()
+    endforeach()
+  else()
+    list(FILTER sources EXCLUDE REGEX "_lean\\.cpp$")
+  endif()
+  set(${list} ${sources} PARENT_SCOPE)
+endfunction()
 
 function(glint_add_library name)
   cmake_parse_arguments(ARG "OBJECT" "" "SRCS;LINK" ${ARGN})

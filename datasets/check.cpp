@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// check_dataset(): files and values view by view, then the split, the points, and what needs
+// check_indexed(): files and values view by view, then the split, the points, and what needs
 // several views (check_geometry.h).
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <set>
 
 #include "datasets/check_views.h"
-#include "datasets/dataset.h"
 #include "datasets/scene_index.h"
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
@@ -112,7 +111,9 @@ void check_points(const SceneIndex& index, std::vector<Finding>& findings) {
     );
 }
 
-std::vector<Finding> check_index(const SceneIndex& index) {
+}  // namespace
+
+std::vector<Finding> check_indexed(const SceneIndex& index) {
   std::vector<Finding> findings = index.problems;
   check_names(index, findings);
   std::vector<std::vector<Finding>> of_views(index.views.size());
@@ -125,19 +126,6 @@ std::vector<Finding> check_index(const SceneIndex& index) {
   check_points(index, findings);
   check_agreement(index, findings);
   return findings;
-}
-
-}  // namespace
-
-std::vector<Finding> check_dataset(const fs::path& folder) {
-  const LoaderSpec& loader = find_loader(folder);
-  try {
-    if (loader.index) return check_index(loader.index(folder, {}));
-    loader.load(folder, {});
-    return {};
-  } catch (const Error& error) {
-    return {make_finding("unreadable-file", folder.string(), error.what())};
-  }
 }
 
 }  // namespace glint

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The parts of check_dataset() that look at one view's files, and at maps against cameras.
+// The parts of check_indexed() that look at one view's files, and at maps against cameras.
 #pragma once
 
 #include <vector>

@@ -112,6 +112,18 @@ Scene load_scene(const fs::path& folder, const LoadOptions& options) {
   return find_loader(folder).load(folder, options);
 }
 
+std::vector<Finding> check_dataset(const fs::path& folder) {
+  const LoaderSpec& loader = find_loader(folder);
+  try {
+    if (loader.check) return loader.check(folder);
+    loader.load(folder, {});
+    return {};
+  } catch (const Error& error) {
+    if (error.code() == ExitCode::kEnvironment) throw;
+    return {make_finding("unreadable-file", folder.string(), error.what())};
+  }
+}
+
 std::string describe_scene(const Scene& scene) {
   const std::size_t views = scene.train.size() + scene.test.size();
   std::string text = fmt::format("scene          {}\n", scene.name);

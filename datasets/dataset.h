@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Loaders: one file each, registered by name; load_scene() asks each whether it knows the folder.
+// Loaders: one file each, registered by name; load_scene() asks each whether it knows the folder
+// (or the file of a packed scene).
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "datasets/findings.h"
 #include "glint/core/files.h"
 #include "glint/scene/scene.h"
 
@@ -19,15 +21,13 @@ struct LoadOptions {
   bool with_priors = true;  // read diffrens/
 };
 
-struct SceneIndex;  // datasets/scene_index.h
-
 struct LoaderSpec {
   std::string name;
   std::function<bool(const fs::path&)> can_load;
   std::function<Scene(const fs::path&, const LoadOptions&)> load;
   std::string looks_for = {};  // e.g. "transforms.json"; listed when no loader knows a folder
-  // What check_dataset() examines; empty: it only tries load().
-  std::function<SceneIndex(const fs::path&, const LoadOptions&)> index = {};
+  // What check_dataset() calls; empty: it only tries load().
+  std::function<std::vector<Finding>(const fs::path&)> check = {};
 };
 
 bool register_loader(LoaderSpec spec);
@@ -41,13 +41,8 @@ Scene load_scene(const fs::path& folder, const LoadOptions& options);
 // Views, image sizes, split, priors, ground truth, points and extent, one line each.
 std::string describe_scene(const Scene& scene);
 
-struct Finding {        // of `dataset check`
-  std::string check;    // "ray-length-depth", "normal-axes", "intrinsics-size", "missing-file", ...
-  std::string where;    // file or view, and field
-  std::string message;  // found, expected, how to mend
-};
-// Everything wrong with a dataset folder, not only the first thing. Empty: clean.
-// Errors (kBadReference): no loader knows the folder.
+// Everything wrong with a dataset folder, not only the first thing; of a packed scene the first.
+// Empty: clean. Errors (kBadReference): no loader knows the folder; kEnvironment: load_scene()'s.
 std::vector<Finding> check_dataset(const fs::path& folder);
 
 }  // namespace glint

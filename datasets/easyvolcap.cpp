@@ -116,10 +116,14 @@ Scene load(const fs::path& folder, const LoadOptions& options) {
   return load_indexed(index_folder(folder, options), options);
 }
 
+std::vector<Finding> check(const fs::path& folder) {
+  return check_indexed(index_folder(folder, {}));
+}
+
 }  // namespace
 
 GLINT_REGISTER_LOADER(
-    {"easyvolcap", can_load, load, "intri.yml, extri.yml and images/<view>/", index_folder}
+    {"easyvolcap", can_load, load, "intri.yml, extri.yml and images/<view>/", check}
 )
 
 }  // namespace glint

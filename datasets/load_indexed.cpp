@@ -4,9 +4,9 @@
 #include <exception>
 #include <optional>
 
-#include "datasets/map_resize.h"
 #include "datasets/scene_index.h"
 #include "datasets/undistort.h"
+#include "datasets/view_maps.h"
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
 #include "glint/core/rng.h"
@@ -15,28 +15,6 @@
 
 namespace glint {
 namespace {
-
-enum class MapKind { kColor, kDepth, kNormal };
-
-// Calls f(image, kind) for every map of a view that is there; the glass mask is not among them.
-template <class F>
-void for_each_map(View& view, F&& f) {
-  const auto visit = [&](Image& image, MapKind kind) {
-    if (!image.empty()) f(image, kind);
-  };
-  visit(view.rgb, MapKind::kColor);
-  visit(view.priors.normal, MapKind::kNormal);
-  visit(view.priors.depth, MapKind::kDepth);
-  visit(view.priors.albedo, MapKind::kColor);
-  visit(view.priors.basecolor, MapKind::kColor);
-  visit(view.truth.depth, MapKind::kDepth);
-  visit(view.truth.normal, MapKind::kNormal);
-  visit(view.truth.albedo, MapKind::kColor);
-  visit(view.truth.behind_depth, MapKind::kDepth);
-  visit(view.truth.behind_normal, MapKind::kNormal);
-  visit(view.truth.transmitted, MapKind::kColor);
-  visit(view.truth.reflected, MapKind::kColor);
-}
 
 void check_size(const fs::path& path, ImageSize found, ImageSize expected) {
   GLINT_CHECK(
@@ -97,7 +75,8 @@ MaskImage undistort_mask(const MaskImage& mask, const Undistortion& undistortion
 
 void undistort_view(View& view, const std::vector<double>& distortion) {
   const Undistortion undistortion(view.camera, distortion);
-  for_each_map(view, [&](Image& image, MapKind kind) {
+  for_each_map(view, [&](const char*, Image& image, MapKind kind) {
+    if (image.empty()) return;
     const bool blend = kind == MapKind::kColor;
     image = undistortion.apply(
         image, blend ? Undistortion::Lookup::kBilinear : Undistortion::Lookup::kNearest
@@ -107,35 +86,6 @@ void undistort_view(View& view, const std::vector<double>& distortion) {
   view.camera = undistortion.camera();
 }
 
-void resize_view(View& view, ImageSize size) {
-  if (size == view.camera.size()) return;
-  for_each_map(view, [&](Image& image, MapKind kind) {
-    switch (kind) {
-      case MapKind::kColor:
-        image = resize_image(image, size);
-        break;
-      case MapKind::kDepth:
-        image = resize_depth(image, size);
-        break;
-      case MapKind::kNormal:
-        image = resize_normal(image, size);
-        break;
-    }
-  });
-  if (!view.truth.glass.empty()) view.truth.glass = resize_mask(view.truth.glass, size);
-  view.camera = resized(view.camera, size);
-}
-
-ImageSize target_size(ImageSize stored, const LoadOptions& options) {
-  if (options.size.width > 0 && options.size.height > 0) return options.size;
-  const auto pixels = static_cast<double>(stored.num_pixels());
-  if (options.max_pixels <= 0 || pixels <= options.max_pixels) return stored;
-  const double scale = std::sqrt(options.max_pixels / pixels);
-  return {
-      std::max(1, static_cast<int>(scale * stored.width)),
-      std::max(1, static_cast<int>(scale * stored.height))};
-}
-
 View load_view(const ViewSource& source, const LoadOptions& options) {
   View view = read_view(source, options);
   try {
@@ -143,7 +93,7 @@ View load_view(const ViewSource& source, const LoadOptions& options) {
   } catch (const Error& error) {
     throw Error(error.code(), fmt::format("{}: {}", source.where, error.what()));
   }
-  resize_view(view, target_size(view.camera.size(), options));
+  fit_view(view, options);
   return view;
 }
 
@@ -177,45 +127,10 @@ void check_index(const SceneIndex& index) {
   GLINT_CHECK(has_train, kBadReference, "{}: no train views", index.name);
 }
 
-double rotation_error(const Mat3d& r) {
-  double error = std::abs(determinant(r) - 1);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      error = std::max(error, std::abs(dot(r.rows[i], r.rows[j]) - (i == j ? 1.0 : 0.0)));
-  return error;
-}
-
 }  // namespace
 
 std::string folder_name(const fs::path& folder) {
   return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
-}
-
-Finding make_finding(const std::string& check, const std::string& where, std::string message) {
-  if (message.starts_with(where + ": ")) message.erase(0, where.size() + 2);
-  return {check, where, message};
-}
-
-std::optional<Finding> camera_problem(const Camera& camera, const std::string& where) {
-  if (!std::isfinite(camera.fx + camera.fy + camera.cx + camera.cy))
-    return Finding{"non-finite", where, "the intrinsics are not finite"};
-  for (int i = 0; i < 3; ++i) {
-    const Vec3d& row = camera.rotation_cam_from_world.rows[i];
-    if (!std::isfinite(row.x + row.y + row.z + camera.translation_cam_from_world[i]))
-      return Finding{"non-finite", where, "the pose is not finite"};
-  }
-  if (!(camera.fx > 0 && camera.fy > 0)) {
-    return Finding{
-        "intrinsics",
-        where,
-        fmt::format("focal lengths {} and {}; expected positive ones", camera.fx, camera.fy)};
-  }
-  const double error = rotation_error(camera.rotation_cam_from_world);
-  if (error <= 1e-3) return std::nullopt;
-  return Finding{
-      "pose",
-      where,
-      fmt::format("it holds no rotation (off by {:.2g}); remove scale, shear or mirroring", error)};
 }
 
 void split_every(std::vector<ViewSource>& views, int test_every) {

@@ -273,8 +273,12 @@ Scene load(const fs::path& folder, const LoadOptions& options) {
   return load_indexed(index_folder(folder, options), options);
 }
 
+std::vector<Finding> check(const fs::path& folder) {
+  return check_indexed(index_folder(folder, {}));
+}
+
 }  // namespace
 
-GLINT_REGISTER_LOADER({"nerfstudio", can_load, load, "transforms.json", index_folder})
+GLINT_REGISTER_LOADER({"nerfstudio", can_load, load, "transforms.json", check})
 
 }  // namespace glint

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // What a folder says about a scene before any image is read: one ViewSource per view. Loaders make
-// it, load_indexed() reads what it lists, check_dataset() looks for everything wrong with it.
+// it, load_indexed() reads what it lists, check_indexed() looks for everything wrong with it.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "datasets/dataset.h"
+#include "datasets/findings.h"
 #include "glint/scene/camera.h"
 
 namespace glint {
@@ -66,12 +66,6 @@ struct SceneIndex {
 // The folder's own name, also for "." and names that end in a slash.
 std::string folder_name(const fs::path& folder);
 
-// A problem whose message does not repeat `where`.
-Finding make_finding(const std::string& check, const std::string& where, std::string message);
-
-// What is wrong with a camera, as a finding of the checks "non-finite", "intrinsics" or "pose".
-std::optional<Finding> camera_problem(const Camera& camera, const std::string& where);
-
 // View i of the natural order is a test view when i % test_every == 0; 0: all train.
 void split_every(std::vector<ViewSource>& views, int test_every);
 
@@ -89,6 +83,9 @@ View read_view(const ViewSource& source, const LoadOptions& options);
 // The scene: reads, undistorts and resizes all views and the points. Errors (kBadReference): the
 // first of `problems`, no train views, and read_view()'s.
 Scene load_indexed(const SceneIndex& index, const LoadOptions& options);
+
+// Everything wrong with the files, the split, the points, and maps against cameras.
+std::vector<Finding> check_indexed(const SceneIndex& index);
 
 // Readers of single maps, values checked to be finite.
 Image read_map(const fs::path& path, int channels);

@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <set>
 
 #include "glint/core/error.h"
-#include "glint/core/progress.h"
 #include "glint/core/sha256.h"
 
 namespace glint {
@@ -157,34 +155,6 @@ std::string known_version(const LpipsWeights& weights) {
   return {};
 }
 
-std::size_t num_known_names(const LpipsNetwork& network, const NpzArrays& arrays) {
-  std::size_t count = 0;
-  for (const LpipsLayer& layer : network.layers)
-    count +=
-        arrays.contains(layer.name + ".weight") + arrays.contains(layer.name + ".squeeze.weight");
-  return count;
-}
-
-// The network most of whose layers have arrays.
-const LpipsNetwork& recognise(const NpzArrays& arrays, const fs::path& path) {
-  const auto& networks = lpips_networks();
-  const auto best = std::max_element(
-      networks.begin(),
-      networks.end(),
-      [&](const LpipsNetwork& a, const LpipsNetwork& b) {
-        return num_known_names(a, arrays) < num_known_names(b, arrays);
-      }
-  );
-  GLINT_CHECK(
-      num_known_names(*best, arrays) > 0,
-      kBadReference,
-      "{}: no array of an LPIPS network ('features.0.weight', ...); make the file with "
-      "scripts/convert_lpips_weights.py",
-      path.string()
-  );
-  return *best;
-}
-
 }  // namespace
 
 LpipsWeights make_lpips_weights(
@@ -199,43 +169,6 @@ LpipsWeights make_lpips_weights(
   weights.sha256 = checksum(arrays);
   weights.version = known_version(weights);
   return weights;
-}
-
-LpipsWeights load_lpips_weights(const fs::path& path) {
-  const NpzArrays arrays = read_npz(path);
-  const std::string where = path.string();
-  LpipsWeights weights = make_lpips_weights(recognise(arrays, path), arrays, where);
-  if (weights.version.empty())
-    log::warn(fmt::format(
-        "{}: LPIPS ({}) with weights of an unknown checksum, {}...; values may not be comparable "
-        "with published ones (docs/METRICS.md)",
-        where,
-        weights.network,
-        weights.sha256.substr(0, 16)
-    ));
-  return weights;
-}
-
-fs::path lpips_weights_place() {
-  if (const char* place = std::getenv("GLINT_LPIPS_WEIGHTS"); place && *place) return place;
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache)
-    return fs::path(cache) / "glint-bench" / "lpips";
-  if (const char* home = std::getenv("HOME"); home && *home)
-    return fs::path(home) / ".cache" / "glint-bench" / "lpips";
-  return {};
-}
-
-std::shared_ptr<const LpipsWeights> lpips_weights_at(const fs::path& place, std::string network) {
-  if (place.empty()) return nullptr;
-  std::error_code code;
-  const bool folder = fs::is_directory(place, code);
-  if (folder && network.empty()) network = "alex";
-  const fs::path file = folder ? place / fmt::format("lpips_{}_v0.1.npz", network) : place;
-  if (!fs::exists(file, code)) return nullptr;
-  auto weights = with_exit_code(ExitCode::kEnvironment, [&] {
-    return std::make_shared<const LpipsWeights>(load_lpips_weights(file));
-  });
-  return network.empty() || weights->network == network ? weights : nullptr;
 }
 
 }  // namespace glint

@@ -253,6 +253,33 @@ TEST_CASE("No function is longer than 60 lines") {
   CHECK(seen > 200);
 }
 
+// Libraries that a lean build does without stay behind the files that it replaces (x_lean.cpp
+// stands in for x.cpp) or leaves out.
+TEST_CASE("A lean build meets no header of OpenCV, Open3D, CGAL, Embree, Bullet or assimp") {
+  const std::vector<SourceFile> files = source_files();
+  const auto replaced = [&](const SourceFile& file) {
+    const std::string lean = file.path.substr(0, file.path.rfind('.')) + "_lean.cpp";
+    return std::any_of(files.begin(), files.end(), [&](const SourceFile& other) {
+      return other.path == lean;
+    });
+  };
+  std::size_t heavy = 0;
+  for (const SourceFile& file : files) {
+    if (starts_with_any(file.path, {"tests/", "datasets/glassroom/"})) continue;
+    const bool left_out = starts_with_any(
+        file.path,
+        {"datasets/opencv_yaml.cpp", "datasets/undistort.cpp", "glint/scene/image_files_text.cpp"}
+    );
+    for (const char* library : {"opencv2/", "open3d/", "CGAL/", "embree3/", "bt", "assimp/"}) {
+      if (file.text.find(fmt::format("\n#include <{}", library)) == std::string::npos) continue;
+      ++heavy;
+      INFO(file.path << " includes <" << library);
+      CHECK((left_out || replaced(file)));
+    }
+  }
+  CHECK(heavy >= 5);
+}
+
 TEST_CASE("The check finds an include that points upwards") {
   const auto wrong = [](const char* path, const char* text) {
     return upward_includes({path, text}).size();

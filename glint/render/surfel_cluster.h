@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "glint/render/blend.h"
 #include "glint/render/intersect.h"
@@ -61,5 +63,19 @@ GLINT_SIMD_INLINE void offer(
   const Float8 alpha = splat_alpha(f.opacity, min_of(rho, f.max_rho)).alpha;
   hits.add(hit.t, alpha, met, s.surfels, s.slots);
 }
+
+// Slots [N] of surfels at `means` [N][3]: eight consecutive ones are neighbours. Means that are not
+// finite come last.
+std::vector<std::uint32_t> cluster_slots(std::span<const float> means);
+
+// All surfels, which are in slot order, as clusters.
+void make_clusters(const std::vector<TracedSurfel>& surfels, std::vector<SurfelCluster>& clusters);
+
+// The box of a cluster's discs; inverted where none counts anywhere.
+struct ClusterBox {
+  Vec3f low, high;
+};
+inline constexpr float kBoxMargin = 1e-4f;  // of the extent: rounding of boxes and of their tests
+ClusterBox box_of_cluster(const std::vector<TracedSurfel>& surfels, std::size_t cluster);
 
 }  // namespace glint

@@ -7,8 +7,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <utility>
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
@@ -17,9 +15,7 @@ namespace glint {
 
 namespace {
 
-constexpr float kMargin = 1e-4f;  // of the extent: rounding of bounds and of Embree's box tests
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kLanes = Float8::kLanes;
 
 // What a callback needs beside Embree's own arguments.
 struct Context {
@@ -68,32 +64,16 @@ void filter_triangle(const RTCFilterFunctionNArguments* args) {
   if (!shorten(ray, *context.hits)) args->valid[0] = 0;
 }
 
-float reach(const SurfelFields<float>& s, int axis) {
-  return std::sqrt(s.max_rho * (s.h0[axis] * s.h0[axis] + s.h1[axis] * s.h1[axis]));
-}
-
-// The box of a cluster's discs; inverted (skipped by Embree) where none counts anywhere.
 void cluster_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& surfels = *static_cast<const std::vector<TracedSurfel>*>(args->geometryUserPtr);
-  float low[3] = {kInfinity, kInfinity, kInfinity};
-  float high[3] = {-kInfinity, -kInfinity, -kInfinity};
-  const std::size_t begin = kLanes * args->primID;
-  for (std::size_t i = begin; i < std::min(begin + kLanes, surfels.size()); ++i) {
-    const SurfelFields<float>& s = surfels[i].fields;
-    if (!(s.max_rho > 0)) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float half = reach(s, axis) * (1 + kMargin) + kMargin * std::abs(s.mean[axis]) * 0.01f;
-      low[axis] = std::min(low[axis], s.mean[axis] - half);
-      high[axis] = std::max(high[axis], s.mean[axis] + half);
-    }
-  }
-  *args->bounds_o = {low[0], low[1], low[2], 0, high[0], high[1], high[2], 0};
+  const auto [low, high] = box_of_cluster(surfels, args->primID);
+  *args->bounds_o = {low.x, low.y, low.z, 0, high.x, high.y, high.z, 0};
 }
 
 // Corners of a quad at the surfel's reach along both axes, in the order (-,+), (-,-), (+,+), (+,-).
 void write_quad(const SurfelFields<float>& s, float* corners) {
   const bool counts = s.max_rho > 0;
-  const float k = counts ? std::sqrt(s.max_rho) * (1 + kMargin) : 0.0f;
+  const float k = counts ? std::sqrt(s.max_rho) * (1 + kBoxMargin) : 0.0f;
   const float signs[4][2] = {{-1, 1}, {-1, -1}, {1, 1}, {1, -1}};
   for (int i = 0; i < 4; ++i)
     for (int axis = 0; axis < 3; ++axis)
@@ -102,72 +82,7 @@ void write_quad(const SurfelFields<float>& s, float* corners) {
                  : std::numeric_limits<float>::quiet_NaN();  // Embree skips such triangles
 }
 
-bool is_finite(const float* mean) { return std::isfinite(mean[0] + mean[1] + mean[2]); }
-
-// Neighbours [begin, end) of an order of surfels.
-struct Range {
-  std::size_t begin, end;
-  std::size_t size() const { return end - begin; }
-};
-
-int widest_axis(std::span<const float> means, std::span<const std::uint32_t> order) {
-  float low[3] = {kInfinity, kInfinity, kInfinity};
-  float high[3] = {-kInfinity, -kInfinity, -kInfinity};
-  for (const std::uint32_t i : order)
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], means[3 * i + axis]);
-      high[axis] = std::max(high[axis], means[3 * i + axis]);
-    }
-  int widest = 0;
-  for (int axis = 1; axis < 3; ++axis)
-    if (high[axis] - low[axis] > high[widest] - low[widest]) widest = axis;
-  return widest;
-}
-
-// Sorts the halves of a range apart along its widest axis, at a whole number of clusters.
-std::size_t halve(std::span<const float> means, Range range, std::vector<std::uint32_t>& order) {
-  const std::size_t num_clusters = (range.size() + kLanes - 1) / kLanes;
-  const std::size_t middle = range.begin + (num_clusters + 1) / 2 * kLanes;
-  const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
-  const int axis = widest_axis(means, std::span(order).subspan(range.begin, range.size()));
-  const auto place = [&](std::uint32_t i) {
-    return std::pair(means[3 * i + static_cast<std::size_t>(axis)], i);
-  };
-  std::nth_element(
-      at(range.begin),
-      at(middle),
-      at(range.end),
-      [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); }
-  );
-  return middle;
-}
-
 }  // namespace
-
-// Clusters are the leaves of a k-d tree: smaller boxes than pieces of a space-filling curve have,
-// which also loses its resolution to surfels far away.
-std::vector<std::uint32_t> cluster_slots(std::span<const float> means) {
-  std::vector<std::uint32_t> order(means.size() / 3);
-  std::iota(order.begin(), order.end(), 0u);
-  const auto finite = std::stable_partition(order.begin(), order.end(), [&](std::uint32_t i) {
-    return is_finite(&means[3 * i]);
-  });
-  std::vector<Range> ranges = {{0, static_cast<std::size_t>(finite - order.begin())}};
-  // The first of the ranges is as large as any.
-  for (std::vector<Range> halves; ranges.front().size() > kLanes; ranges.swap(halves)) {
-    halves.resize(2 * ranges.size());
-    parallel_for(ranges.size(), 1, [&](std::size_t i) {
-      const Range range = ranges[i];
-      const std::size_t middle = range.size() > kLanes ? halve(means, range, order) : range.end;
-      halves[2 * i] = {range.begin, middle};
-      halves[2 * i + 1] = {middle, range.end};
-    });
-  }
-  std::vector<std::uint32_t> slots(order.size());
-  for (std::size_t slot = 0; slot < order.size(); ++slot)
-    slots[order[slot]] = static_cast<std::uint32_t>(slot);
-  return slots;
-}
 
 struct SurfelBvh::Impl {
   RTCDevice device = nullptr;
@@ -187,23 +102,6 @@ struct SurfelBvh::Impl {
   void release_scene() {
     if (scene != nullptr) rtcReleaseScene(scene);
     scene = nullptr;
-  }
-  void write_clusters() {
-    clusters.resize((count + kLanes - 1) / kLanes);
-    parallel_for(clusters.size(), 256, [&](std::size_t i) {
-      TracedSurfel nowhere{};
-      nowhere.fields.max_rho = -1;
-      const float* rows[kLanes];
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const std::size_t slot = kLanes * i + lane;
-        const TracedSurfel& s = slot < count ? (*surfels)[slot] : nowhere;
-        rows[lane] = s.floats();
-        clusters[i].surfel[lane] = s.surfel;
-      }
-      RowLanes columns;
-      load_columns(rows, columns);
-      std::copy_n(columns, SurfelCluster::kFields, clusters[i].fields);
-    });
   }
   void write_corners() const {
     auto* corners =
@@ -259,6 +157,8 @@ struct SurfelBvh::Impl {
   }
 };
 
+bool SurfelBvh::has_triangles() { return true; }
+
 SurfelBvh::SurfelBvh() : impl_(std::make_unique<Impl>()) {
   // One instruction set everywhere: which boxes a ray visits must not depend on the machine.
   impl_->device = rtcNewDevice("isa=avx2");
@@ -283,7 +183,7 @@ void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool triangles,
   if (triangles)
     impl_->clusters.clear();
   else
-    impl_->write_clusters();
+    make_clusters(surfels, impl_->clusters);
   if (same && refit)
     impl_->refit();
   else
@@ -308,7 +208,7 @@ std::size_t SurfelBvh::nearest(Vec3f origin, Vec3f direction, NearestHits& hits)
   ray.ray.dir_y = direction.y;
   ray.ray.dir_z = direction.z;
   // Boxes are tested a little before the last hit: theirs and ours round differently.
-  ray.ray.tnear = (1 - kMargin) * hits.after_t();
+  ray.ray.tnear = (1 - kBoxMargin) * hits.after_t();
   ray.ray.tfar = kInfinity;
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Finds the surfels that a ray meets, nearest first, on an Embree BVH. Surfels are kept in an order
+// Finds the surfels that a ray meets, nearest first, on an Embree BVH (lean build: on a tree of
+// its own). Surfels are kept in an order
 // in which neighbours in space are neighbours in memory; their place in it is called slot. Eight in
 // a row are one primitive of the tree and tested at once, one a lane.
 #pragma once
@@ -15,12 +16,10 @@
 
 namespace glint {
 
-// Slots [N] of surfels at `means` [N][3]: eight consecutive ones are neighbours. Means that are not
-// finite come last.
-std::vector<std::uint32_t> cluster_slots(std::span<const float> means);
-
 class SurfelBvh {
  public:
+  static bool has_triangles();  // not in a lean build
+
   SurfelBvh();
   ~SurfelBvh();
   SurfelBvh(const SurfelBvh&) = delete;
@@ -28,7 +27,7 @@ class SurfelBvh {
 
   // Keeps a reference to `surfels`, in slot order. `refit`: the tree of the last call may be kept;
   // for surfels that are the same ones in the same slots.
-  // Errors (kEnvironment): Embree fails.
+  // Errors (kEnvironment): Embree fails; a lean build has no triangles.
   void update(const std::vector<TracedSurfel>& surfels, bool triangles, bool refit);
   // Adds the hits behind hits.after(). Returns how many clusters (or triangles) it took.
   std::size_t nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const;

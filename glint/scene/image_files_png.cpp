@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
-// PNG and JPEG, and resizing, by OpenCV. Decoders report damage on standard error and hand out
-// half-grey pictures, so the container is walked first: every chunk of a PNG, the headers of a
-// JPEG.
+// PNG and JPEG. Decoders report damage on standard error and hand out half-grey pictures, so the
+// container is walked first: every chunk of a PNG, the headers of a JPEG.
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core.hpp>
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <limits>
 #include <vector>
 
 #include "glint/core/error.h"
@@ -88,33 +84,15 @@ PictureHeader walk(const fs::path& path, std::string_view file) {
   );
 }
 
-cv::Mat decode(const fs::path& path, const std::string& file, std::string_view format) {
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  const cv::Mat bytes(
-      1, static_cast<int>(file.size()), CV_8UC1, const_cast<char*>(file.data())  // read only
-  );
-  cv::Mat pixels;
-  try {
-    pixels = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception& error) {
-    detail::fail_incomplete(path, format, error.err);
-  }
-  if (pixels.empty()) detail::fail_incomplete(path, format, "its data cannot be decoded");
-  return pixels;
-}
-
-// BGR[A] or grey integers to RGB or grey floats. `grey` keeps one of the equal channels.
-template <class T>
-Image to_floats(const cv::Mat& pixels, bool grey) {
-  const int stored = pixels.channels(), kept = grey || stored < 3 ? 1 : 3;
-  constexpr auto kFullRange = static_cast<float>(std::numeric_limits<T>::max());
-  Image image(pixels.cols, pixels.rows, kept);
-  for (int y = 0; y < pixels.rows; ++y) {
-    const T* from = pixels.ptr<T>(y);
-    float* to = image.pixel(0, y);
-    for (int x = 0; x < pixels.cols; ++x, from += stored, to += kept)
-      for (int c = 0; c < kept; ++c) to[c] = static_cast<float>(from[kept - 1 - c]) / kFullRange;
-  }
+// `grey` keeps one of the equal channels; alpha is dropped.
+Image to_floats(const detail::Picture& picture, bool grey) {
+  const int stored = picture.channels, kept = grey || stored < 3 ? 1 : 3;
+  const auto full_range = static_cast<float>(picture.full_range);
+  Image image(picture.size.width, picture.size.height, kept);
+  const std::uint16_t* from = picture.values.data();
+  float* to = image.data();
+  for (std::size_t i = 0; i < image.num_pixels(); ++i, from += stored, to += kept)
+    for (int c = 0; c < kept; ++c) to[c] = static_cast<float>(from[c]) / full_range;
   return image;
 }
 
@@ -123,33 +101,14 @@ unsigned char to_byte(float value) {
   return static_cast<unsigned char>(std::nearbyint(std::min(value, 1.0f) * 255.0f));
 }
 
-cv::Mat to_bgr_bytes(ImageView image) {
-  cv::Mat bytes(image.height, image.width, CV_8UC(image.channels));
-  const int n = image.channels;
-  for (int y = 0; y < image.height; ++y) {
-    const float* from = image.pixel(0, y);
-    unsigned char* to = bytes.ptr<unsigned char>(y);
-    for (int x = 0; x < image.width; ++x, from += n, to += n)
-      for (int c = 0; c < n; ++c) to[c] = to_byte(from[n - 1 - c]);
-  }
-  return bytes;
-}
-
 }  // namespace
 
 Image detail::read_png_or_jpeg(const fs::path& path) {
   const std::string file = read_file(path);
   const PictureHeader header = walk(path, file);
   check_claimed_size(path, header.size, file.size());
-  const cv::Mat pixels = decode(path, file, file.starts_with(kPngSignature) ? "PNG" : "JPEG");
-  switch (pixels.depth()) {
-    case CV_8U:
-      return to_floats<unsigned char>(pixels, header.grey);
-    case CV_16U:
-      return to_floats<unsigned short>(pixels, header.grey);
-    default:
-      fail_incomplete(path, "image", "values are neither 8- nor 16-bit integers");
-  }
+  const bool is_png = file.starts_with(kPngSignature);
+  return to_floats(is_png ? decode_png(path, file) : decode_jpeg(path, file), header.grey);
 }
 
 ImageSize read_image_size(const fs::path& path) {
@@ -169,19 +128,9 @@ void write_png(const fs::path& path, ImageView image) {
       image.height,
       image.channels
   );
-  std::vector<unsigned char> file;
-  cv::imencode(".png", to_bgr_bytes(image), file);
-  write_file(path, {reinterpret_cast<const char*>(file.data()), file.size()});
-}
-
-Image resize_image(ImageView image, ImageSize size) {
-  Image result(size.width, size.height, image.channels);
-  const int type = CV_32FC(image.channels);
-  const cv::Mat from(image.height, image.width, type, const_cast<float*>(image.data));  // read only
-  cv::Mat to(size.height, size.width, type, result.data());
-  const bool shrinks = size.width <= image.width && size.height <= image.height;
-  cv::resize(from, to, to.size(), 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
-  return result;
+  MaskImage bytes(image.width, image.height, image.channels);
+  std::transform(image.data, image.data + bytes.values().size(), bytes.data(), to_byte);
+  write_file(path, detail::encode_png(bytes));
 }
 
 }  // namespace glint

@@ -5,9 +5,11 @@
 #include <limits>
 #include <memory>
 
+#include "glint/core/device.h"
 #include "glint/core/rng.h"
 #include "glint/render/activations.h"
 #include "glint/render/trace.h"
+#include "glint/render/trace_bvh.h"
 #include "reports/perf/perf_scene.h"
 
 namespace glint {
@@ -141,7 +143,8 @@ std::vector<PerfCase> trace_cases(const PerfOptions& options) {
   add("100k", incoherent(options, options.overlap), false);
   // As many hits as in the published measurement of bare traversals.
   add("100k", incoherent(options, 1.75f), false);
-  add("triangles", incoherent(options, options.overlap), true);
+  if (!on_gpu() && SurfelBvh::has_triangles())
+    add("triangles", incoherent(options, options.overlap), true);
   // What mirrored rays meet early in GLINT's training: faint surfels about as large as their
   // distances; and late: fewer and so large that their boxes overlap everywhere.
   add("fog", mirrored_fog({15, 5, 0.11f, 0.1f}), false);

@@ -3,6 +3,7 @@
 
 #include "datasets/dataset.h"
 #include "datasets/glassroom/glassroom.h"
+#include "datasets/packed_scene.h"
 #include "glint/core/progress.h"
 #include "reports/verbs/verb.h"
 
@@ -88,6 +89,49 @@ int run_check(const CommonOptions& common, const std::string& folder) {
   return static_cast<int>(findings.empty() ? ExitCode::kSuccess : ExitCode::kCheckFailed);
 }
 
+struct PackOptions {
+  std::string folder, file;
+  double max_pixels = 0;
+  bool test_truth_only = false;
+};
+
+int run_pack(const CommonOptions& common, const PackOptions& options) {
+  LoadOptions load;
+  load.max_pixels = options.max_pixels;
+  Scene scene = load_scene(options.folder, load);
+  if (options.test_truth_only)
+    for (View& view : scene.train) view.truth = {};
+  write_packed_scene(options.file, scene);
+  const std::uintmax_t bytes = fs::file_size(options.file);
+  const std::size_t views = scene.train.size() + scene.test.size();
+  if (common.json)
+    print_json({{"file", options.file}, {"bytes", bytes}, {"views", views}});
+  else
+    print_text(fmt::format(
+        "{}: {} views, {:.1f} MiB\n", options.file, views, static_cast<double>(bytes) / (1 << 20)
+    ));
+  return 0;
+}
+
+void add_pack(CommandLine& line, CLI::App& dataset) {
+  auto options = std::make_shared<PackOptions>();
+  CLI::App* pack = line.add_verb(
+      dataset,
+      "pack",
+      "a scene in one file, which every verb takes in place of its folder",
+      [&line, options] { return run_pack(line.common, *options); }
+  );
+  pack->add_option("folder", options->folder, "dataset folder")->required();
+  pack->add_option("file", options->file, "for example room_1.safetensors")->required();
+  pack->add_option("--max-pixels", options->max_pixels, "shrink images below this area")
+      ->check(CLI::NonNegativeNumber);
+  pack->add_flag(
+      "--test-truth-only",
+      options->test_truth_only,
+      "leave out the ground truth of train views, which is never scored"
+  );
+}
+
 void add_make(CommandLine& line, CLI::App& dataset) {
   auto options = std::make_shared<MakeOptions>();
   auto verb = std::make_shared<CLI::App*>(nullptr);
@@ -120,18 +164,19 @@ void add_folder_verb(
   line.add_verb(
           dataset, name, help, [&line, folder, action] { return action(line.common, *folder); }
   )
-      ->add_option("folder", *folder, "dataset folder")
+      ->add_option("folder", *folder, "dataset folder or packed scene")
       ->required();
 }
 
 }  // namespace
 
 void add_dataset_verb(CommandLine& line) {
-  CLI::App* dataset = line.app.add_subcommand("dataset", "make, describe and check datasets");
+  CLI::App* dataset = line.app.add_subcommand("dataset", "make, describe, check and pack datasets");
   dataset->require_subcommand(1);
   add_make(line, *dataset);
   add_folder_verb(line, *dataset, "info", "what a folder holds, as methods will see it", run_info);
   add_folder_verb(line, *dataset, "check", "everything wrong with a folder; exit 4", run_check);
+  add_pack(line, *dataset);
 }
 
 }  // namespace glint

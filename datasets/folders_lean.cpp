@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// In place of the loaders of folders, which need image libraries.
+#include "datasets/dataset.h"
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+bool can_load(const fs::path& path) {
+  std::error_code code;
+  return fs::is_directory(path, code);
+}
+
+[[noreturn]] Scene load(const fs::path& path, const LoadOptions&) {
+  throw Error(
+      ExitCode::kEnvironment,
+      fmt::format(
+          "{}: a folder; this lean build reads packed scenes only: make one with the full build "
+          "(glint-bench dataset pack {} room.safetensors)",
+          path.string(),
+          path.string()
+      )
+  );
+}
+
+}  // namespace
+
+GLINT_REGISTER_LOADER({"folder", can_load, load, "nothing: folders need the full build"})
+
+}  // namespace glint

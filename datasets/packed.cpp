@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// A packed scene (packed_scene.h) in place of a folder. Its split is the one it was packed with.
+#include "datasets/dataset.h"
+#include "datasets/packed_scene.h"
+#include "datasets/view_maps.h"
+
+namespace glint {
+namespace {
+
+bool can_load(const fs::path& path) {
+  std::error_code code;
+  return fs::is_regular_file(path, code);
+}
+
+Scene load(const fs::path& path, const LoadOptions& options) {
+  Scene scene = read_packed_scene(path);
+  for (std::vector<View>* views : {&scene.train, &scene.test})
+    for (View& view : *views) {
+      if (!options.with_priors) view.priors = {};
+      if (!options.with_truth) view.truth = {};
+      fit_view(view, options);
+    }
+  return scene;
+}
+
+}  // namespace
+
+GLINT_REGISTER_LOADER({"packed", can_load, load, "a file that `glint-bench dataset pack` wrote"})
+
+}  // namespace glint
