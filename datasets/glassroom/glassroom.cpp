@@ -20,7 +20,7 @@ namespace glint {
 namespace {
 
 // Part of every cache key: raise it whenever the same options give other files.
-constexpr int kGeneratorVersion = 1;
+constexpr int kGeneratorVersion = 2;
 constexpr int kTestEvery = 8;
 // Noise in training views averages out over the views; in a test view it bounds the score.
 constexpr int kTestSampleFactor = 4;
@@ -190,7 +190,9 @@ class SceneMaker {
     }
     write_cameras(folder_, scene_->cameras);
     write_point_ply(folder_ / "sparse" / "0" / "points3D.ply", cloud_);
-    write_mesh_ply(folder_ / "gt" / "mesh.ply", truth_mesh(scene_->room.scene));
+    const TraceScene& scene = scene_->room.scene;
+    write_mesh_ply(folder_ / "gt" / "mesh.ply", truth_mesh(scene, TruthLayer::kFirst));
+    write_mesh_ply(folder_ / "gt" / "mesh_behind.ply", truth_mesh(scene, TruthLayer::kBehind));
     write_png(folder_ / "contact_sheet.png", sheet_.image());
     write_file(folder_ / "scene.json", description().dump(1) + "\n");
   }

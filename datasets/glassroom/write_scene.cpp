@@ -210,9 +210,11 @@ void write_view(
   write_png(gt / "glass" / (name + ".png"), mask_image(truth.glass));
 }
 
-TriangleMesh truth_mesh(const TraceScene& scene, float max_edge) {
+TriangleMesh truth_mesh(const TraceScene& scene, TruthLayer layer, float max_edge) {
   TriangleMesh result;
   for (const TraceMesh& mesh : scene.meshes) {
+    const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    if (layer == TruthLayer::kBehind && material.kind == MaterialKind::kThinDielectric) continue;
     Subdivision subdivision(scene, mesh, max_edge, result);
     for (const auto& face : mesh.faces) subdivision.split(face[0], face[1], face[2]);
   }

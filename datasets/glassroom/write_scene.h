@@ -5,6 +5,7 @@
 //   sparse/0/points3D.ply                        simulated SfM points
 //   diffrens/{normal,depth,diffuse_albedo,basecolor}/<view>/000000.png   simulated priors
 //   gt/{rgb,transmitted,reflected,...}/<view>.exr, gt/glass/<view>.png, gt/mesh.ply
+//   gt/mesh_behind.ply
 // Radiance maps are linear and multiplied by the exposure: an image is their sRGB encoding,
 // clamped.
 #pragma once
@@ -34,9 +35,11 @@ void write_view(
     float exposure
 );
 
-// All meshes as one, panes included, with edges of at most `max_edge` metres so that a face is
+// What a ray meets first, panes included, or first behind glass: everything but the panes.
+enum class TruthLayer { kFirst, kBehind };
+// All meshes of the layer as one, with edges of at most `max_edge` metres so that a face is
 // either seen or not; colours are sRGB-encoded albedo.
-TriangleMesh truth_mesh(const TraceScene& scene, float max_edge = 0.1f);
+TriangleMesh truth_mesh(const TraceScene& scene, TruthLayer layer, float max_edge = 0.1f);
 
 // Relative path -> FNV-1a hash of the bytes, sixteen hexadecimal digits, for every file in
 // `folder`.

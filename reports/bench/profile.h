@@ -47,6 +47,8 @@ struct Profile {
   Json defaults = Json::object();   // SceneSource fields shared by all scenes
   Json scenes = Json::array();      // names, or objects with SceneSource fields
   Json overrides = Json::object();  // method id -> config fields
+  Json mesh = Json::object();       // TsdfOptions fields of the mesh stage
+  Json mesh_metrics = Json::object();  // MeshProtocol fields; its tolerance is otherwise 2 voxels
 
   template <class V>
   void visit(V&& v) {
@@ -59,6 +61,8 @@ struct Profile {
     v("defaults", defaults, "scene fields shared by all scenes");
     v("scenes", scenes, "names, or tables of scene fields");
     v("overrides", overrides, "config fields by method");
+    v("mesh", mesh, "extraction: voxel, truncation_voxels, ...");
+    v("mesh_metrics", mesh_metrics, "comparison: num_samples, thresholds_m, ...");
   }
 
   // Errors (kUsage): a scene without a name, an unknown field, a name twice.
