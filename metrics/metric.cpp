@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glint/core/error.h"
+#include "metrics/mesh/mesh_protocol.h"
 
 namespace glint {
 namespace {
@@ -64,6 +65,8 @@ std::vector<Region> evaluation_regions(MaskView glass) {
 }
 
 const Metric* find_metric(const std::string& id) {
+  for (const Metric& metric : mesh_metric_list())
+    if (metric.id == id) return &metric;
   const std::string plain = id.substr(0, id.find('@'));
   for (const MetricFamily& family : metric_families())
     for (const Metric& metric : family.metrics)

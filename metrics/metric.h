@@ -84,7 +84,8 @@ struct MetricFamily {
 // All families, in the order of their file names.
 const std::vector<MetricFamily>& metric_families();
 
-// nullptr: unknown. `id` may carry a region ("psnr@glass").
+// nullptr: unknown. Metrics of meshes go by their whole id ("mesh-f1@5cm", mesh/mesh_protocol.h);
+// behind another's '@' stands a region ("psnr@glass").
 const Metric* find_metric(const std::string& id);
 
 // Every registered metric of a view, by id ("psnr") and, for regions, "psnr@glass". What cannot be

@@ -191,7 +191,10 @@ std::vector<std::string> extra_fields(const PlyElement& element) {
 }
 
 std::vector<Vec3f> read_vectors(
-    const PlyFile& file, const PlyElement& element, const std::vector<std::string>& names
+    const PlyFile& file,
+    const PlyElement& element,
+    const std::vector<std::string>& names,
+    NonFinite non_finite = NonFinite::kReject
 ) {
   const std::vector<int> columns = require_columns(file, element, names);
   std::vector<Vec3f> vectors(element.count);
@@ -199,7 +202,7 @@ std::vector<Vec3f> read_vectors(
     for (int axis = 0; axis < 3; ++axis) {
       const float value = element.scalar(i, columns[static_cast<std::size_t>(axis)]);
       GLINT_CHECK(
-          std::isfinite(value),
+          std::isfinite(value) || non_finite == NonFinite::kKeep,
           kBadReference,
           "{}: {} {}: {} is {}",
           file.path,
@@ -231,14 +234,14 @@ std::vector<Vec3f> read_colors(const PlyFile& file, const PlyElement& element) {
 }
 
 // Vertex indices of triangle `corner` of a polygon's fan, checked.
-std::array<std::int32_t, 3> fan_triangle(
+Triangle fan_triangle(
     const PlyFile& file,
     const PlyElement& faces,
     std::size_t begin,
     std::size_t corner,
     std::size_t vertices
 ) {
-  std::array<std::int32_t, 3> triangle{};
+  Triangle triangle{};
   const std::size_t items[3] = {begin, begin + corner, begin + corner + 1};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::int64_t id = faces.list_items[items[k]];
@@ -255,9 +258,9 @@ std::array<std::int32_t, 3> fan_triangle(
   return triangle;
 }
 
-std::vector<std::array<std::int32_t, 3>> read_triangles(const PlyFile& file, std::size_t vertices) {
+std::vector<Triangle> read_triangles(const PlyFile& file, std::size_t vertices) {
   const PlyElement& element = file.element("face");
-  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::vector<Triangle> triangles;
   triangles.reserve(element.count);
   std::size_t begin = 0;
   for (std::size_t i = 0; i < element.list_ends.size(); ++i) {
@@ -336,7 +339,7 @@ void write_mesh_ply(const fs::path& path, const TriangleMesh& mesh) {
   write_file(path, bytes);
 }
 
-TriangleMesh read_mesh_ply(const fs::path& path) {
+TriangleMesh read_mesh_ply(const fs::path& path, NonFinite non_finite) {
   const PlyFile file = detail::read_ply(path);
   const PlyElement& vertices = file.element("vertex");
   GLINT_CHECK(
@@ -347,10 +350,15 @@ TriangleMesh read_mesh_ply(const fs::path& path) {
       vertices.count
   );
   TriangleMesh mesh;
-  mesh.vertices = read_vectors(file, vertices, {"x", "y", "z"});
+  mesh.vertices = read_vectors(file, vertices, {"x", "y", "z"}, non_finite);
   mesh.colors = read_colors(file, vertices);
   mesh.faces = read_triangles(file, vertices.count);
   return mesh;
+}
+
+bool is_mesh_ply(const fs::path& path) {
+  const std::vector<std::string> names = detail::read_ply_element_names(path);
+  return std::find(names.begin(), names.end(), "face") != names.end();
 }
 
 }  // namespace glint

@@ -6,10 +6,8 @@
 // rows.
 #pragma once
 
-#include <array>
-#include <cstdint>
-
 #include "glint/core/files.h"
+#include "glint/core/triangle_mesh.h"
 #include "glint/scene/surfels.h"
 
 namespace glint {
@@ -25,13 +23,16 @@ void write_point_ply(const fs::path& path, const PointCloud& points);
 // Without colours in the file: mid-grey.
 PointCloud read_point_ply(const fs::path& path);
 
-struct TriangleMesh {
-  std::vector<Vec3f> vertices;  // metres
-  std::vector<std::array<std::int32_t, 3>> faces;
-  std::vector<Vec3f> colors;  // per vertex, [0, 1]; may be empty
+// What a reader does with a coordinate that is not finite.
+enum class NonFinite {
+  kReject,  // an error naming it
+  kKeep,    // for readers that drop the vertex's faces themselves
 };
+
 void write_mesh_ply(const fs::path& path, const TriangleMesh& mesh);
 // Polygons become fans of triangles.
-TriangleMesh read_mesh_ply(const fs::path& path);
+TriangleMesh read_mesh_ply(const fs::path& path, NonFinite vertices = NonFinite::kReject);
+// Whether the header names an element "face", of any number of rows: a mesh, else points.
+bool is_mesh_ply(const fs::path& path);
 
 }  // namespace glint

@@ -305,4 +305,11 @@ PlyFile read_ply(const fs::path& path) {
   return {path.string(), std::move(header.elements)};
 }
 
+std::vector<std::string> read_ply_element_names(const fs::path& path) {
+  std::vector<std::string> names;
+  for (const PlyElement& element : parse_header(path.string(), read_file(path)).elements)
+    names.push_back(element.name);
+  return names;
+}
+
 }  // namespace glint::detail

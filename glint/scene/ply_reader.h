@@ -47,5 +47,7 @@ struct PlyFile {
 // Errors (kBadReference): no PLY, big-endian, unknown types, counts that the file cannot hold, rows
 // missing, unreadable numbers, two lists in one element.
 PlyFile read_ply(const fs::path& path);
+// Of the header alone, with its errors.
+std::vector<std::string> read_ply_element_names(const fs::path& path);
 
 }  // namespace glint::detail

@@ -154,6 +154,33 @@ void run(MetricTool& tool, ToolOptions& options, std::ostream& out) {
 
 }  // namespace
 
+int run_program(
+    CLI::App& app,
+    const std::vector<std::string>& args,
+    std::ostream& out,
+    std::ostream& err,
+    const std::function<void()>& body
+) {
+  try {
+    if (args.empty()) {
+      err << app.help();
+      return static_cast<int>(ExitCode::kUsage);
+    }
+    app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
+    body();
+  } catch (const CLI::ParseError& error) {
+    const bool success = app.exit(error, out, err) == 0;
+    return static_cast<int>(success ? ExitCode::kSuccess : ExitCode::kUsage);
+  } catch (const Error& error) {
+    err << app.get_name() << ": " << error.what() << "\n";
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    err << app.get_name() << ": " << error.what() << "\n";
+    return static_cast<int>(ExitCode::kEnvironment);
+  }
+  return static_cast<int>(ExitCode::kSuccess);
+}
+
 int run_tool(
     MetricTool& tool, const std::vector<std::string>& args, std::ostream& out, std::ostream& err
 ) {
@@ -162,24 +189,7 @@ int run_tool(
   ToolOptions options;
   add_common_options(app, options);
   tool.add_options(app);
-  try {
-    if (args.empty()) {
-      err << app.help();
-      return static_cast<int>(ExitCode::kUsage);
-    }
-    app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
-    run(tool, options, out);
-  } catch (const CLI::ParseError& error) {
-    const bool success = app.exit(error, out, err) == 0;
-    return static_cast<int>(success ? ExitCode::kSuccess : ExitCode::kUsage);
-  } catch (const Error& error) {
-    err << tool.name() << ": " << error.what() << "\n";
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    err << tool.name() << ": " << error.what() << "\n";
-    return static_cast<int>(ExitCode::kEnvironment);
-  }
-  return static_cast<int>(ExitCode::kSuccess);
+  return run_program(app, args, out, err, [&] { run(tool, options, out); });
 }
 
 int run_tool(std::unique_ptr<MetricTool> tool, int argc, char** argv) {

@@ -4,6 +4,7 @@
 // how a pair is scored.
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <span>
@@ -58,6 +59,16 @@ class MetricTool {
   // Further results over all images, printed below the means.
   virtual Json summary(std::span<const ImageScores>) const { return Json::object(); }
 };
+
+// Parses and calls `body`: help without arguments, errors to `err` behind the program's name, the
+// exit code of whatever went wrong.
+int run_program(
+    CLI::App& app,
+    const std::vector<std::string>& args,
+    std::ostream& out,
+    std::ostream& err,
+    const std::function<void()>& body
+);
 
 // The whole program but for main(). `args` without the program's name. Results go to `out`, errors
 // and usage to `err`. Returns the exit code.

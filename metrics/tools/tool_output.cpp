@@ -23,20 +23,6 @@ std::string rounded(const std::string& id, std::optional<double> value) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
 }
 
-// CSV fields with a separator, quote or line break are quoted.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-Json scores_json(const ToolScores& scores) {
-  Json json = Json::object();
-  for (const auto& [id, value] : scores) json[id] = value;
-  return json;
-}
-
 Json image_json(const ImageScores& image) {
   Json json = {
       {"name", image.files.name},
@@ -50,14 +36,6 @@ Json image_json(const ImageScores& image) {
 
 std::string summary_text(const Json& value) {
   return value.is_number_float() ? fmt::format("{:.4f}", value.get<double>()) : value.dump();
-}
-
-void print_mean_only(const ToolScores& means, std::ostream& out) {
-  for (const auto& [id, value] : means) {
-    const Metric* metric = find_metric(id);
-    const std::string unit = metric && !metric->unit.empty() ? " " + metric->unit : "";
-    out << fmt::format("{} {}{}\n", id, rounded(id, value), unit);
-  }
 }
 
 void print_table(const ToolReport& report, const ToolScores& means, std::ostream& out) {
@@ -82,6 +60,27 @@ void print_table(const ToolReport& report, const ToolScores& means, std::ostream
 
 }  // namespace
 
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+Json scores_json(const ToolScores& scores) {
+  Json json = Json::object();
+  for (const auto& [id, value] : scores) json[id] = value;
+  return json;
+}
+
+void print_scores(const ToolScores& scores, std::ostream& out) {
+  for (const auto& [id, value] : scores) {
+    const Metric* metric = find_metric(id);
+    const std::string unit = metric && !metric->unit.empty() ? " " + metric->unit : "";
+    out << fmt::format("{} {}{}\n", id, rounded(id, value), unit);
+  }
+}
+
 ToolScores mean_scores(std::span<const ImageScores> images) {
   ToolScores means;
   for (const ImageScores& image : images)
@@ -100,7 +99,7 @@ ToolScores mean_scores(std::span<const ImageScores> images) {
 void print_text(const MetricTool& tool, const ToolReport& report, std::ostream& out) {
   const ToolScores means = mean_scores(report.images);
   if (report.images.size() == 1)
-    print_mean_only(means, out);
+    print_scores(means, out);
   else
     print_table(report, means, out);
   const Json summary = tool.summary(report.images);

@@ -15,6 +15,12 @@ struct ToolReport {
   std::vector<std::string> missing;  // names left out by --allow-missing
 };
 
+// Quoted when it has a separator, quote or line break.
+std::string csv_field(const std::string& text);
+Json scores_json(const ToolScores& scores);
+// A line each: id, value with two digits more than tables print, unit.
+void print_scores(const ToolScores& scores, std::ostream& out);
+
 // Mean over the images that have the metric, in order of first appearance.
 ToolScores mean_scores(std::span<const ImageScores> images);
 

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// What the comparison of two surfaces depends on, and the ids of its results. Apart from the
+// computation, so that every build knows the columns of tables.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "glint/core/config.h"
+#include "metrics/metric.h"
+
+namespace glint {
+
+enum class SurfaceDistance {
+  kPointToTriangle,  // exact distance of a sample to the other surface
+  kPointToPoint,     // to the other surface's nearest sample: a floor that falls with the density
+};
+NLOHMANN_JSON_SERIALIZE_ENUM(
+    SurfaceDistance,
+    {{SurfaceDistance::kPointToTriangle, "point-to-triangle"},
+     {SurfaceDistance::kPointToPoint, "point-to-point"}}
+)
+
+// What was done to both meshes before they were compared (metrics/mesh/cull.h).
+enum class MeshCulling { kNone, kCameras };
+NLOHMANN_JSON_SERIALIZE_ENUM(
+    MeshCulling, {{MeshCulling::kNone, "none"}, {MeshCulling::kCameras, "cameras"}}
+)
+
+struct MeshProtocol {
+  std::uint64_t num_samples = 1'000'000;
+  std::uint64_t seed = 0;
+  SurfaceDistance distance = SurfaceDistance::kPointToTriangle;
+  std::vector<double> thresholds_m = {0.01, 0.02, 0.05, 0.10};
+  double max_distance_m = 0;
+  MeshCulling cull = MeshCulling::kCameras;
+  double cull_tolerance_m = 0.02;  // two voxels of the default extraction
+  template <class V>
+  void visit(V&& v) {
+    v("num_samples", num_samples, "per surface, uniform by area, stratified");
+    v("seed", seed, "of the samples");
+    v("distance", distance, "point-to-triangle (exact) or point-to-point (nearest sample)");
+    v("thresholds_m", thresholds_m, "metres; a sample counts when strictly nearer");
+    v("max_distance_m", max_distance_m, "metres; larger distances are set to it; 0: no limit");
+    v("cull", cull, "none, or cameras: faces that no training camera sees are left out of both");
+    v("cull_tolerance_m", cull_tolerance_m, "metres in front of a face that do not hide it");
+  }
+};
+
+// "5cm", "0.5cm".
+std::string threshold_name(double threshold_m);
+
+// The id of a result under a protocol: "mesh-cd", "mesh-f1@5cm-p2p". `stem`: "cd", "f1@5cm".
+std::string mesh_metric_id(const std::string& stem, const MeshProtocol& protocol);
+
+// Of the default thresholds and both distances, each with its protocol. Fractions in [0, 1] for
+// precision, recall, F1 and normals; metres for the rest. find_metric() knows them.
+const std::vector<Metric>& mesh_metric_list();
+
+}  // namespace glint

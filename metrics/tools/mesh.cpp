@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/tools/mesh.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+
+#include "glint/core/error.h"
+#include "glint/core/parallel.h"
+#include "glint/core/progress.h"
+#include "glint/scene/image_files.h"
+#include "metrics/tools/mesh_output.h"
+#include "metrics/tools/tool.h"
+
+namespace glint {
+namespace {
+
+constexpr int kCurvePoints = 100;  // equal steps up to the largest threshold
+
+struct MeshToolOptions {
+  fs::path prediction, reference, dataset, colored, colored_reference, curve;
+  std::string cull, distance = "point-to-triangle";
+  MeshProtocol protocol;
+  bool json = false, csv = false, quiet = false;
+  int threads = 0;
+};
+
+void add_inputs(CLI::App& app, MeshToolOptions& options) {
+  app.add_option("PREDICTION", options.prediction, "mesh or points (.ply), or run folder: mesh.ply")
+      ->required();
+  app.add_option(
+         "REFERENCE", options.reference, "mesh or points (.ply), or dataset folder: gt/mesh.ply"
+  )
+      ->required();
+  app.add_option(
+         "--cull",
+         options.cull,
+         "leave out what no training camera sees; cameras where a dataset is given"
+  )
+      ->check(CLI::IsMember({"cameras", "none"}));
+  app.add_option("--dataset", options.dataset, "whose cameras cull; else REFERENCE's folder");
+}
+
+void add_protocol(CLI::App& app, MeshToolOptions& options) {
+  MeshProtocol& protocol = options.protocol;
+  app.add_option("--tolerance", protocol.cull_tolerance_m, "of culling, metres (two voxels)")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--samples", protocol.num_samples, "per surface")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--seed", protocol.seed, "of the samples")->capture_default_str();
+  app.add_option("--thresholds", protocol.thresholds_m, "of precision, recall and F1, metres")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--distance", options.distance, "to the surface, or to its nearest sample")
+      ->check(CLI::IsMember({"point-to-triangle", "point-to-point"}))
+      ->capture_default_str();
+  app.add_option("--max-distance", protocol.max_distance_m, "metres; clips what is further")
+      ->check(CLI::PositiveNumber);
+}
+
+void add_outputs(CLI::App& app, MeshToolOptions& options) {
+  auto* json = app.add_flag("--json", options.json, "one JSON document, numbers not rounded");
+  app.add_flag("--csv", options.csv, "one row, numbers not rounded")->excludes(json);
+  app.add_option("--colored", options.colored, "FILE.ply: the prediction, distances as colours");
+  app.add_option("--colored-reference", options.colored_reference, "FILE.ply: the reference");
+  app.add_option("--curve", options.curve, "FILE.png: F1 over the threshold");
+  app.add_option("--threads", options.threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  app.add_flag("--quiet", options.quiet, "no progress on standard error");
+}
+
+void check_output(const fs::path& path, const char* option, const char* extension) {
+  GLINT_CHECK(
+      path.empty() || path.extension() == extension,
+      kUsage,
+      "{}: {}; expected a name that ends in {}",
+      option,
+      path.string(),
+      extension
+  );
+}
+
+// A folder of images and cameras that the reference may have come from.
+fs::path dataset_of(const MeshToolOptions& options) {
+  if (!options.dataset.empty() || !fs::is_directory(options.reference)) return options.dataset;
+  return options.reference;
+}
+
+// Sets what follows from several options. Errors: kUsage.
+void complete(MeshToolOptions& options) {
+  check_output(options.colored, "--colored", ".ply");
+  check_output(options.colored_reference, "--colored-reference", ".ply");
+  check_output(options.curve, "--curve", ".png");
+  options.dataset = dataset_of(options);
+  GLINT_CHECK(
+      options.cull != "cameras" || !options.dataset.empty(),
+      kUsage,
+      "--cull cameras needs the cameras: give --dataset, or a dataset folder as REFERENCE"
+  );
+  if (options.cull.empty()) options.cull = options.dataset.empty() ? "none" : "cameras";
+  options.protocol.cull = Json(options.cull).get<MeshCulling>();
+  options.protocol.distance = Json(options.distance).get<SurfaceDistance>();
+}
+
+MeshReport load_surfaces(const MeshToolOptions& options) {
+  MeshReport report;
+  report.protocol = options.protocol;
+  report.reference = read_surface(surface_path(options.reference, fs::path("gt") / "mesh.ply"));
+  report.prediction = with_exit_code(ExitCode::kBadPrediction, [&] {
+    return read_surface(surface_path(options.prediction, "mesh.ply"));
+  });
+  return report;
+}
+
+void cull(MeshReport& report, const MeshToolOptions& options) {
+  if (report.protocol.cull == MeshCulling::kNone) return;
+  report.dataset = options.dataset;
+  log::info(fmt::format("loading the cameras of {}", options.dataset.string()));
+  const std::vector<Camera> cameras = training_cameras(options.dataset);
+  const double tolerance = report.protocol.cull_tolerance_m;
+  cull_surface(report.reference, cameras, tolerance);
+  with_exit_code(ExitCode::kBadPrediction, [&] {
+    cull_surface(report.prediction, cameras, tolerance);
+  });
+}
+
+std::vector<double> curve_thresholds(double last) {
+  std::vector<double> thresholds;
+  for (int i = 1; i <= kCurvePoints; ++i) thresholds.push_back(last * i / kCurvePoints);
+  return thresholds;
+}
+
+void score(MeshReport& report) {
+  const Surface &prediction = report.prediction.surface, &reference = report.reference.surface;
+  log::info(fmt::format("measuring {} samples of either surface", report.protocol.num_samples));
+  const SurfaceDistances distances = surface_distances(prediction, reference, report.protocol);
+  report.scores = mesh_scores(distances, report.protocol);
+  const auto& thresholds = report.protocol.thresholds_m;
+  report.curve = f1_curve(
+      distances, curve_thresholds(*std::max_element(thresholds.begin(), thresholds.end()))
+  );
+}
+
+void write_pictures(MeshReport& report, const MeshToolOptions& options) {
+  const Surface &prediction = report.prediction.surface, &reference = report.reference.surface;
+  const double range = report.curve.back().threshold_m;
+  if (!options.colored.empty()) write_colored(options.colored, prediction, reference, range);
+  if (!options.colored_reference.empty())
+    write_colored(options.colored_reference, reference, prediction, range);
+  if (!options.colored.empty() || !options.colored_reference.empty()) report.color_range_m = range;
+  if (!options.curve.empty()) write_png(options.curve, draw_f1_curve(report.curve));
+}
+
+void run(MeshToolOptions& options, std::ostream& out) {
+  complete(options);
+  set_quiet(options.quiet);
+  if (options.threads > 0) set_num_threads(options.threads);
+  MeshReport report = load_surfaces(options);
+  cull(report, options);
+  score(report);
+  write_pictures(report, options);
+  if (options.json)
+    print_mesh_json(report, out);
+  else if (options.csv)
+    print_mesh_csv(report, out);
+  else
+    print_mesh_text(report, out);
+}
+
+}  // namespace
+
+int run_mesh_tool(const std::vector<std::string>& args, std::ostream& out, std::ostream& err) {
+  CLI::App app(
+      "Distance of two surfaces in metres: Chamfer distance, precision, recall and F1, normal "
+      "consistency.",
+      "glint-mesh"
+  );
+  app.footer(
+      "Examples:\n"
+      "  glint-mesh out/ci/runs/room_1/2dgs/0 data/room_1\n"
+      "  glint-mesh predicted.ply scan.ply --thresholds 0.01 0.05 --curve f1.png --json\n"
+  );
+  MeshToolOptions options;
+  add_inputs(app, options);
+  add_protocol(app, options);
+  add_outputs(app, options);
+  return run_program(app, args, out, err, [&] { run(options, out); });
+}
+
+}  // namespace glint

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "metrics/tools/mesh_inputs.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "datasets/dataset.h"
+#include "glint/core/error.h"
+#include "glint/scene/ply.h"
+
+namespace glint {
+namespace {
+
+// Cameras alone are wanted: pictures are loaded as small as they may be. A camera's image keeps its
+// borders when it is resized, so that what is inside stays inside.
+constexpr double kLeastPixels = 4096;
+
+void check_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  GLINT_CHECK(
+      extension == ".ply",
+      kBadReference,
+      "{}: '{}' files are not read; expected a mesh or points as .ply (MeshLab, Blender and Open3D "
+      "convert)",
+      path.string(),
+      extension
+  );
+}
+
+void read_mesh(SurfaceInput& input) {
+  const std::string name = input.path.string();
+  const TriangleMesh mesh = read_mesh_ply(input.path, NonFinite::kKeep);
+  GLINT_CHECK(
+      !mesh.faces.empty(),
+      kBadReference,
+      "{}: a mesh of {} vertices without faces; extract it again, or leave the element 'face' out "
+      "of "
+      "the header when its points are meant",
+      name,
+      mesh.vertices.size()
+  );
+  CleanMesh clean = clean_mesh(mesh);
+  GLINT_CHECK(
+      !clean.mesh.faces.empty(),
+      kBadReference,
+      "{}: none of {} faces can be used: {} are not finite, {} have no area",
+      name,
+      clean.report.faces_before,
+      clean.report.not_finite,
+      clean.report.zero_area
+  );
+  input.surface = std::move(clean.mesh);
+  input.cleaning = clean.report;
+}
+
+// Unit normals, or none where one has no direction.
+std::vector<Vec3f> unit_normals(std::vector<Vec3f> normals) {
+  for (Vec3f& normal : normals) {
+    const float norm = length(normal);
+    if (!(norm > 0)) return {};
+    normal = 1 / norm * normal;
+  }
+  return normals;
+}
+
+void read_points(SurfaceInput& input) {
+  PointCloud cloud = read_point_ply(input.path);
+  GLINT_CHECK(!cloud.positions.empty(), kBadReference, "{}: no points", input.path.string());
+  input.surface = SurfacePoints{std::move(cloud.positions), unit_normals(std::move(cloud.normals))};
+}
+
+}  // namespace
+
+SurfaceInput read_surface(const fs::path& path) {
+  check_extension(path);
+  SurfaceInput input;
+  input.path = path;
+  if (is_mesh_ply(path))
+    read_mesh(input);
+  else
+    read_points(input);
+  return input;
+}
+
+fs::path surface_path(const fs::path& path, const fs::path& file_in_folder) {
+  const fs::path file = fs::is_directory(path) ? path / file_in_folder : path;
+  GLINT_CHECK(
+      fs::exists(file),
+      kBadReference,
+      "{}: no such file; expected a .ply, or a folder with {}",
+      file.string(),
+      file_in_folder.string()
+  );
+  return file;
+}
+
+std::vector<Camera> training_cameras(const fs::path& dataset) {
+  LoadOptions options;
+  options.max_pixels = kLeastPixels;
+  options.with_truth = options.with_priors = false;
+  const Scene scene = load_scene(dataset, options);
+  GLINT_CHECK(!scene.train.empty(), kBadReference, "{}: no training view", dataset.string());
+  std::vector<Camera> cameras;
+  for (const View& view : scene.train) cameras.push_back(view.camera);
+  return cameras;
+}
+
+void cull_surface(SurfaceInput& input, const std::vector<Camera>& cameras, double tolerance_m) {
+  const auto* mesh = std::get_if<TriangleMesh>(&input.surface);
+  GLINT_CHECK(
+      mesh != nullptr,
+      kBadReference,
+      "{}: points hide nothing and cannot be culled; give meshes, or --cull none",
+      input.path.string()
+  );
+  CulledMesh culled = cull_unseen(*mesh, cameras, tolerance_m);
+  GLINT_CHECK(
+      !culled.mesh.faces.empty(),
+      kBadReference,
+      "{}: none of {} faces is seen by any of {} cameras; is the mesh in the dataset's frame?",
+      input.path.string(),
+      culled.recipe.faces_before,
+      cameras.size()
+  );
+  input.surface = std::move(culled.mesh);
+  input.culling = culled.recipe;
+}
+
+}  // namespace glint
