@@ -59,7 +59,7 @@ macro(glint_find_library name header library)
 endmacro()
 glint_find_library(minizip minizip/unzip.h minizip)
 glint_find_library(onednn oneapi/dnnl/dnnl.hpp dnnl)
-set(GLINT_NETWORKS onednn OpenMP::OpenMP_CXX minizip)
+set(GLINT_NETWORKS onednn $<LINK_ONLY:OpenMP::OpenMP_CXX> minizip)
 
 set(GLINT_FMT fmt::fmt)
 set(GLINT_IMAGE_CODECS opencv::core opencv::imgproc opencv::imgcodecs)

@@ -4,10 +4,12 @@
 namespace glint {
 namespace {
 
-void append_metrics(const MeshProtocol& protocol, std::vector<Metric>& list) {
+void append_metrics(
+    const std::string& prefix, const MeshProtocol& protocol, std::vector<Metric>& list
+) {
   const Json json = config_to_json(protocol);
   const auto add = [&](const std::string& stem, const char* unit, Direction direction, int digits) {
-    list.push_back({mesh_metric_id(stem, protocol), unit, direction, digits, json});
+    list.push_back({prefix + mesh_metric_id(stem, protocol), unit, direction, digits, json});
   };
   for (const char* stem : {"cd", "accuracy", "completeness"})
     add(stem, "m", Direction::kLowerIsBetter, 4);
@@ -29,10 +31,13 @@ std::string mesh_metric_id(const std::string& stem, const MeshProtocol& protocol
 const std::vector<Metric>& mesh_metric_list() {
   static const std::vector<Metric> list = [] {
     std::vector<Metric> metrics;
-    MeshProtocol protocol;
-    append_metrics(protocol, metrics);
-    protocol.distance = SurfaceDistance::kPointToPoint;
-    append_metrics(protocol, metrics);
+    for (const char* prefix : {"", kBehindMesh})
+      for (const auto distance :
+           {SurfaceDistance::kPointToTriangle, SurfaceDistance::kPointToPoint}) {
+        MeshProtocol protocol;
+        protocol.distance = distance;
+        append_metrics(prefix, protocol, metrics);
+      }
     return metrics;
   }();
   return list;

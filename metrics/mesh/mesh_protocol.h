@@ -54,8 +54,11 @@ std::string threshold_name(double threshold_m);
 // The id of a result under a protocol: "mesh-cd", "mesh-f1@5cm-p2p". `stem`: "cd", "f1@5cm".
 std::string mesh_metric_id(const std::string& stem, const MeshProtocol& protocol);
 
-// Of the default thresholds and both distances, each with its protocol. Fractions in [0, 1] for
-// precision, recall, F1 and normals; metres for the rest. find_metric() knows them.
+// What ids of the surface behind glass begin with: "behind-mesh-cd".
+inline constexpr const char* kBehindMesh = "behind-";
+
+// Of both surfaces, the default thresholds and both distances, each with its protocol. Fractions in
+// [0, 1] for precision, recall, F1 and normals; metres for the rest. find_metric() knows them.
 const std::vector<Metric>& mesh_metric_list();
 
 }  // namespace glint

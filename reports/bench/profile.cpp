@@ -54,7 +54,20 @@ Profile load_profile(const std::string& name) {
       where
   );
   profile.sources();
+  profile.mesh_protocol();
   return profile;
+}
+
+TsdfOptions Profile::tsdf_options() const {
+  TsdfOptions options;
+  config_from_json(options, mesh, fmt::format("profile {} [mesh]", name));
+  return options;
+}
+
+MeshProtocol Profile::mesh_protocol() const {
+  MeshProtocol protocol = mesh_protocol_for(tsdf_options());
+  config_from_json(protocol, mesh_metrics, fmt::format("profile {} [mesh_metrics]", name));
+  return protocol;
 }
 
 std::vector<SceneSource> Profile::sources() const {

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "glint/core/config.h"
+#include "metrics/mesh/mesh_protocol.h"
+#include "reports/mesh/tsdf.h"
 
 namespace glint {
 
@@ -44,10 +46,10 @@ struct Profile {
   std::vector<std::string> methods;  // ids
   std::vector<std::uint64_t> seeds{0};
   int timing_frames = 50, timing_warmup = 5;
-  Json defaults = Json::object();   // SceneSource fields shared by all scenes
-  Json scenes = Json::array();      // names, or objects with SceneSource fields
-  Json overrides = Json::object();  // method id -> config fields
-  Json mesh = Json::object();       // TsdfOptions fields of the mesh stage
+  Json defaults = Json::object();      // SceneSource fields shared by all scenes
+  Json scenes = Json::array();         // names, or objects with SceneSource fields
+  Json overrides = Json::object();     // method id -> config fields
+  Json mesh = Json::object();          // TsdfOptions fields of the mesh stage
   Json mesh_metrics = Json::object();  // MeshProtocol fields; its tolerance is otherwise 2 voxels
 
   template <class V>
@@ -64,6 +66,10 @@ struct Profile {
     v("mesh", mesh, "extraction: voxel, truncation_voxels, ...");
     v("mesh_metrics", mesh_metrics, "comparison: num_samples, thresholds_m, ...");
   }
+
+  // Errors (kUsage): unknown fields of [mesh] and [mesh_metrics].
+  TsdfOptions tsdf_options() const;
+  MeshProtocol mesh_protocol() const;
 
   // Errors (kUsage): a scene without a name, an unknown field, a name twice.
   std::vector<SceneSource> sources() const;

@@ -9,6 +9,8 @@
 #include "metrics/metric.h"
 #include "reports/bench/interrupt.h"
 #include "reports/bench/machine.h"
+#include "reports/mesh/mesh_stage.h"
+#include "reports/mesh/tsdf_volume.h"
 
 namespace glint {
 
@@ -82,10 +84,9 @@ void run_stages(
   clock.enter("train");
   const auto method = trained_method(spec, loaded.scene, options.force);
   clock.enter("eval");
-  record.metrics = render_and_score(
-      spec, loaded.scene, *method, {options.profile.timing_frames, options.profile.timing_warmup}
-  );
-  record.not_measured = missing_metrics();
+  RunScores scores = render_and_score(spec, loaded.scene, *method, options.profile);
+  record.metrics = std::move(scores.means);
+  record.not_measured = std::move(scores.not_measured);
   record.num_surfels = method->num_surfels();
   record.warnings = method->warnings();
   const Camera& camera = loaded.scene.test.front().camera;
@@ -113,6 +114,21 @@ Record run_cell(const PlanCell& cell, const RunnerOptions& options, const Loaded
     record.failure = failure_of(error, clock.stage(), spec.folder);
   }
   return record;
+}
+
+// Makes the meshes. A run whose depth gives none has its other numbers all the same; empty: made.
+std::string why_no_mesh(
+    const RunSpec& spec, const Scene& scene, const Method& method, const TsdfOptions& options
+) {
+  if (!has_tsdf_volume()) return "no Open3D";
+  try {
+    mesh_stage(spec, scene, method, options);
+    return {};
+  } catch (const Error& error) {
+    if (error.code() == ExitCode::kEnvironment) throw;  // nothing that another run would lack
+    log::warn(fmt::format("{}: no mesh: {}", spec.folder.string(), error.what()));
+    return fmt::format("no mesh: {}", error.what());
+  }
 }
 
 // Runs the plan cell by cell, with one scene in memory at a time.
@@ -200,19 +216,24 @@ class Runner {
 
 RunSummary run_profile(const RunnerOptions& options) { return Runner(options).run(); }
 
-std::map<std::string, double> render_and_score(
-    const RunSpec& spec, const Scene& scene, const Method& method, const TimingOptions& timing
+RunScores render_and_score(
+    const RunSpec& spec, const Scene& scene, const Method& method, const Profile& profile
 ) {
+  RunScores scores;
+  scores.not_measured = missing_metrics();
   render_stage(spec, scene, method);
-  const std::optional<TrainCost> cost = trained_cost(spec);
   std::map<std::string, double> costs{
-      {"fps", measure_fps(method, scene, timing)},
+      {"fps", measure_fps(method, scene, {profile.timing_frames, profile.timing_warmup})},
       {"num-surfels", static_cast<double>(method.num_surfels())}};
-  if (cost) {
+  if (const std::optional<TrainCost> cost = trained_cost(spec)) {
     costs["train-minutes"] = cost->seconds / 60;
     costs["peak-memory"] = cost->peak_memory_mb;
   }
-  return eval_stage(spec, scene, costs);
+  if (const std::string why = why_no_mesh(spec, scene, method, profile.tsdf_options());
+      !why.empty())
+    for (const Metric& metric : mesh_metric_list()) scores.not_measured[metric.id] = why;
+  scores.means = eval_stage(spec, scene, costs, profile.mesh_protocol());
+  return scores;
 }
 
 std::string failure_kind(const std::exception& error, const std::string& stage) {

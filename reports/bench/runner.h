@@ -29,9 +29,13 @@ struct RunSummary {
 // written.
 RunSummary run_profile(const RunnerOptions& options);
 
-// Everything behind training: renders, strip, FPS, metrics; returns the means by id.
-std::map<std::string, double> render_and_score(
-    const RunSpec& spec, const Scene& scene, const Method& method, const TimingOptions& timing
+struct RunScores {
+  std::map<std::string, double> means;              // by id
+  std::map<std::string, std::string> not_measured;  // id -> why
+};
+// Everything behind training: renders, strip, FPS, meshes, metrics.
+RunScores render_and_score(
+    const RunSpec& spec, const Scene& scene, const Method& method, const Profile& profile
 );
 
 // Of a failure in `stage`: "bad-input", "usage", "environment", "not-finite" (training diverged),

@@ -7,6 +7,7 @@
 #include "reports/bench/evaluate.h"
 #include "reports/bench/interrupt.h"
 #include "reports/bench/strip.h"
+#include "reports/mesh/mesh_eval.h"
 
 namespace glint {
 
@@ -22,7 +23,8 @@ void write_metrics(
     const RunSpec& spec,
     const Scores& means,
     const std::vector<Scores>& scores,
-    const std::vector<View>& views
+    const std::vector<View>& views,
+    const Json& mesh_recipe
 ) {
   Json json = {{"scene", spec.scene}, {"method", spec.method}, {"seed", spec.options.seed}};
   json["metrics"] = means;
@@ -30,6 +32,7 @@ void write_metrics(
   for (std::size_t i = 0; i < views.size(); ++i)
     json["views"].push_back({{"name", views[i].name}, {"metrics", scores[i]}});
   json["protocol"] = score_protocols();
+  if (!mesh_recipe.empty()) json["meshes"] = mesh_recipe;
   write_file(spec.folder / "metrics.json", json.dump(2) + "\n");
 }
 
@@ -83,7 +86,10 @@ double measure_fps(const Method& method, const Scene& scene, const TimingOptions
 }
 
 std::map<std::string, double> eval_stage(
-    const RunSpec& spec, const Scene& scene, const std::map<std::string, double>& cost
+    const RunSpec& spec,
+    const Scene& scene,
+    const std::map<std::string, double>& cost,
+    const MeshProtocol& mesh
 ) {
   std::vector<Scores> scores;
   for (const View& view : scene.test)
@@ -91,8 +97,10 @@ std::map<std::string, double> eval_stage(
       return score_view(view_folder(spec.folder, view.name), view);
     }));
   Scores means = mean_scores(scores);
+  Json recipe = Json::object();
+  means.merge(score_meshes(spec, scene, mesh, recipe));
   means.insert(cost.begin(), cost.end());
-  write_metrics(spec, means, scores, scene.test);
+  write_metrics(spec, means, scores, scene.test, recipe);
   return means;
 }
 

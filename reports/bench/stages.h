@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "metrics/metric.h"
+#include "metrics/mesh/mesh_protocol.h"
 #include "reports/bench/run_folder.h"
 
 namespace glint {
@@ -29,12 +29,15 @@ void render_stage(const RunSpec& spec, const Scene& scene, const Method& method)
 // converted inside the clock.
 double measure_fps(const Method& method, const Scene& scene, const TimingOptions& options);
 
-// Scores renders/ against the scene's test views and writes metrics.json (means, per-view values
-// with names, protocols). `cost` joins the means: "fps", "train-minutes", "peak-memory",
-// "num-surfels". Returns the means by id; regions as "psnr@glass". Errors (kBadPrediction): a
-// render is missing, damaged or of another size.
+// Scores renders/ against the scene's test views and the run's meshes against the dataset's, and
+// writes metrics.json (means, per-view values with names, protocols). `cost` joins the means:
+// "fps", "train-minutes", "peak-memory", "num-surfels". Returns the means by id; regions as
+// "psnr@glass". Errors (kBadPrediction): a render is missing, damaged or of another size.
 std::map<std::string, double> eval_stage(
-    const RunSpec& spec, const Scene& scene, const std::map<std::string, double>& cost
+    const RunSpec& spec,
+    const Scene& scene,
+    const std::map<std::string, double>& cost,
+    const MeshProtocol& mesh = {}
 );
 
 }  // namespace glint

@@ -54,6 +54,7 @@ std::map<std::string, double> score_meshes(
 ) {
   const std::vector<Camera> cameras = train_cameras(scene);
   std::map<std::string, double> values;
+  recipe["protocol"] = config_to_json(protocol);
   for (const Layer& layer : layers_of(spec)) {
     if (!fs::exists(layer.mesh) || !fs::exists(layer.truth)) continue;
     Json done = Json::object();
@@ -61,8 +62,13 @@ std::map<std::string, double> score_meshes(
         prepared(layer.mesh, ExitCode::kBadPrediction, cameras, protocol, done["prediction"]);
     const Surface truth =
         prepared(layer.truth, ExitCode::kBadReference, cameras, protocol, done["reference"]);
-    for (const auto& [id, value] : mesh_values(mesh_scores(mesh, truth, protocol), protocol))
-      values[layer.prefix + id] = value;
+    for (const auto distance :
+         {SurfaceDistance::kPointToTriangle, SurfaceDistance::kPointToPoint}) {
+      MeshProtocol each = protocol;
+      each.distance = distance;
+      for (const auto& [id, value] : mesh_values(mesh_scores(mesh, truth, each), each))
+        values[layer.prefix + id] = value;
+    }
     recipe[layer.prefix + "mesh"] = done;
   }
   return values;

@@ -4,9 +4,8 @@
 
 namespace glint {
 
-std::map<std::string, double> score_meshes(
-    const RunSpec&, const Scene&, const MeshProtocol&, Json&
-) {
+std::map<std::string, double>
+score_meshes(const RunSpec&, const Scene&, const MeshProtocol&, Json&) {
   return {};
 }
 

@@ -76,6 +76,7 @@ void render_train_stage(const RunSpec& spec, const Scene& scene, const Method& m
 Json fuse_stage(const RunSpec& spec, const Scene& scene, TsdfOptions options) {
   set_bounds(options, scene);
   Json result = {{"options", config_to_json(options)}, {"views", "training"}};
+  result["meshes"] = Json::object();
   for (const MeshLayer& layer : mesh_layers()) {
     std::error_code code;
     fs::remove(spec.folder / layer.mesh, code);

@@ -65,9 +65,8 @@ std::size_t keep_valid(FusionView& view, const TsdfOptions& options) {
     for (int x = 0; x < view.depth.width(); ++x) {
       float& depth = view.depth.at(x, y);
       const double z = static_cast<double>(depth);
-      const bool valid =
-          z > 0 && z < limit && std::isfinite(z) &&
-          (!options.bounded() || inside(options, unproject(view.camera, x, y, z)));
+      const bool valid = z > 0 && z < limit && std::isfinite(z) &&
+                         (!options.bounded() || inside(options, unproject(view.camera, x, y, z)));
       if (valid)
         ++kept;
       else
@@ -92,8 +91,7 @@ void add_blocks(
   for (int y = 0; y < view.depth.height(); y += stride)
     for (int x = 0; x < view.depth.width(); x += stride) {
       if (!(view.depth.at(x, y) > 0)) continue;
-      const Vec3d p =
-          unproject(view.camera, x, y, static_cast<double>(view.depth.at(x, y)));
+      const Vec3d p = unproject(view.camera, x, y, static_cast<double>(view.depth.at(x, y)));
       for (std::int32_t i = index(p.x - truncation); i <= index(p.x + truncation); ++i)
         for (std::int32_t j = index(p.y - truncation); j <= index(p.y + truncation); ++j)
           for (std::int32_t k = index(p.z - truncation); k <= index(p.z + truncation); ++k)
@@ -125,6 +123,15 @@ void check_sizes(const FusionView& view, std::size_t index) {
   );
 }
 
+// One that would fit, if the views not yet looked at need as much as those before. Surfaces take
+// blocks as the square of 1 / voxel; half as much again for what this does not see.
+double larger_voxel(
+    const TsdfOptions& options, double excess, std::size_t num_seen, std::size_t num_views
+) {
+  const double unseen = static_cast<double>(num_views) / static_cast<double>(num_seen);
+  return options.voxel * std::sqrt(1.5 * excess * unseen);
+}
+
 // Memory is known before any is taken: voxels lie in blocks around the depths.
 void estimate(
     const FusionSource& source,
@@ -140,8 +147,8 @@ void estimate(
     check_sizes(view, i);
     report.num_depths += keep_valid(view, options);
     add_blocks(view, options, stride, blocks);
-    const double needed = megabytes(blocks.size(), bytes_per_voxel), allowed = allowed_megabytes(options);
-    // Surfaces: blocks grow with the square of 1 / voxel, so does memory.
+    const double needed = megabytes(blocks.size(), bytes_per_voxel),
+                 allowed = allowed_megabytes(options);
     GLINT_CHECK(
         needed <= allowed,
         kUsage,
@@ -152,7 +159,7 @@ void estimate(
         i + 1,
         n,
         allowed,
-        options.voxel * std::sqrt(1.5 * needed / allowed * static_cast<double>(n) / (i + 1.0))
+        larger_voxel(options, needed / allowed, i + 1, n)
     );
   }
   report.num_views = n;

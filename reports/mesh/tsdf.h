@@ -11,6 +11,7 @@
 #include "glint/core/image.h"
 #include "glint/core/triangle_mesh.h"
 #include "glint/scene/camera.h"
+#include "metrics/mesh/mesh_protocol.h"
 
 namespace glint {
 
@@ -35,6 +36,13 @@ struct TsdfOptions {
     v("max_memory_mb", max_memory_mb, "of the voxels; 0: half of the machine's memory");
   }
 };
+
+// How meshes of those voxels are compared: two voxels in front of a face do not hide it.
+inline MeshProtocol mesh_protocol_for(const TsdfOptions& options) {
+  MeshProtocol protocol;
+  protocol.cull_tolerance_m = 2 * options.voxel;
+  return protocol;
+}
 
 struct FusionView {
   Image depth;  // [H][W][1] planar z in metres; 0 or not finite: none

@@ -80,7 +80,8 @@ class Open3dVolume final : public TsdfVolume {
     TriangleMesh result;
     for (const auto& vertex : mesh->vertices_) result.vertices.push_back(to_vec(vertex));
     for (const auto& color : mesh->vertex_colors_) result.colors.push_back(to_vec(color));
-    for (const auto& face : mesh->triangles_) result.faces.push_back({face.x(), face.y(), face.z()});
+    for (const auto& face : mesh->triangles_)
+      result.faces.push_back({face.x(), face.y(), face.z()});
     return result;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
+#include "reports/mesh/tsdf.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {
@@ -24,9 +25,27 @@ std::map<std::string, double> earlier_cost(const RunSpec& spec) {
   return cost;
 }
 
+// That of the voxels the run's meshes were made with.
+MeshProtocol mesh_protocol_of(const RunSpec& spec) {
+  const fs::path path = spec.folder / "mesh.json";
+  if (!fs::exists(path)) return {};
+  const Json json = Json::parse(read_file(path), nullptr, false);
+  GLINT_CHECK(
+      json.is_object() && json.contains("options"),
+      kBadPrediction,
+      "{}: not a report of the mesh stage; run `glint-bench mesh` again",
+      path.string()
+  );
+  TsdfOptions options;
+  config_from_json(options, json["options"], path.string());
+  return mesh_protocol_for(options);
+}
+
 int run_eval(const CommonOptions& common, const std::string& folder) {
   const SingleRun single = open_single_run(folder);
-  const auto means = eval_stage(single.spec, single.scene, earlier_cost(single.spec));
+  const auto means = eval_stage(
+      single.spec, single.scene, earlier_cost(single.spec), mesh_protocol_of(single.spec)
+  );
   if (common.json) {
     print_json({{"run", folder}, {"metrics", means}});
     return 0;

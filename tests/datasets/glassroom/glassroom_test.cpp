@@ -119,7 +119,7 @@ TEST_CASE("The ground-truth mesh has short edges and the scene's area") {
       .vertices = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}},
       .faces = {{0, 1, 2}, {0, 2, 3}}};
   scene.meshes.push_back(quad);
-  const TriangleMesh mesh = truth_mesh(scene, 0.25f);
+  const TriangleMesh mesh = truth_mesh(scene, TruthLayer::kFirst, 0.25f);
   double area = 0;
   std::set<std::pair<int, int>> once;  // directed edges: a conforming mesh has each at most once
   for (const auto& f : mesh.faces) {
@@ -134,6 +134,23 @@ TEST_CASE("The ground-truth mesh has short edges and the scene's area") {
     }
   }
   CHECK(area == Approx(2));
+}
+
+TEST_CASE("The ground-truth mesh behind glass lacks the panes and nothing else") {
+  TraceScene scene;
+  scene.materials.push_back({.name = "white"});
+  scene.materials.push_back({.name = "glass", .kind = MaterialKind::kThinDielectric});
+  const TraceMesh wall{
+      .name = "wall", .vertices = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}}, .faces = {{0, 1, 2}}};
+  TraceMesh pane = wall;
+  pane.name = "pane";
+  pane.vertices = {{0, 0, 1}, {0.1f, 0, 1}, {0, 0.1f, 1}};
+  pane.material = 1;
+  scene.meshes = {wall, pane};
+  CHECK(truth_mesh(scene, TruthLayer::kFirst).faces.size() == 2);
+  const TriangleMesh behind = truth_mesh(scene, TruthLayer::kBehind);
+  REQUIRE(behind.faces.size() == 1);
+  for (const Vec3f& vertex : behind.vertices) CHECK(vertex.z == 0);
 }
 
 TEST_CASE("An error leaves no folder behind, and foreign folders are not touched") {

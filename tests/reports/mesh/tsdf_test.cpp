@@ -75,10 +75,10 @@ ExitCode code_of(F&& run) {
 
 const bool quiet = (set_quiet(true), true);
 
-#define SKIP_WITHOUT_OPEN3D()                             \
-  if (!has_tsdf_volume()) {                               \
+#define SKIP_WITHOUT_OPEN3D()                              \
+  if (!has_tsdf_volume()) {                                \
     WARN("skipped: built without Open3D (libopen3d-dev)"); \
-    return;                                               \
+    return;                                                \
   }
 
 }  // namespace
@@ -86,8 +86,7 @@ const bool quiet = (set_quiet(true), true);
 TEST_CASE("A fused sphere lies within half a voxel of itself, looks outwards and has its colour") {
   SKIP_WITHOUT_OPEN3D();
   TsdfReport report;
-  const TriangleMesh mesh =
-      fuse_depth(source_of({{{0, 0, 0}, 0.5}}), kViews, coarse(), &report);
+  const TriangleMesh mesh = fuse_depth(source_of({{{0, 0, 0}, 0.5}}), kViews, coarse(), &report);
   REQUIRE(mesh.faces.size() > 1000);
   double mean_error = 0;
   for (const Vec3f& vertex : mesh.vertices) {
@@ -126,7 +125,7 @@ TEST_CASE("The same mesh comes out for any number of threads") {
 TEST_CASE("Pieces with few triangles are dropped and counted") {
   SKIP_WITHOUT_OPEN3D();
   TsdfOptions options = coarse();
-  options.min_cluster = 200;
+  options.min_cluster = 1000;  // the large sphere has thousands, the small one hundreds
   TsdfReport report;
   const TriangleMesh mesh =
       fuse_depth(source_of({{{0, 0, 0}, 0.5}, {{0, 0, 1}, 0.08}}), kViews, options, &report);
@@ -145,8 +144,9 @@ TEST_CASE("Depths outside the bounds or beyond the limit are left out") {
     CHECK(v.z > -0.17f);
   TsdfOptions near = coarse();
   near.max_depth = 1.9;
-  CHECK(code_of([&] { fuse_depth(source_of({{{0, 0, 0}, 0.5}}), kViews, near); }) ==
-        ExitCode::kBadPrediction);
+  CHECK(code_of([&] {
+          fuse_depth(source_of({{{0, 0, 0}, 0.5}}), kViews, near);
+        }) == ExitCode::kBadPrediction);
 }
 
 TEST_CASE("Fusion refuses what cannot be fused, before it takes memory") {
@@ -180,7 +180,8 @@ TEST_CASE("Fusion refuses what cannot be fused, before it takes memory") {
 
 TEST_CASE("Pieces are found in meshes that are not manifold") {
   TriangleMesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {5, 5, 5}, {6, 5, 5}, {5, 6, 5}};
+  mesh.vertices = {
+      {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {5, 5, 5}, {6, 5, 5}, {5, 6, 5}};
   // Three faces on one edge, one of them twice, a face without area, and a lone one.
   mesh.faces = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {2, 1, 0}, {0, 0, 1}, {5, 6, 7}};
   ClusterCount count;
