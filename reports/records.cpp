@@ -22,6 +22,7 @@ void visit_fields(R& record, V&& v) {
   v("method", record.cell.method);
   v("seed", record.cell.seed);
   v("resolution", record.resolution);
+  v("imported", record.imported);
   v("config_hash", record.config_hash);
   v("dataset_hash", record.dataset_hash);
   v("num_surfels", record.num_surfels);

@@ -67,17 +67,31 @@ std::vector<TableColumn> columns_of(
   return columns;
 }
 
+bool is_imported(const std::vector<Record>& records, const std::string& method) {
+  return std::any_of(records.begin(), records.end(), [&](const Record& record) {
+    return record.cell.method == method && !record.imported.empty();
+  });
+}
+
 std::vector<TableRowDefinition> rows_of(
     const TableDefinition& definition, const std::vector<Record>& records
 ) {
   std::vector<TableRowDefinition> rows = definition.rows;
   std::set<std::string> listed, extra;
   for (const TableRowDefinition& row : rows) listed.insert(row.method);
+  const auto is_other = [&](const Record& record) {
+    return (definition.imported && !record.imported.empty()) ||
+           std::any_of(
+               definition.other_methods.begin(),
+               definition.other_methods.end(),
+               [&](const std::string& glob) { return glob_match(glob, record.cell.method); }
+           );
+  };
   for (const Record& record : records)
-    for (const std::string& pattern : definition.other_methods)
-      if (!listed.count(record.cell.method) && glob_match(pattern, record.cell.method))
-        extra.insert(record.cell.method);
+    if (!listed.count(record.cell.method) && is_other(record)) extra.insert(record.cell.method);
   for (const std::string& method : extra) rows.push_back({method, method, ""});
+  for (TableRowDefinition& row : rows)
+    if (is_imported(records, row.method)) row.title += " (renders imported)";
   return rows;
 }
 

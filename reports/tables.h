@@ -41,6 +41,7 @@ struct TableDefinition {
   std::string paper_table;                  // "1"; empty: the paper has no such table
   std::vector<std::string> paper_datasets;  // published columns, one group each
   std::vector<std::string> other_methods;   // globs: methods with records, beyond `rows`
+  bool imported = true;                     // rows for other programs' renders, too
   bool every_dataset = false;               // a group for each further dataset in the records
   std::vector<TableRowDefinition> rows;
   std::vector<TableColumn> columns;

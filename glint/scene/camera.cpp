@@ -6,6 +6,12 @@
 
 namespace glint {
 
+void make_planar(Image& ray_lengths, const Camera& camera) {
+  for (int y = 0; y < ray_lengths.height(); ++y)
+    for (int x = 0; x < ray_lengths.width(); ++x)
+      ray_lengths.at(x, y) /= static_cast<float>(length(camera.ray_in_cam(x + 0.5, y + 0.5)));
+}
+
 Camera resized(const Camera& camera, ImageSize size) {
   const double sx = static_cast<double>(size.width) / camera.width;
   const double sy = static_cast<double>(size.height) / camera.height;

@@ -35,6 +35,9 @@ struct Camera {
   Vec2d project(Vec3d cam) const { return {fx * cam.x / cam.z + cx, fy * cam.y / cam.z + cy}; }
 };
 
+// Distances along rays, [H][W][1], become planar z: divided by the length of the ray with z = 1.
+void make_planar(Image& ray_lengths, const Camera& camera);
+
 // The same view at another image size (intrinsics scaled by the ratio of sizes).
 Camera resized(const Camera& camera, ImageSize size);
 

@@ -99,7 +99,6 @@ class DepthTool final : public MetricTool {
     return protocol;
   }
 
-  // Distances along rays become planar z: divided by the length of the ray with z = 1.
   void make_planar(Image& depth) const {
     const Camera camera{
         depth.width(),
@@ -108,9 +107,7 @@ class DepthTool final : public MetricTool {
         intrinsics_[1],
         intrinsics_[2],
         intrinsics_[3]};
-    for (int y = 0; y < depth.height(); ++y)
-      for (int x = 0; x < depth.width(); ++x)
-        depth.at(x, y) /= static_cast<float>(length(camera.ray_in_cam(x + 0.5, y + 0.5)));
+    glint::make_planar(depth, camera);
   }
 
   // Values that a table does not have under its id get the alignment in theirs.

@@ -92,12 +92,6 @@ std::vector<Source> find_sources(const TsdfArguments& a, const Scene& scene) {
   return sources;
 }
 
-void make_planar(Image& depth, const Camera& camera) {
-  for (int y = 0; y < depth.height(); ++y)
-    for (int x = 0; x < depth.width(); ++x)
-      depth.at(x, y) /= static_cast<float>(length(camera.ray_in_cam(x + 0.5, y + 0.5)));
-}
-
 // Maps of another size than the dataset's images bring their own resolution.
 FusionView load_source(const Source& source, bool ray) {
   return with_exit_code(ExitCode::kBadPrediction, [&] {

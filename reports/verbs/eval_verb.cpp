@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
+#include "datasets/dataset.h"
+#include "glint/core/progress.h"
+#include "reports/bench/machine.h"
+#include "reports/import/import_predictions.h"
 #include "reports/mesh/tsdf.h"
 #include "reports/verbs/single_run.h"
 
@@ -8,9 +12,11 @@ namespace glint {
 
 namespace {
 
+using Scores = std::map<std::string, double>;
+
 // What an earlier scoring of the run found out about its cost; scoring again does not change it.
-std::map<std::string, double> earlier_cost(const RunSpec& spec) {
-  std::map<std::string, double> cost;
+Scores earlier_cost(const RunSpec& spec) {
+  Scores cost;
   if (const auto trained = trained_cost(spec)) {
     cost["train-minutes"] = trained->seconds / 60;
     cost["peak-memory"] = trained->peak_memory_mb;
@@ -41,13 +47,9 @@ MeshProtocol mesh_protocol_of(const RunSpec& spec) {
   return mesh_protocol_for(options);
 }
 
-int run_eval(const CommonOptions& common, const std::string& folder) {
-  const SingleRun single = open_single_run(folder);
-  const auto means = eval_stage(
-      single.spec, single.scene, earlier_cost(single.spec), mesh_protocol_of(single.spec)
-  );
+int print_scores(const CommonOptions& common, const fs::path& folder, const Scores& means) {
   if (common.json) {
-    print_json({{"run", folder}, {"metrics", means}});
+    print_json({{"run", folder.string()}, {"metrics", means}});
     return 0;
   }
   std::vector<std::vector<std::string>> rows;
@@ -56,18 +58,113 @@ int run_eval(const CommonOptions& common, const std::string& folder) {
   return 0;
 }
 
+int eval_run(const CommonOptions& common, const std::string& folder) {
+  const SingleRun single = open_single_run(folder);
+  const Scores means = eval_stage(
+      single.spec, single.scene, earlier_cost(single.spec), mesh_protocol_of(single.spec)
+  );
+  return print_scores(common, folder, means);
+}
+
+struct PredictionArguments {
+  std::string predictions, dataset, method, depth = "planar", axes = "opencv", mesh;
+  double max_pixels = 0;
+};
+
+Record record_of(const RunSpec& spec, const Profile& profile, const std::string& predictions) {
+  Record record;
+  record.profile = profile.name;
+  record.dataset = spec.dataset;
+  record.cell = {spec.scene, spec.method, spec.options.seed};
+  record.config_hash = spec.config_hash;
+  record.dataset_hash = spec.dataset_hash;
+  record.imported = predictions;
+  record.environment = environment_json();
+  record.not_measured = missing_metrics();
+  return record;
+}
+
+RunSpec spec_of(
+    const CommonOptions& common, const PredictionArguments& arguments, const Scene& scene
+) {
+  RunSpec spec;
+  const fs::path predictions = fs::absolute(arguments.predictions).lexically_normal();
+  spec.method = arguments.method;
+  spec.dataset_folder = fs::absolute(arguments.dataset);
+  spec.dataset = scene.dataset;
+  spec.scene = scene.name;
+  spec.options.seed = common.seed.value_or(0);
+  spec.max_pixels = arguments.max_pixels;
+  spec.dataset_hash = scene.spec_hash;
+  spec.config_hash = hash_text("imported " + predictions.string());
+  spec.folder = run_folder(
+      common.profile_folder(common.resolved_profile()), {spec.scene, spec.method, spec.options.seed}
+  );
+  return spec;
+}
+
+int eval_predictions(const CommonOptions& common, const PredictionArguments& arguments) {
+  GLINT_CHECK(
+      !arguments.predictions.empty() && !arguments.dataset.empty(),
+      kUsage,
+      "give --run FOLDER, or --predictions FOLDER --dataset FOLDER --method NAME"
+  );
+  GLINT_CHECK(
+      !arguments.method.empty() && !method_registry().contains(arguments.method),
+      kUsage,
+      "--method '{}': name the method that made these renders, not one of ours; e.g. --method pgsr",
+      arguments.method
+  );
+  LoadOptions load;
+  load.max_pixels = arguments.max_pixels;
+  const Scene scene = load_scene(arguments.dataset, load);
+  const RunSpec spec = spec_of(common, arguments, scene);
+  const ImportOptions options{
+      Json(arguments.depth).get<DepthKind>(),
+      Json(arguments.axes).get<NormalAxes>(),
+      arguments.mesh};
+  const Profile profile = common.resolved_profile();
+  Record record = record_of(spec, profile, arguments.predictions);
+  record.warnings = import_predictions(arguments.predictions, scene, spec, options);
+  for (const std::string& note : record.warnings) log::info(note);
+  record.metrics = eval_stage(spec, scene, {}, profile.mesh_protocol());
+  const Camera& camera = scene.test.front().camera;
+  record.resolution = fmt::format("{}x{}", camera.width, camera.height);
+  append_record(common.records_file(profile), record);
+  log::info("recorded in " + common.records_file(profile).string());
+  return print_scores(common, spec.folder, record.metrics);
+}
+
 }  // namespace
 
 void add_eval_verb(CommandLine& line) {
   auto folder = std::make_shared<std::string>();
-  line.add_verb(
-          line.app,
-          "eval",
-          "score the renders of a run; writes metrics.json",
-          [&line, folder] { return run_eval(line.common, *folder); }
-  )
-      ->add_option("--run", *folder, "run folder")
-      ->required();
+  auto arguments = std::make_shared<PredictionArguments>();
+  CLI::App* verb = line.add_verb(
+      line.app,
+      "eval",
+      "score the renders of a run, or those that another program left in a folder",
+      [&line, folder, arguments] {
+        return folder->empty() ? eval_predictions(line.common, *arguments)
+                               : eval_run(line.common, *folder);
+      }
+  );
+  auto* run = verb->add_option("--run", *folder, "run folder: writes its metrics.json");
+  auto* predictions = verb->add_option(
+      "--predictions", arguments->predictions, "folder with renders of the test views by anyone"
+  );
+  run->excludes(predictions);
+  verb->add_option("--dataset", arguments->dataset, "of --predictions: folder or packed scene");
+  verb->add_option("--method", arguments->method, "of --predictions: row in tables, e.g. pgsr");
+  verb->add_option("--depth-kind", arguments->depth, "of their depth: along z, or along rays")
+      ->check(CLI::IsMember({"planar", "ray"}))
+      ->capture_default_str();
+  verb->add_option("--normal-axes", arguments->axes, "of their normals")
+      ->check(CLI::IsMember({"opencv", "opengl", "world"}))
+      ->capture_default_str();
+  verb->add_option("--mesh", arguments->mesh, "PLY of theirs; otherwise looked for");
+  verb->add_option("--max-pixels", arguments->max_pixels, "shrink images below this area")
+      ->check(CLI::NonNegativeNumber);
 }
 
 }  // namespace glint

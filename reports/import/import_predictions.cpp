@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "reports/import/import_predictions.h"
+
+#include <array>
+
+#include "glint/scene/image_files.h"
+#include "metrics/depth.h"
+#include "metrics/normal.h"
+#include "reports/bench/strip.h"
+
+namespace glint {
+namespace {
+
+constexpr double kSuspicious = 0.5;  // another convention makes less than half of the error
+
+Image read_for(const fs::path& path, int channels, const View& view) {
+  Image image =
+      with_exit_code(ExitCode::kBadPrediction, [&] { return read_image(path, channels); });
+  GLINT_CHECK(
+      image.size() == view.camera.size(),
+      kBadPrediction,
+      "{}: {}x{} pixels, but view {} has {}x{}; render at that size, or load the dataset smaller "
+      "with --max-pixels",
+      path.string(),
+      image.width(),
+      image.height(),
+      view.name,
+      view.camera.width,
+      view.camera.height
+  );
+  return image;
+}
+
+std::vector<std::string> names_of(const std::vector<View>& views) {
+  std::vector<std::string> names;
+  for (const View& view : views) names.push_back(view.name);
+  return names;
+}
+
+RenderOutput read_view(
+    const std::map<std::string, fs::path>& files, const View& view, const ImportOptions& options
+) {
+  RenderOutput output;
+  for (const auto& [map, path] : files)
+    if (map == "rgb") {
+      output.rgb = read_for(path, 3, view);
+    } else if (map == "normal") {
+      output.normal = read_for(path, 3, view);
+      to_our_normals(output.normal, view.camera, options.normals);
+    } else {
+      Image& image = map == "depth" ? output.depth : output.layers[map];
+      image = read_for(path, 1, view);
+      if (map != "transparency") to_our_depth(image, view.camera, options.depth);
+    }
+  return output;
+}
+
+// Mean error of the first views under each convention, when the data tells.
+template <class Convention, class Error>
+std::string better_convention(
+    Convention stated, std::span<const Convention> all, Error&& error_of
+) {
+  const double given = error_of(stated);
+  for (const Convention other : all)
+    if (other != stated && error_of(other) < kSuspicious * given)
+      return Json(other).get<std::string>();
+  return {};
+}
+
+double absrel(Image depth, const View& view, DepthKind kind) {
+  to_our_depth(depth, view.camera, kind);
+  const auto errors = depth_errors(depth, view.truth.depth);
+  return errors ? errors->absrel : 0;
+}
+
+double mean_angle(Image normals, const View& view, NormalAxes axes) {
+  to_our_normals(normals, view.camera, axes);
+  const auto errors = normal_errors(normals, view.truth.normal);
+  return errors ? errors->mean_deg : 0;
+}
+
+// Files are as stored, not yet in our conventions.
+void note_conventions(
+    const std::map<std::string, fs::path>& files,
+    const View& view,
+    const ImportOptions& options,
+    std::vector<std::string>& notes
+) {
+  constexpr std::array kDepths = {DepthKind::kPlanar, DepthKind::kRay};
+  constexpr std::array kAxes = {NormalAxes::kOpencv, NormalAxes::kOpengl, NormalAxes::kWorld};
+  const auto note = [&](const char* map, const std::string& better, const char* option) {
+    if (!better.empty())
+      notes.push_back(fmt::format(
+          "{} of {} fits the ground truth far better as '{}': give {} {}",
+          map,
+          view.name,
+          better,
+          option,
+          better
+      ));
+  };
+  if (files.contains("depth") && !view.truth.depth.empty()) {
+    const Image depth = read_for(files.at("depth"), 1, view);
+    const auto error = [&](DepthKind kind) { return absrel(depth, view, kind); };
+    note("depth", better_convention<DepthKind>(options.depth, kDepths, error), "--depth-kind");
+  }
+  if (files.contains("normal") && !view.truth.normal.empty()) {
+    const Image normals = read_for(files.at("normal"), 3, view);
+    const auto error = [&](NormalAxes axes) { return mean_angle(normals, view, axes); };
+    note("normals", better_convention<NormalAxes>(options.normals, kAxes, error), "--normal-axes");
+  }
+}
+
+void copy_mesh(const fs::path& from, const fs::path& to) {
+  GLINT_CHECK(fs::is_regular_file(from), kBadPrediction, "{}: no such mesh", from.string());
+  write_file(to, with_exit_code(ExitCode::kBadPrediction, [&] { return read_file(from); }));
+}
+
+}  // namespace
+
+void to_our_depth(Image& depth, const Camera& camera, DepthKind kind) {
+  if (kind == DepthKind::kRay) make_planar(depth, camera);
+}
+
+void to_our_normals(Image& normals, const Camera& camera, NormalAxes axes) {
+  if (axes == NormalAxes::kOpencv) return;
+  for (std::size_t i = 0; i < normals.num_pixels(); ++i) {
+    float* n = normals.data() + 3 * i;
+    if (axes == NormalAxes::kOpengl) {
+      n[1] = -n[1], n[2] = -n[2];
+      continue;
+    }
+    const Vec3d world{
+        static_cast<double>(n[0]), static_cast<double>(n[1]), static_cast<double>(n[2])};
+    const Vec3d cam = camera.rotation_cam_from_world * world;
+    n[0] = static_cast<float>(cam.x), n[1] = static_cast<float>(cam.y);
+    n[2] = static_cast<float>(cam.z);
+  }
+}
+
+std::vector<std::string> import_predictions(
+    const fs::path& folder, const Scene& scene, const RunSpec& spec, const ImportOptions& options
+) {
+  const PredictionFiles found = find_predictions(folder, names_of(scene.test));
+  std::vector<std::string> notes = {"renders by another program: " + folder.string()};
+  for (const auto& [map, matching] : found.matching)
+    if (matching == Matching::kOrder)
+      notes.push_back(map + ": files given to test views by their order, not by name");
+  note_conventions(found.views.front(), scene.test.front(), options, notes);
+  clear_run_folder(spec.folder);
+  write_run_spec(spec, {{"imported", folder.string()}, {"import", config_to_json(options)}});
+  for (std::size_t i = 0; i < scene.test.size(); ++i)
+    write_render(
+        view_folder(spec.folder, scene.test[i].name),
+        read_view(found.views[i], scene.test[i], options)
+    );
+  const fs::path mesh = options.mesh.empty() ? found.mesh : fs::path(options.mesh);
+  if (!mesh.empty()) copy_mesh(mesh, spec.folder / "mesh.ply");
+  write_strips(spec.folder, scene.test);
+  return notes;
+}
+
+}  // namespace glint

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Renders of another program become a run folder like our own, so that scoring, records, tables,
+// strips and the report treat them alike.
+#pragma once
+
+#include "reports/bench/run_folder.h"
+#include "reports/import/prediction_files.h"
+
+namespace glint {
+
+enum class DepthKind { kPlanar, kRay };
+NLOHMANN_JSON_SERIALIZE_ENUM(DepthKind, {{DepthKind::kPlanar, "planar"}, {DepthKind::kRay, "ray"}})
+
+// Camera space with OpenCV's axes (x right, y down, z forward), with OpenGL's (y up, z backward),
+// or the world's axes.
+enum class NormalAxes { kOpencv, kOpengl, kWorld };
+NLOHMANN_JSON_SERIALIZE_ENUM(
+    NormalAxes,
+    {{NormalAxes::kOpencv, "opencv"},
+     {NormalAxes::kOpengl, "opengl"},
+     {NormalAxes::kWorld, "world"}}
+)
+
+struct ImportOptions {
+  DepthKind depth = DepthKind::kPlanar;
+  NormalAxes normals = NormalAxes::kOpencv;
+  std::string mesh;  // file; empty: the one that find_predictions() finds
+
+  template <class V>
+  void visit(V&& v) {
+    v("depth", depth, "planar: z in metres; ray: distance along the ray");
+    v("normals", normals, "opencv, opengl or world");
+    v("mesh", mesh, "mesh to score; empty: found in the folder");
+  }
+};
+
+// In our conventions: depth planar, normals in camera space with OpenCV's axes.
+void to_our_depth(Image& depth, const Camera& camera, DepthKind kind);
+void to_our_normals(Image& normals, const Camera& camera, NormalAxes axes);
+
+// Fills spec.folder (config.json, renders/, strip.png, mesh.ply) from the predictions in `folder`.
+// Returns notes for the record: how files were matched, maps that look like another convention than
+// stated. Errors (kBadPrediction): find_predictions()'s; unreadable files; another size than the
+// view's.
+std::vector<std::string> import_predictions(
+    const fs::path& folder, const Scene& scene, const RunSpec& spec, const ImportOptions& options
+);
+
+}  // namespace glint

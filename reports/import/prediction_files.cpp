@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "reports/import/prediction_files.h"
+
+#include <algorithm>
+
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+struct FoundFile {
+  std::string name;  // of the file without extension, or of its view's folder
+  fs::path path;
+};
+
+// Folders that `pattern` means below `root`; a part with '*' means its last match.
+fs::path resolve(const fs::path& root, const std::string& pattern) {
+  fs::path folder = root;
+  for (const fs::path& part : fs::path(pattern)) {
+    std::string best;
+    std::error_code code;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
+      const std::string name = entry.path().filename().string();
+      if (entry.is_directory(code) && glob_match(part.string(), name) &&
+          (best.empty() || natural_less(best, name)))
+        best = name;
+    }
+    if (best.empty()) return {};
+    folder /= best;
+  }
+  return folder;
+}
+
+bool by_name(const FoundFile& a, const FoundFile& b) { return natural_less(a.name, b.name); }
+
+// Files of the pattern side by side, or one in a folder per view.
+std::vector<FoundFile> files_in(const fs::path& folder, const std::string& pattern) {
+  std::vector<FoundFile> files;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
+    const fs::path path = entry.path();
+    if (entry.is_regular_file(code) && glob_match(pattern, path.filename().string()))
+      files.push_back({path.stem().string(), path});
+    if (!entry.is_directory(code)) continue;
+    for (const fs::path& inside : list_files(path))
+      if (glob_match(pattern, inside.filename().string())) {
+        files.push_back({path.filename().string(), inside});
+        break;
+      }
+  }
+  std::sort(files.begin(), files.end(), by_name);
+  return files;
+}
+
+std::vector<FoundFile> find_map(const fs::path& root, const MapPlaces& map) {
+  for (const fs::path place : map.places) {
+    const fs::path folder = resolve(root, place.parent_path().string());
+    if (folder.empty()) continue;
+    if (auto files = files_in(folder, place.filename().string()); !files.empty()) return files;
+  }
+  return {};
+}
+
+const FoundFile* find_name(const std::vector<FoundFile>& files, const std::string& view) {
+  std::string flat = view;  // as run folders write it
+  std::replace(flat.begin(), flat.end(), '/', '_');
+  for (const FoundFile& file : files)
+    if (file.name == view || file.name == flat || file.name == fs::path(view).stem().string())
+      return &file;
+  return nullptr;
+}
+
+bool all_named(const std::vector<FoundFile>& files, const std::vector<std::string>& views) {
+  return std::all_of(views.begin(), views.end(), [&](const std::string& view) {
+    return find_name(files, view) != nullptr;
+  });
+}
+
+void add_map(
+    const std::string& map,
+    const std::vector<FoundFile>& files,
+    const std::vector<std::string>& views,
+    PredictionFiles& found
+) {
+  const bool named = all_named(files, views);
+  GLINT_CHECK(
+      named || files.size() == views.size(),
+      kBadPrediction,
+      "{}: {} files for {} ({}, ...), but {} test views ({}, ...); name the files as the views or "
+      "give one for each",
+      files.front().path.parent_path().string(),
+      files.size(),
+      map,
+      files.front().name,
+      views.size(),
+      views.front()
+  );
+  found.matching[map] = named ? Matching::kName : Matching::kOrder;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    found.views[i][map] = named ? find_name(files, views[i])->path : files[i].path;
+}
+
+fs::path find_mesh(const fs::path& root) {
+  for (const char* candidate :
+       {"mesh.ply",
+        "mesh/tsdf_fusion_interface_post.ply",
+        "mesh/tsdf_fusion_post.ply",
+        "mesh/tsdf_fusion.ply"})
+    if (fs::is_regular_file(root / candidate)) return root / candidate;
+  const fs::path train = resolve(root, "train/ours_*");
+  for (const char* candidate : {"fuse_post.ply", "fuse_unbounded_post.ply", "fuse.ply"})
+    if (!train.empty() && fs::is_regular_file(train / candidate)) return train / candidate;
+  return {};
+}
+
+}  // namespace
+
+const std::vector<MapPlaces>& map_places() {
+  static const std::vector<MapPlaces> places = {
+      {"rgb",
+       {"renders/rgb.exr",
+        "renders/rgb.png",
+        "renders/*.exr",
+        "renders/*.png",
+        "renders/*.jpg",
+        "test/ours_*/renders/*.png",
+        "RENDER/*.png",
+        "RENDER/*.jpg",
+        "RENDER/*.exr",
+        "color/*.png",
+        "color/*.jpg",
+        "rgb/*.exr",
+        "rgb/*.png",
+        "rgb/*.jpg",
+        "rgb/*.npy",
+        "images/*.png",
+        "*.png",
+        "*.jpg"}},
+      {"depth",
+       {"renders/depth.exr",
+        "renders/depth.npy",
+        "depth/*.exr",
+        "depth/*.npy",
+        "depths/*.exr",
+        "depths/*.npy",
+        "DEPTH/*.exr",
+        "DEPTH/*.npy",
+        "val_depthZ_*.npy",
+        "val_depthCamZ_*.npy",
+        "depths/val_depthZ_*.npy",
+        "test/ours_*/depth/*.npy",
+        "test/ours_*/vis/depth_*.exr",
+        "test/ours_*/vis/depth_*.npy",
+        "*_depth.exr",
+        "*_depth.npy"}},
+      {"normal",
+       {"renders/normal.exr",
+        "renders/normal.npy",
+        "normal/*.exr",
+        "normal/*.npy",
+        "normals/*.exr",
+        "normals/*.npy",
+        "NORMAL/*.exr",
+        "NORMAL/*.npy",
+        "val_normalCam_*.npy",
+        "val_normal_*.npy",
+        "normals/val_normalCam_*.npy",
+        "test/ours_*/normal/*.npy",
+        "*_normal.exr",
+        "*_normal.npy"}},
+      {"transparency",
+       {"renders/transparency.exr",
+        "transparency/*.exr",
+        "transparency/*.npy",
+        "transparency/*.png"}},
+      {"behind_depth", {"renders/behind_depth.exr", "behind_depth/*.exr", "behind_depth/*.npy"}}};
+  return places;
+}
+
+PredictionFiles find_predictions(
+    const fs::path& folder, const std::vector<std::string>& view_names
+) {
+  GLINT_CHECK(fs::is_directory(folder), kBadPrediction, "{}: no such folder", folder.string());
+  PredictionFiles found;
+  found.views.resize(view_names.size());
+  for (const MapPlaces& places : map_places())
+    if (const auto files = find_map(folder, places); !files.empty())
+      add_map(places.map, files, view_names, found);
+  GLINT_CHECK(
+      found.matching.contains("rgb"),
+      kBadPrediction,
+      "{}: no renders; looked for {}",
+      folder.string(),
+      fmt::join(map_places().front().places, ", ")
+  );
+  found.mesh = find_mesh(folder);
+  return found;
+}
+
+}  // namespace glint

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Finds the renders that another program left: which file is which map of which test view.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "glint/core/files.h"
+
+namespace glint {
+
+// Where programs put a map, as folders/file below the given folder, best first. '*' in a folder
+// means its last match in natural order, in the file any name. A file may also lie in a folder per
+// view.
+struct MapPlaces {
+  std::string map;  // "rgb", "depth", "normal", "transparency", "behind_depth"
+  std::vector<std::string> places;
+};
+// Own run folders, the layouts of 3DGS, 2DGS and PGSR (test/ours_*/renders), EasyVolcap, EnvGS and
+// GLINT (RENDER, DEPTH, NORMAL; val_depthZ_*.npy), nerfbaselines (color), and plain folders rgb,
+// depth, normal. Adding a layout is adding a line.
+const std::vector<MapPlaces>& map_places();
+
+// How files were given to views.
+enum class Matching { kName, kOrder };
+
+struct PredictionFiles {
+  std::vector<std::map<std::string, fs::path>> views;  // map -> file, of each view
+  std::map<std::string, Matching> matching;            // by map
+  fs::path mesh;                                       // empty: none found
+};
+
+// For views of those names. Files go by the view's name (file or folder), else, where there are as
+// many files as views, by their natural order. Errors (kBadPrediction): no picture at all; a map
+// with neither the views' names nor their number (both lists are quoted).
+PredictionFiles find_predictions(
+    const fs::path& folder, const std::vector<std::string>& view_names
+);
+
+}  // namespace glint

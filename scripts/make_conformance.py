@@ -1,0 +1,486 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Writes metrics/conformance/: small inputs and the values that metrics must have for them.
+
+Every value comes from NumPy, SciPy or scikit-image, or from a closed form that is stated with it;
+none from this project's programs. `glint-bench selftest` runs the vectors. Needs Debian's
+python3-skimage; LPIPS vectors need --weights lpips_alex_v0.1.npz (else the old values stay).
+Run from the repository's root: scripts/make_conformance.py [--weights FILE]
+"""
+
+import argparse
+import json
+import struct
+from pathlib import Path
+
+import numpy as np
+import scipy
+import skimage
+from numpy.lib.stride_tricks import sliding_window_view
+from PIL import Image
+from scipy.ndimage import maximum_filter
+from skimage.metrics import peak_signal_noise_ratio
+
+import make_metric_goldens as goldens
+
+ROOT = Path("metrics/conformance")
+NUMPY = f"NumPy {np.__version__}"
+SKIMAGE = f"scikit-image {skimage.__version__}"
+SCIPY = f"SciPy {scipy.__version__}"
+CLOSED = "closed form"
+WIDTH, HEIGHT = 48, 36
+vectors = []
+
+
+def add(name, arguments, value, expected, tolerance, source, convention):
+    vectors.append({
+        "id": name, "arguments": arguments, "value": value, "expected": float(expected),
+        "tolerance": tolerance, "source": source, "convention": convention,
+    })
+
+
+# --- files ---------------------------------------------------------------------------------------
+
+def write_npy(name, array):
+    path = ROOT / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    np.save(path, np.ascontiguousarray(array.astype(np.float32)))
+
+
+def write_png(name, array, mode=None):
+    path = ROOT / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(array, mode).save(path)
+
+
+def write_exr(name, array):
+    """OpenEXR 2: scan lines, no compression, 32-bit floats."""
+    planes = {"Z": array} if array.ndim == 2 else dict(zip("RGB", np.moveaxis(array, 2, 0)))
+    height, width = array.shape[:2]
+
+    def attribute(key, kind, data):
+        return key.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(data)) + data
+
+    channels = b"".join(
+        c.encode() + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for c in sorted(planes)
+    ) + b"\0"
+    box = struct.pack("<iiii", 0, 0, width - 1, height - 1)
+    header = struct.pack("<ii", 20000630, 2) + b"".join([
+        attribute("channels", "chlist", channels), attribute("compression", "compression", b"\0"),
+        attribute("dataWindow", "box2i", box), attribute("displayWindow", "box2i", box),
+        attribute("lineOrder", "lineOrder", b"\0"),
+        attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
+        attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)),
+        attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
+    ]) + b"\0"
+    line_bytes = 4 * width * len(planes)
+    lines, offsets = b"", b""
+    for y in range(height):
+        offsets += struct.pack("<Q", len(header) + 8 * height + len(lines))
+        row = b"".join(planes[c][y].astype("<f4").tobytes() for c in sorted(planes))
+        lines += struct.pack("<ii", y, line_bytes) + row
+    path = ROOT / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(header + offsets + lines)
+
+
+def write_ply(name, vertices, faces):
+    path = ROOT / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    header = (
+        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\n"
+        "property float x\nproperty float y\nproperty float z\n"
+        f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    rows = b"".join(struct.pack("<Biii", 3, *face) for face in faces)
+    path.write_bytes(header.encode() + np.asarray(vertices, "<f4").tobytes() + rows)
+
+
+# --- pictures ------------------------------------------------------------------------------------
+
+def picture_pair():
+    """8-bit prediction and reference, a float prediction that leaves [0, 1], and a mask."""
+    reference = goldens.reference_bytes(WIDTH, HEIGHT, 3).astype(np.uint8)
+    prediction = goldens.prediction_bytes(WIDTH, HEIGHT, 3).astype(np.uint8)
+    rendered = goldens.rendered(prediction.astype(np.int64))
+    mask = (goldens.mask_of(WIDTH, HEIGHT) * 255).astype(np.uint8)
+    return prediction, reference, rendered, mask
+
+
+def image_vectors():
+    prediction, reference, rendered, mask = picture_pair()
+    write_png("image/prediction.png", prediction)
+    write_png("image/reference.png", reference)
+    write_npy("image/rendered.npy", rendered)
+    write_exr("image/rendered.exr", rendered.astype(np.float32))
+    write_png("image/mask.png", mask)
+    alpha = np.dstack([prediction, mask])
+    write_png("image/prediction_alpha.png", alpha)
+    write_png("image/prediction_grey.png", prediction[:, :, 1])
+    write_png("image/reference_grey.png", reference[:, :, 1])
+    sixteen = (prediction[:, :, 1].astype(np.uint32) * 257).astype(np.uint16)
+    write_png("image/prediction_16bit.png", sixteen)
+    p, r = prediction / 255.0, reference / 255.0
+    clamped = np.clip(rendered.astype(np.float64), 0, 1)
+    chosen = mask > 0
+
+    def psnr(a, b):
+        return peak_signal_noise_ratio(b, a, data_range=1)
+
+    def run(tool, name, *more, reference="image/reference.png"):
+        return [tool, f"image/{name}", reference, *more]
+
+    tight = 1e-5  # inputs are float32
+    add("psnr/8bit", run("glint-psnr", "prediction.png"), "psnr-8bit", psnr(p, r), tight, SKIMAGE,
+        "one MSE over all pixels and channels, peak 1")
+    add("psnr/clamped", run("glint-psnr", "rendered.npy"), "psnr", psnr(clamped, r), tight, SKIMAGE,
+        "float predictions are clamped to [0, 1]")
+    add("psnr/exr", run("glint-psnr", "rendered.exr"), "psnr", psnr(clamped, r), tight, SKIMAGE,
+        "EXR rows from the top, channels by name")
+    squares = ((p - r) ** 2).mean(axis=2)
+    add("psnr/mask", run("glint-psnr", "prediction.png", "--mask", "image/mask.png"), "psnr-8bit",
+        -10 * np.log10(squares[chosen].mean()), tight, NUMPY,
+        "divided by the pixels of the mask, not by all")
+    add("psnr/identical", ["glint-psnr", "image/reference.png", "image/reference.png"],
+        "psnr-8bit", 100, 0, CLOSED, "identical pictures count with the cap, 100 dB")
+    add("psnr/alpha", run("glint-psnr", "prediction_alpha.png"), "psnr-8bit", psnr(p, r), tight,
+        SKIMAGE, "alpha is dropped, not blended")
+    grey = psnr(p[:, :, 1], r[:, :, 1])
+    add("psnr/grey", run("glint-psnr", "prediction_grey.png", reference="image/reference_grey.png"),
+        "psnr-8bit", grey, tight, SKIMAGE, "one channel on either side")
+    add("psnr/16bit", run("glint-psnr", "prediction_16bit.png",
+                          reference="image/reference_grey.png"),
+        "psnr-8bit", grey, tight, SKIMAGE, "16-bit integers are divided by 65535")
+    wang, _ = goldens.wang_map(p, r)
+    padded = goldens.zero_padded_map(p, r)
+    add("ssim/wang", run("glint-ssim", "prediction.png"), "ssim-wang", wang, tight, SKIMAGE,
+        "Gaussian window 11, sigma 1.5, population covariance, valid region, mean over channels")
+    add("ssim/3dgs", run("glint-ssim", "prediction.png"), "ssim-3dgs", padded.mean(), tight, SCIPY,
+        "the same window, zeros outside the picture, every pixel")
+    add("ssim/3dgs-mask", run("glint-ssim", "prediction.png", "--mask", "image/mask.png"),
+        "ssim-3dgs", padded[chosen].mean(), tight, SCIPY, "the map is averaged over the mask")
+    add("ssim/clamped", run("glint-ssim", "rendered.npy"), "ssim-3dgs",
+        goldens.zero_padded_map(clamped, r).mean(), tight, SCIPY, "predictions are clamped")
+
+
+# --- depth and normals ---------------------------------------------------------------------------
+
+def depth_vectors():
+    prediction, reference = goldens.depth_maps(WIDTH, HEIGHT)
+    write_npy("depth/prediction.npy", prediction)
+    write_npy("depth/reference.npy", reference)
+    case = goldens.depth_case(WIDTH, HEIGHT)
+    pair = ["depth/prediction.npy", "depth/reference.npy"]
+    what = {
+        "none": "no alignment; pixels without prediction count with the whole depth as error",
+        "median": "times median(reference) / median(prediction), per view",
+        "scale": "least-squares scale", "affine": "least-squares scale and shift",
+        "release": "median scale, both below 20 m, holes skipped, RMSE over mean depth",
+    }
+    for mode, convention in what.items():
+        option = {"none": [], "release": ["--release"]}.get(mode, ["--align", mode])
+        suffix = "" if mode == "none" else f"-{mode}"
+        for key in ["absrel", "rmse", "delta1"]:
+            add(f"depth/{mode}-{key}", ["glint-depth", *pair, *option], f"depth-{key}{suffix}",
+                case[mode][key], 1e-5 if key != "delta1" else 1e-9, NUMPY, convention)
+    add("depth/coverage", ["glint-depth", *pair], "depth-coverage", case["coverage"], 1e-9, NUMPY,
+        "percent of true depths that have a prediction")
+    fx, fy, cx, cy = 40.0, 42.0, 23.0, 18.5
+    y, x = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5
+    ray = prediction * np.sqrt(((x - cx) / fx) ** 2 + ((y - cy) / fy) ** 2 + 1)
+    write_npy("depth/ray.npy", ray)
+    add("depth/ray", ["glint-depth", "depth/ray.npy", pair[1], "--ray", "40", "42", "23", "18.5"],
+        "depth-absrel", case["none"]["absrel"], 1e-5, NUMPY,
+        "distances along rays become z; pixel centres at half pixels")
+
+
+def normal_vectors():
+    prediction, reference = goldens.normal_maps(WIDTH, HEIGHT)
+    write_npy("normal/prediction.npy", prediction)
+    write_npy("normal/reference.npy", reference)
+    case = goldens.normal_case(WIDTH, HEIGHT)
+    run = ["glint-normal", "normal/prediction.npy", "normal/reference.npy"]
+    add("normal/mae", run, "normal-mae", case["mean"], 1e-5, NUMPY,
+        "atan2(|a x b|, a . b) in degrees; missing predictions count as 90; reference normals that "
+        "are not of unit length (0.05) are dropped")
+    add("normal/median", run, "normal-median", case["median"], 1e-5, NUMPY,
+        "median of the angles, mean of the middle two")
+    for threshold, value in zip(["5", "7.5", "11.25", "22.5", "30"], case["below"]):
+        add(f"normal/{threshold}", run, f"normal-{threshold}", value, 1e-9, NUMPY,
+            "percent strictly below the angle")
+    add("normal/coverage", run, "normal-coverage", case["coverage"], 1e-9, NUMPY,
+        "percent of the scored pixels with a prediction")
+    add("normal/dropped", run, "normal-dropped", case["dropped"], 1e-9, NUMPY,
+        "percent of the reference's normals that are not of unit length")
+
+
+# --- surfaces ------------------------------------------------------------------------------------
+
+def sphere(radius, subdivisions):
+    """An icosahedron's faces split in four, again and again, on the sphere."""
+    g = (1 + 5 ** 0.5) / 2
+    v = [np.array(p, float) for p in [
+        (-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g), (0, -1, -g),
+        (0, 1, -g), (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1)]]
+    f = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
+         (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9),
+         (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    for _ in range(subdivisions):
+        middle, split = {}, []
+        for a, b, c in f:
+            corner = []
+            for i, j in ((a, b), (b, c), (c, a)):
+                key = (min(i, j), max(i, j))
+                if key not in middle:
+                    middle[key] = len(v)
+                    v.append(v[i] + v[j])
+                corner.append(middle[key])
+            x, y, z = corner
+            split += [(a, x, z), (b, y, x), (c, z, y), (x, y, z)]
+        f = split
+    return np.array([radius * p / np.linalg.norm(p) for p in v]), f
+
+
+def mesh_vectors():
+    square = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], float)
+    two = [(0, 1, 2), (0, 2, 3)]
+    write_ply("mesh/square.ply", square, two)
+    write_ply("mesh/square_above.ply", square + (0, 0, 0.03), two)
+    many = [(i * 17 + j, i * 17 + j + 1, i * 17 + j + 18) for i in range(16) for j in range(16)]
+    many += [(i * 17 + j, i * 17 + j + 18, i * 17 + j + 17) for i in range(16) for j in range(16)]
+    dense = [((i / 16) ** 2, j / 16, 0) for i in range(17) for j in range(17)]
+    write_ply("mesh/square_dense.ply", dense, many)
+    write_ply("mesh/sphere_100.ply", *sphere(1.0, 3))
+    write_ply("mesh/sphere_095.ply", *sphere(0.95, 3))
+    write_ply("mesh/tilted.ply", square @ np.array([[1, 0, 0.1], [0, 1, 0], [0, 0, 1]]), two)
+
+    def run(a, b, *more):
+        return ["glint-mesh", f"mesh/{a}", f"mesh/{b}", "--cull", "none", "--samples", "50000",
+                *more]
+
+    above = run("square.ply", "square_above.ply")
+    parallel = "two parallel unit squares 3 cm apart"
+    add("mesh/parallel-cd", above, "mesh-cd", 0.03, 1e-7, CLOSED, parallel)
+    add("mesh/parallel-f1-2cm", above, "mesh-f1@2cm", 0, 0, CLOSED, parallel)
+    add("mesh/parallel-f1-5cm", above, "mesh-f1@5cm", 1, 0, CLOSED, parallel)
+    add("mesh/parallel-normal", above, "mesh-normal", 1, 1e-6, CLOSED, parallel)
+    add("mesh/itself", run("sphere_100.ply", "sphere_100.ply"), "mesh-cd", 0, 1e-7, CLOSED,
+        "a surface against itself, whatever the samples")
+    add("mesh/density", run("square_dense.ply", "square_above.ply"), "mesh-cd", 0.03, 1e-7, CLOSED,
+        "samples are uniform by area: the tessellation does not matter")
+    # Faces of 1280 lie at most 0.3 % inside the radius.
+    spheres = run("sphere_095.ply", "sphere_100.ply")
+    add("mesh/spheres-cd", spheres, "mesh-cd", 0.05, 0.003, CLOSED, "concentric spheres, 5 cm")
+    # Accuracy: from z = 0.1 x to the plane: 0.1 x, mean 0.05. Completeness: along the tilted
+    # plane's normal, 0.1 x / sqrt(1.01), for all places whose foot lies on the tilted square
+    # (x <= 1: the foot of x is x / 1.01).
+    tilted = run("tilted.ply", "square.ply", "--samples", "400000")
+    add("mesh/tilted-accuracy", tilted, "mesh-accuracy", 0.05, 2e-4, CLOSED,
+        "a square that rises 0.1 over its length, to the flat one")
+    add("mesh/tilted-completeness", tilted, "mesh-completeness", 0.05 / 1.01 ** 0.5, 2e-4, CLOSED,
+        "the way back is shorter: distances are to the surface, not along an axis")
+    # Nearest of n uniform points in the plane: mean distance 1 / (2 sqrt(n)), here at height 3 cm.
+    p2p = run("square.ply", "square_dense.ply", "--distance", "point-to-point")
+    add("mesh/p2p-floor", p2p, "mesh-cd-p2p", 0.5 / 50000 ** 0.5, 2e-4, CLOSED,
+        "equal surfaces are not 0 apart from sample to sample: 1 / (2 sqrt(samples per m2))")
+
+
+# --- a scene with glass, for the metrics of both layers --------------------------------------------
+
+CAMERA = """%YAML:1.0
+---
+names:
+   - "0000"
+   - "0001"
+"""
+
+
+def matrix(key, rows, cols, data):
+    numbers = ", ".join(f"{float(v):.17g}" for v in data)
+    return (f"{key}: !!opencv-matrix\n   rows: {rows}\n   cols: {cols}\n   dt: d\n"
+            f"   data: [ {numbers} ]\n")
+
+
+def write_cameras():
+    intri, extri = CAMERA, CAMERA
+    for name in ["0000", "0001"]:
+        intri += matrix(f"K_{name}", 3, 3, [40, 0, WIDTH / 2, 0, 40, HEIGHT / 2, 0, 0, 1])
+        intri += f"H_{name}: {HEIGHT}\nW_{name}: {WIDTH}\n" + matrix(f"D_{name}", 5, 1, [0] * 5)
+        shift = 0.1 * int(name)
+        extri += matrix(f"R_{name}", 3, 1, [0, 0, 0])
+        extri += matrix(f"Rot_{name}", 3, 3, [1, 0, 0, 0, 1, 0, 0, 0, 1])
+        extri += matrix(f"T_{name}", 3, 1, [shift, 0, 0])
+    folder = ROOT / "glass/scene"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "intri.yml").write_text(intri)
+    (folder / "extri.yml").write_text(extri)
+
+
+def bounded(salt, low, high, channels=1):
+    x, y, c = goldens.grid(WIDTH, HEIGHT, channels)
+    value = low + (high - low) * (goldens.hashed(x, y, c, salt) % 1001) / 1000.0
+    return value.astype(np.float32) if channels > 1 else value.astype(np.float32)[:, :, 0]
+
+
+def glass_maps():
+    """Truth and prediction by map name. A pane with a slanted edge in the middle of the picture."""
+    y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
+    glass = (x > 12 + y // 4) & (x < 36) & (y > 7) & (y < 30)
+    prediction, reference, rendered, _ = picture_pair()
+    behind = bounded(21, 3, 5)
+    depth = np.where(glass, np.float32(2) + behind / 10, behind).astype(np.float32)
+    predicted_normal, normal = goldens.normal_maps(WIDTH, HEIGHT)
+    truth = {"depth": depth, "behind_depth": behind, "normal": normal,
+             "transmitted": bounded(22, 0, 1, 3), "reflected": bounded(23, 0, 0.5, 3),
+             "glass": glass, "rgb": reference / 255.0}
+    found = {"rgb": rendered.astype(np.float32), "depth": depth * bounded(24, 0.9, 1.1),
+             "behind_depth": behind * bounded(25, 0.8, 1.3), "normal": predicted_normal,
+             "transparency": np.clip(0.7 * glass + bounded(26, -0.2, 0.4), -0.1, 1.1).astype("f4"),
+             "specularity": np.clip(0.2 * glass + bounded(27, 0, 0.3), 0, 1).astype("f4"),
+             "transmitted": bounded(28, 0, 1, 3), "reflected": bounded(29, 0, 0.4, 3)}
+    return truth, found
+
+
+def write_glass(truth, found):
+    write_cameras()
+    for name in ["0000", "0001"]:
+        rgb = np.rint(truth["rgb"] * 255).astype(np.uint8)
+        write_png(f"glass/scene/images/{name}/000000.png", rgb)
+        for key in ["depth", "behind_depth", "normal", "transmitted", "reflected"]:
+            write_exr(f"glass/scene/gt/{key}/{name}.exr", truth[key])
+        write_png(f"glass/scene/gt/glass/{name}.png", (truth["glass"] * 255).astype(np.uint8))
+    for key, value in found.items():
+        write_exr(f"glass/renders/0000/{key}.exr", value)
+
+
+def regions_of(glass):
+    near, far = maximum_filter(glass, 7), maximum_filter(~glass, 7)
+    everything = np.ones_like(glass)
+    return {"": everything, "@glass": glass, "@glass-border": near & far, "@opaque": ~glass}
+
+
+def best_iou(maps, glass):
+    def iou(m, t):
+        called = m >= t
+        return (called & glass).sum() / (called | glass).sum()
+    return max(iou(m, t) for m in maps for t in [i / 20 for i in range(1, 20)])
+
+
+def glass_vectors():
+    truth, found = (dict((k, np.asarray(v)) for k, v in maps.items()) for maps in glass_maps())
+    write_glass(truth, found)
+    run = ["glint-bench", "eval", "--predictions", "glass", "--dataset", "glass/scene"]
+    d = {k: v.astype(np.float64) for k, v in found.items()}
+    t = {k: v.astype(np.float64) for k, v in truth.items() if k != "glass"}
+    glass = truth["glass"]
+    rgb = np.clip(d["rgb"], 0, 1)
+    rounded = np.rint(rgb.astype(np.float32) * np.float32(255)) / 255.0
+    padded = goldens.zero_padded_map(rgb, t["rgb"])
+    wang = goldens.wang_map(rgb, t["rgb"])[1].mean(axis=2)
+    inside = np.zeros_like(glass)
+    inside[5:HEIGHT - 5, 5:WIDTH - 5] = True
+    clipped = np.clip(d["transparency"], 0, 1)
+
+    def vector(key, expected, source, convention, tolerance=1e-5):
+        add(f"glass/{key}", run, key, expected, tolerance, source, convention)
+
+    def psnr(a, b, m):
+        return -10 * np.log10(((a - b) ** 2).mean(axis=2)[m].mean())
+
+    for at, m in regions_of(glass).items():
+        where = "whole picture" if not at else f"region {at[1:]} (border: within 3 px, Chebyshev)"
+        vector("psnr" + at, psnr(rgb, t["rgb"], m), NUMPY, where)
+        vector("psnr-8bit" + at, psnr(rounded, t["rgb"], m), NUMPY, where + ", rounded to 8 bits")
+        vector("ssim-3dgs" + at, padded[m].mean(), SCIPY, where)
+        vector("ssim-wang" + at, wang[m & inside].mean(), SKIMAGE, where)
+        values = goldens.depth_values(d["depth"][m], t["depth"][m])
+        for key in ["absrel", "rmse", "delta1"]:
+            vector(f"depth-{key}{at}", values[key], NUMPY, where)
+        vector("transparency-mae" + at, np.abs(clipped - glass)[m].mean(), NUMPY, where)
+    behind = goldens.depth_values(d["behind_depth"][glass], t["behind_depth"][glass])
+    vector("behind-absrel", behind["absrel"], NUMPY, "depth of what is behind glass, glass pixels")
+    called = clipped >= 0.5
+    vector("transparency-iou", (called & glass).sum() / (called | glass).sum(), NUMPY,
+           "called glass at 0.5 or more", 1e-9)
+    vector("glass-iou-best", best_iou([clipped, d["specularity"]], glass), NUMPY,
+           "best threshold of 0.05, 0.10, ..., 0.95, better map of the two", 1e-9)
+    total = t["transmitted"] + t["reflected"]
+    for key, part in [("trans-psnr", "transmitted"), ("refl-psnr", "reflected")]:
+        share = np.divide(t[part], total, out=np.zeros_like(total), where=total > 0)
+        vector(key, psnr(np.clip(d[part], 0, 1), t["rgb"] * share, glass), NUMPY,
+               "displayed pixel times the component's share of the linear radiance, glass pixels")
+
+
+# --- LPIPS -----------------------------------------------------------------------------------------
+
+def convolve(x, weight, bias, stride, padding):
+    x = np.pad(x, ((0, 0), (padding, padding), (padding, padding)))
+    windows = sliding_window_view(x, weight.shape[2:], axis=(1, 2))[:, ::stride, ::stride]
+    out = np.einsum("chwij,ocij->ohw", windows, weight, optimize=True)
+    return np.maximum(out + bias[:, None, None], 0)
+
+
+def pool(x):
+    return sliding_window_view(x, (3, 3), axis=(1, 2))[:, ::2, ::2].max(axis=(3, 4))
+
+
+def alex_taps(image, w):
+    shift, scale = np.array([-.030, -.088, -.188]), np.array([.458, .448, .450])
+    x = np.moveaxis((2 * image - 1 - shift) / scale, 2, 0)
+    taps = []
+    for layer, stride, padding, pooled in [(0, 4, 2, False), (3, 1, 2, True), (6, 1, 1, True),
+                                           (8, 1, 1, False), (10, 1, 1, False)]:
+        x = pool(x) if pooled else x
+        name = f"features.{layer}"
+        x = convolve(x, w[f"{name}.weight"], w[f"{name}.bias"], stride, padding)
+        taps.append(x)
+    return taps
+
+
+def alex_lpips(prediction, reference, weights):
+    total = 0
+    for i, (a, b) in enumerate(zip(alex_taps(prediction, weights), alex_taps(reference, weights))):
+        a = a / (np.sqrt((a * a).sum(axis=0)) + 1e-10)
+        b = b / (np.sqrt((b * b).sum(axis=0)) + 1e-10)
+        lin = weights[f"lin{i}.weight"].reshape(-1)
+        total += (lin[:, None, None] * (a - b) ** 2).sum(axis=0).mean()
+    return total
+
+
+def lpips_vectors(path):
+    name = "lpips/alex"
+    if path is None:
+        old = json.loads((ROOT / "vectors.json").read_text())["vectors"]
+        vectors.extend(v for v in old if v["id"].startswith("lpips/"))
+        return
+    weights = {k: v.astype(np.float64) for k, v in np.load(path).items()}
+    x, y, c = goldens.grid(96, 80, 3)
+    reference = goldens.stored(np.clip(goldens.triangle_wave(3 * x + 2 * y + 30 * c), 0, 255))
+    noise = goldens.hashed(x, y, c, 31) % 81 - 40
+    prediction = goldens.stored(np.clip(np.rint(reference * 255) + noise, 0, 255))
+    for key, image in [("prediction", prediction), ("reference", reference)]:
+        write_png(f"lpips/{key}.png", np.rint(image * 255).astype(np.uint8))
+    value = alex_lpips(prediction.astype(np.float64), reference.astype(np.float64), weights)
+    add(name, ["glint-lpips", "lpips/prediction.png", "lpips/reference.png", "--net", "alex"],
+        "lpips-alex", value, 1e-4, f"{NUMPY}, from the network's definition",
+        "version 0.1, AlexNet, fed [-1, 1], sum over taps of spatial means")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--weights", type=Path, help="lpips_alex_v0.1.npz")
+    options = parser.parse_args()
+    image_vectors()
+    depth_vectors()
+    normal_vectors()
+    mesh_vectors()
+    glass_vectors()
+    lpips_vectors(options.weights)
+    document = {"made_by": "scripts/make_conformance.py", "vectors": vectors}
+    (ROOT / "vectors.json").write_text(json.dumps(document, indent=1) + "\n")
+    size = sum(f.stat().st_size for f in ROOT.rglob("*") if f.is_file())
+    print(f"{ROOT}: {len(vectors)} vectors, {size / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()

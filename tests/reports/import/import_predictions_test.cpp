@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// The ground truth of a room, written as other programs would: it must come back without error.
+#include "reports/import/import_predictions.h"
+
+#include <catch2/catch.hpp>
+
+#include "glint/scene/image_files.h"
+#include "reports/bench/stages.h"
+#include "tests/support/small_room.h"
+
+using namespace glint;
+
+namespace {
+
+Image ray_lengths(const View& view) {
+  Image depth = view.truth.depth;
+  for (int y = 0; y < depth.height(); ++y)
+    for (int x = 0; x < depth.width(); ++x)
+      depth.at(x, y) *= static_cast<float>(length(view.camera.ray_in_cam(x + 0.5, y + 0.5)));
+  return depth;
+}
+
+Image opengl_normals(const View& view) {
+  Image normals = view.truth.normal;
+  for (std::size_t i = 0; i < normals.num_pixels(); ++i)
+    for (const int c : {1, 2}) normals.data()[3 * i + static_cast<std::size_t>(c)] *= -1;
+  return normals;
+}
+
+Image world_normals(const View& view) {
+  Image normals = view.truth.normal;
+  for (std::size_t i = 0; i < normals.num_pixels(); ++i) {
+    float* n = normals.data() + 3 * i;
+    const Vec3d world = transpose_times(
+        view.camera.rotation_cam_from_world,
+        Vec3d{static_cast<double>(n[0]), static_cast<double>(n[1]), static_cast<double>(n[2])}
+    );
+    n[0] = static_cast<float>(world.x), n[1] = static_cast<float>(world.y);
+    n[2] = static_cast<float>(world.z);
+  }
+  return normals;
+}
+
+// Predictions in `folder`, the run beside it.
+struct Case {
+  test::TempFolder folder;
+  RunSpec spec;
+  Case() {
+    for (const View& view : test::small_room().test) {
+      write_png(folder.path() / "theirs/rgb" / (view.name + ".png"), view.rgb);
+      write_npy(folder.path() / "theirs/depth" / (view.name + ".npy"), ray_lengths(view));
+      write_npy(folder.path() / "theirs/normal" / (view.name + ".npy"), opengl_normals(view));
+    }
+    spec.folder = folder.path() / "run";
+    spec.method = "theirs";
+    spec.scene = "room_1";
+  }
+  std::vector<std::string> import(const ImportOptions& options) {
+    return import_predictions(folder.path() / "theirs", test::small_room(), spec, options);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("The truth in another program's conventions scores as the truth") {
+  Case c;
+  const auto notes = c.import({DepthKind::kRay, NormalAxes::kOpengl, {}});
+  CHECK(notes.size() == 1);
+  const auto means = eval_stage(c.spec, test::small_room(), {});
+  CHECK(means.at("psnr") == 100);
+  CHECK(means.at("depth-absrel") < 1e-6);
+  CHECK(means.at("normal-mae") < 0.01);
+  CHECK(fs::exists(c.spec.folder / "strip.png"));
+}
+
+TEST_CASE("Normals in the world's axes come back, too") {
+  Case c;
+  for (const View& view : test::small_room().test)
+    write_npy(c.folder.path() / "theirs/normal" / (view.name + ".npy"), world_normals(view));
+  c.import({DepthKind::kRay, NormalAxes::kWorld, {}});
+  CHECK(eval_stage(c.spec, test::small_room(), {}).at("normal-mae") < 0.01);
+}
+
+TEST_CASE("A wrong convention is noticed where there is ground truth, and not corrected silently") {
+  Case c;
+  const auto notes = c.import({});
+  const std::string all = fmt::format("{}", fmt::join(notes, "; "));
+  CHECK_THAT(all, Catch::Contains("--depth-kind ray") && Catch::Contains("--normal-axes opengl"));
+  CHECK(eval_stage(c.spec, test::small_room(), {}).at("normal-mae") > 20);
+}
+
+TEST_CASE("Renders of another size and damaged files are refused by name") {
+  Case c;
+  const fs::path first =
+      c.folder.path() / "theirs/rgb" / (test::small_room().test[0].name + ".png");
+  write_png(first, Image(32, 18, 3));
+  CHECK_THROWS_WITH(c.import({}), Catch::Contains("32x18") && Catch::Contains("--max-pixels"));
+  write_file(first, "no picture");
+  CHECK_THROWS_WITH(c.import({}), Catch::Contains(first.string()));
+  ImportOptions with_mesh;
+  with_mesh.mesh = "/nowhere.ply";
+  write_png(first, test::small_room().test[0].rgb);
+  CHECK_THROWS_WITH(c.import(with_mesh), Catch::Contains("no such mesh"));
+}

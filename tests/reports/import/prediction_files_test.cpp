@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "reports/import/prediction_files.h"
+
+#include <catch2/catch.hpp>
+
+#include "glint/core/error.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+
+namespace {
+
+const std::vector<std::string> kViews = {"0000", "0008"};
+
+PredictionFiles find_in(const std::vector<std::string>& files) {
+  const test::TempFolder folder;
+  for (const std::string& file : files) write_file(folder.path() / file, "x");
+  PredictionFiles found = find_predictions(folder.path(), kViews);
+  for (auto& view : found.views)
+    for (auto& [map, path] : view) path = fs::relative(path, folder.path());
+  if (!found.mesh.empty()) found.mesh = fs::relative(found.mesh, folder.path());
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("Renders are found in the layouts of the programs that people use") {
+  struct Layout {
+    std::vector<std::string> files;
+    std::string map, second;  // file of the second view
+    Matching matching;
+  };
+  const Layout layouts[] = {
+      {{"renders/0000/rgb.exr",
+        "renders/0000/rgb.png",
+        "renders/0008/rgb.exr",
+        "renders/0008/rgb.png"},
+       "rgb",
+       "renders/0008/rgb.exr",
+       Matching::kName},
+      {{"test/ours_7000/renders/00000.png",
+        "test/ours_30000/renders/00000.png",
+        "test/ours_30000/renders/00001.png"},
+       "rgb",
+       "test/ours_30000/renders/00001.png",
+       Matching::kOrder},
+      {{"RENDER/frame0000_camera0000.png", "RENDER/frame0000_camera0008.png"},
+       "rgb",
+       "RENDER/frame0000_camera0008.png",
+       Matching::kOrder},
+      {{"color/0000.png", "color/0008.png", "gt-color/0000.png"},
+       "rgb",
+       "color/0008.png",
+       Matching::kName},
+      {{"0000.png", "0008.png", "val_depthZ_0000.npy", "val_depthZ_0001.npy"},
+       "depth",
+       "val_depthZ_0001.npy",
+       Matching::kOrder},
+      {{"rgb/0000.png", "rgb/0008.png", "normal/0000.npy", "normal/0008.npy", "normal/0009.npy"},
+       "normal",
+       "normal/0008.npy",
+       Matching::kName}};
+  for (const Layout& layout : layouts) {
+    INFO(layout.files.front());
+    const PredictionFiles found = find_in(layout.files);
+    CHECK(found.views.at(1).at(layout.map) == fs::path(layout.second));
+    CHECK(found.matching.at(layout.map) == layout.matching);
+  }
+}
+
+TEST_CASE("Files in natural order go to views in theirs") {
+  const PredictionFiles found = find_in({"rgb/frame10.png", "rgb/frame9.png"});
+  CHECK(found.views[0].at("rgb") == fs::path("rgb/frame9.png"));
+  CHECK(found.views[1].at("rgb") == fs::path("rgb/frame10.png"));
+}
+
+TEST_CASE("The mesh of other programs is found") {
+  CHECK(find_in({"rgb/0000.png", "rgb/0008.png"}).mesh.empty());
+  CHECK(
+      find_in({"rgb/0000.png", "rgb/0008.png", "train/ours_30000/fuse_post.ply"}).mesh ==
+      fs::path("train/ours_30000/fuse_post.ply")
+  );
+}
+
+TEST_CASE("A map of one kind is not taken for another") {
+  const PredictionFiles found = find_in(
+      {"renders/0000/rgb.exr",
+       "renders/0008/rgb.exr",
+       "renders/0000/depth.exr",
+       "renders/0008/depth.exr"}
+  );
+  CHECK(found.matching.size() == 2);
+}
+
+TEST_CASE("Folders that do not fit the test views are refused with what is there") {
+  CHECK_THROWS_WITH(find_in({"notes.txt"}), Catch::Contains("no renders; looked for"));
+  CHECK_THROWS_WITH(
+      find_in({"rgb/a.png", "rgb/b.png", "rgb/c.png"}),
+      Catch::Contains("3 files for rgb") && Catch::Contains("2 test views (0000")
+  );
+  CHECK_THROWS_WITH(find_predictions("/nowhere", kViews), Catch::Contains("no such folder"));
+}
