@@ -28,11 +28,13 @@ NLOHMANN_JSON_SERIALIZE_ENUM(
     MeshCulling, {{MeshCulling::kNone, "none"}, {MeshCulling::kCameras, "cameras"}}
 )
 
+std::vector<double> default_thresholds_m();  // 1, 2, 5 and 10 cm
+
 struct MeshProtocol {
   std::uint64_t num_samples = 1'000'000;
   std::uint64_t seed = 0;
   SurfaceDistance distance = SurfaceDistance::kPointToTriangle;
-  std::vector<double> thresholds_m = {0.01, 0.02, 0.05, 0.10};
+  std::vector<double> thresholds_m = default_thresholds_m();
   double max_distance_m = 0;
   MeshCulling cull = MeshCulling::kCameras;
   double cull_tolerance_m = 0.02;  // two voxels of the default extraction
