@@ -51,8 +51,8 @@ TEST_CASE("a thin face is not one without area") {
 
 TEST_CASE("a face stored again is dropped, whatever its winding and vertices' ids") {
   TriangleMesh mesh = unit_square(0);
-  mesh.faces.push_back({1, 2, 0});   // turned
-  mesh.faces.push_back({0, 2, 1});   // wound the other way
+  mesh.faces.push_back({1, 3, 0});   // turned
+  mesh.faces.push_back({0, 3, 1});   // wound the other way
   append(mesh, unit_square(-0.0f));  // vertices of its own at the same places
   const CleanMesh clean = clean_mesh(mesh);
   CHECK(clean.report.duplicate == 4);
