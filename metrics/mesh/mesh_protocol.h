@@ -38,6 +38,7 @@ struct MeshProtocol {
   double max_distance_m = 0;
   MeshCulling cull = MeshCulling::kCameras;
   double cull_tolerance_m = 0.02;  // two voxels of the default extraction
+  double cull_max_edge_m = 0.2;
   template <class V>
   void visit(V&& v) {
     v("num_samples", num_samples, "per surface, uniform by area, stratified");
@@ -47,6 +48,7 @@ struct MeshProtocol {
     v("max_distance_m", max_distance_m, "metres; larger distances are set to it; 0: no limit");
     v("cull", cull, "none, or cameras: faces that no training camera sees are left out of both");
     v("cull_tolerance_m", cull_tolerance_m, "metres in front of a face that do not hide it");
+    v("cull_max_edge_m", cull_max_edge_m, "metres; faces with longer edges are split before");
   }
 };
 

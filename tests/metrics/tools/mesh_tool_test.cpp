@@ -116,8 +116,8 @@ TEST_CASE("glint-mesh takes a run folder's and a dataset folder's meshes and cul
   const Json& recipe = json["surfaces"]["reference"]["culling"];
   CHECK(recipe["num_cameras"] == 8);
   CHECK(recipe["faces_before"] == 1600);
-  CHECK(recipe["faces_after"] > 0);
-  CHECK(recipe["faces_after"] <= 800);  // the upper floor at most
+  CHECK(recipe["area_after_m2"].get<double>() > 1);
+  CHECK(recipe["area_after_m2"].get<double>() < 12.001);  // the upper floor at most
   CHECK(json["metrics"]["mesh-accuracy"].get<double>() < 0.05);
   const Result plain = mesh_tool({folder / "run", folder / "data", "--cull", "none", "--json"});
   CHECK_FALSE(plain.json()["surfaces"]["reference"].contains("culling"));
