@@ -28,6 +28,9 @@ if(GLINT_LEAN)
   return()
 endif()
 
+if(GLINT_TESTS)
+  find_package(CGAL 5.5 REQUIRED CONFIG)  # what distances to meshes are compared with
+endif()
 find_package(embree 3.13 REQUIRED CONFIG)
 find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to set how many threads oneDNN uses
 find_package(Bullet REQUIRED)  # module mode: the config mode has relative include folders

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "metrics/mesh/cull.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace glint {
 namespace {
 
 constexpr std::size_t kBlock = 1024;  // faces
+constexpr double kMostParts = 64;     // of an edge: a plain of kilometres must not fill the memory
 
 bool is_inside_image(const Camera& camera, Vec3d point) {
   const Vec3d in_cam = camera.to_cam(point);
@@ -69,22 +71,70 @@ std::vector<std::uint8_t> find_seen(
   return seen;
 }
 
+int num_parts(const Corners& corners, double max_edge) {
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    longest = std::max(longest, length(corners[(k + 1) % 3] - corners[k]));
+  return static_cast<int>(std::min(kMostParts, std::ceil(longest / max_edge)));
+}
+
+// Rows of n + 1, n, ..., 1 vertices from the side ab to the corner c, and the faces between.
+void append_split(const Corners& corners, int n, TriangleMesh& mesh) {
+  auto row = static_cast<std::int32_t>(mesh.vertices.size());
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i + j <= n; ++i) {
+      const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
+      mesh.vertices.push_back(
+          cast<float>((1 - u - v) * corners[0] + u * corners[1] + v * corners[2])
+      );
+    }
+  for (int j = 0; j < n; ++j) {
+    const std::int32_t next = row + n + 1 - j;
+    for (int i = 0; i + j < n; ++i) {
+      mesh.faces.push_back({row + i, row + i + 1, next + i});
+      if (i + j + 1 < n) mesh.faces.push_back({row + i + 1, next + i + 1, next + i});
+    }
+    row = next;
+  }
+}
+
+void check_length(double value, const char* name) {
+  GLINT_CHECK(
+      std::isfinite(value) && value >= 0,
+      kUsage,
+      "culling: {} is {}; expected metres, 0 or more",
+      name,
+      value
+  );
+}
+
 }  // namespace
 
+TriangleMesh split_long_faces(const TriangleMesh& mesh, double max_edge_m) {
+  TriangleMesh split{mesh.vertices, {}, {}};
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const Corners corners = corners_of(mesh, i);
+    if (const int n = num_parts(corners, max_edge_m); n > 1)
+      append_split(corners, n, split);
+    else
+      split.faces.push_back(mesh.faces[i]);
+  }
+  return split;
+}
+
 CulledMesh cull_unseen(
-    const TriangleMesh& mesh, std::span<const Camera> cameras, double tolerance_m
+    const TriangleMesh& mesh, std::span<const Camera> cameras, double tolerance_m, double max_edge_m
 ) {
-  GLINT_CHECK(
-      std::isfinite(tolerance_m) && tolerance_m >= 0,
-      kUsage,
-      "tolerance of culling: {}; expected metres, 0 or more",
-      tolerance_m
-  );
+  check_length(tolerance_m, "tolerance_m");
+  check_length(max_edge_m, "max_edge_m");
+  const TriangleMesh split = max_edge_m > 0 ? split_long_faces(mesh, max_edge_m) : mesh;
   CulledMesh culled;
-  if (!mesh.faces.empty()) culled.mesh = select_faces(mesh, find_seen(mesh, cameras, tolerance_m));
+  if (!split.faces.empty())
+    culled.mesh = select_faces(split, find_seen(split, cameras, tolerance_m));
   culled.recipe.num_cameras = cameras.size();
-  culled.recipe.tolerance_m = tolerance_m;
+  culled.recipe.tolerance_m = tolerance_m, culled.recipe.max_edge_m = max_edge_m;
   culled.recipe.faces_before = mesh.faces.size();
+  culled.recipe.faces_split = split.faces.size();
   culled.recipe.faces_after = culled.mesh.faces.size();
   culled.recipe.area_before_m2 = surface_area(mesh);
   culled.recipe.area_after_m2 = surface_area(culled.mesh);

@@ -21,6 +21,8 @@ void append_metrics(
 
 }  // namespace
 
+std::vector<double> default_thresholds_m() { return {0.01, 0.02, 0.05, 0.10}; }
+
 std::string threshold_name(double threshold_m) { return fmt::format("{:g}cm", 100 * threshold_m); }
 
 std::string mesh_metric_id(const std::string& stem, const MeshProtocol& protocol) {

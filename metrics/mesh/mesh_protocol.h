@@ -28,14 +28,17 @@ NLOHMANN_JSON_SERIALIZE_ENUM(
     MeshCulling, {{MeshCulling::kNone, "none"}, {MeshCulling::kCameras, "cameras"}}
 )
 
+std::vector<double> default_thresholds_m();  // 1, 2, 5 and 10 cm
+
 struct MeshProtocol {
   std::uint64_t num_samples = 1'000'000;
   std::uint64_t seed = 0;
   SurfaceDistance distance = SurfaceDistance::kPointToTriangle;
-  std::vector<double> thresholds_m = {0.01, 0.02, 0.05, 0.10};
+  std::vector<double> thresholds_m = default_thresholds_m();
   double max_distance_m = 0;
   MeshCulling cull = MeshCulling::kCameras;
   double cull_tolerance_m = 0.02;  // two voxels of the default extraction
+  double cull_max_edge_m = 0.2;
   template <class V>
   void visit(V&& v) {
     v("num_samples", num_samples, "per surface, uniform by area, stratified");
@@ -45,6 +48,7 @@ struct MeshProtocol {
     v("max_distance_m", max_distance_m, "metres; larger distances are set to it; 0: no limit");
     v("cull", cull, "none, or cameras: faces that no training camera sees are left out of both");
     v("cull_tolerance_m", cull_tolerance_m, "metres in front of a face that do not hide it");
+    v("cull_max_edge_m", cull_max_edge_m, "metres; faces with longer edges are split before");
   }
 };
 

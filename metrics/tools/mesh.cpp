@@ -46,6 +46,11 @@ void add_protocol(CLI::App& app, MeshToolOptions& options) {
   app.add_option("--tolerance", protocol.cull_tolerance_m, "of culling, metres (two voxels)")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  app.add_option(
+         "--max-edge", protocol.cull_max_edge_m, "faces are split to it before culling, metres"
+  )
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_option("--samples", protocol.num_samples, "per surface")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -118,10 +123,9 @@ void cull(MeshReport& report, const MeshToolOptions& options) {
   report.dataset = options.dataset;
   log::info(fmt::format("loading the cameras of {}", options.dataset.string()));
   const std::vector<Camera> cameras = training_cameras(options.dataset);
-  const double tolerance = report.protocol.cull_tolerance_m;
-  cull_surface(report.reference, cameras, tolerance);
+  cull_surface(report.reference, cameras, report.protocol);
   with_exit_code(ExitCode::kBadPrediction, [&] {
-    cull_surface(report.prediction, cameras, tolerance);
+    cull_surface(report.prediction, cameras, report.protocol);
   });
 }
 

@@ -107,7 +107,9 @@ std::vector<Camera> training_cameras(const fs::path& dataset) {
   return cameras;
 }
 
-void cull_surface(SurfaceInput& input, const std::vector<Camera>& cameras, double tolerance_m) {
+void cull_surface(
+    SurfaceInput& input, const std::vector<Camera>& cameras, const MeshProtocol& protocol
+) {
   const auto* mesh = std::get_if<TriangleMesh>(&input.surface);
   GLINT_CHECK(
       mesh != nullptr,
@@ -115,7 +117,8 @@ void cull_surface(SurfaceInput& input, const std::vector<Camera>& cameras, doubl
       "{}: points hide nothing and cannot be culled; give meshes, or --cull none",
       input.path.string()
   );
-  CulledMesh culled = cull_unseen(*mesh, cameras, tolerance_m);
+  CulledMesh culled =
+      cull_unseen(*mesh, cameras, protocol.cull_tolerance_m, protocol.cull_max_edge_m);
   GLINT_CHECK(
       !culled.mesh.faces.empty(),
       kBadReference,

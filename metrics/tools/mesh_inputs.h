@@ -9,6 +9,7 @@
 #include "glint/scene/camera.h"
 #include "metrics/mesh/clean.h"
 #include "metrics/mesh/cull.h"
+#include "metrics/mesh/mesh_protocol.h"
 #include "metrics/mesh/samples.h"
 
 namespace glint {
@@ -33,6 +34,8 @@ std::vector<Camera> training_cameras(const fs::path& dataset);
 
 // Replaces the mesh by what the cameras see of it. Errors (kBadReference): a point cloud, nothing
 // left.
-void cull_surface(SurfaceInput& input, const std::vector<Camera>& cameras, double tolerance_m);
+void cull_surface(
+    SurfaceInput& input, const std::vector<Camera>& cameras, const MeshProtocol& protocol
+);
 
 }  // namespace glint

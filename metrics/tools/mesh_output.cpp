@@ -58,7 +58,7 @@ void print_culling(const char* name, const SurfaceInput& input, std::ostream& ou
       "{}: {} of {} faces ({:.2f} of {:.2f} m2) seen by {} cameras, tolerance {:g} m\n",
       name,
       recipe.faces_after,
-      recipe.faces_before,
+      recipe.faces_split,
       recipe.area_after_m2,
       recipe.area_before_m2,
       recipe.num_cameras,

@@ -27,7 +27,8 @@ TriangleMesh prepared(
       with_exit_code(code, [&] { return clean_mesh(read_mesh_ply(path, NonFinite::kKeep)); });
   recipe = {{"file", path.filename().string()}, {"clean", config_to_json(clean.report)}};
   if (protocol.cull == MeshCulling::kNone) return clean.mesh;
-  CulledMesh culled = cull_unseen(clean.mesh, cameras, protocol.cull_tolerance_m);
+  CulledMesh culled =
+      cull_unseen(clean.mesh, cameras, protocol.cull_tolerance_m, protocol.cull_max_edge_m);
   recipe["cull"] = config_to_json(culled.recipe);
   return std::move(culled.mesh);
 }

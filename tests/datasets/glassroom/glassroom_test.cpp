@@ -147,8 +147,8 @@ TEST_CASE("The ground-truth mesh behind glass lacks the panes and nothing else")
   pane.vertices = {{0, 0, 1}, {0.1f, 0, 1}, {0, 0.1f, 1}};
   pane.material = 1;
   scene.meshes = {wall, pane};
-  CHECK(truth_mesh(scene, TruthLayer::kFirst).faces.size() == 2);
-  const TriangleMesh behind = truth_mesh(scene, TruthLayer::kBehind);
+  CHECK(truth_mesh(scene, TruthLayer::kFirst, 1).faces.size() == 2);
+  const TriangleMesh behind = truth_mesh(scene, TruthLayer::kBehind, 1);
   REQUIRE(behind.faces.size() == 1);
   for (const Vec3f& vertex : behind.vertices) CHECK(vertex.z == 0);
 }

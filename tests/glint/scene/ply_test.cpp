@@ -205,6 +205,31 @@ TEST_CASE("meshes survive a PLY") {
   CHECK(read_mesh_ply(folder / "x.ply").colors.empty());
 }
 
+TEST_CASE("a reader that drops faces itself may have vertices that are not finite") {
+  const TempFolder folder;
+  TriangleMesh mesh = tetrahedron();
+  mesh.vertices[2].y = std::nanf("");
+  write_mesh_ply(folder / "x.ply", mesh);
+  CHECK_THAT(
+      bad_reference([&] { read_mesh_ply(folder / "x.ply"); }), Contains("vertex 2: y is nan")
+  );
+  const TriangleMesh read = read_mesh_ply(folder / "x.ply", NonFinite::kKeep);
+  CHECK(std::isnan(read.vertices[2].y));
+  CHECK(read.faces == mesh.faces);
+}
+
+TEST_CASE("the header tells meshes from points") {
+  const TempFolder folder;
+  write_mesh_ply(folder / "mesh.ply", tetrahedron());
+  write_mesh_ply(folder / "no_faces.ply", {tetrahedron().vertices, {}, {}});
+  write_point_ply(folder / "points.ply", {{{1, 2, 3}}, {{0, 0, 0}}, {}});
+  CHECK(is_mesh_ply(folder / "mesh.ply"));
+  CHECK(is_mesh_ply(folder / "no_faces.ply"));
+  CHECK_FALSE(is_mesh_ply(folder / "points.ply"));
+  write_file(folder / "x.ply", "ply\n");
+  CHECK_THAT(bad_reference([&] { is_mesh_ply(folder / "x.ply"); }), Contains("no end_header"));
+}
+
 TEST_CASE("polygons become fans, and faces to vertices that are not there are errors") {
   const TempFolder folder;
   const std::string header =

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+// glint-mesh, called as main() calls it.
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "glint/core/config.h"
+#include "glint/core/parallel.h"
+#include "glint/scene/image_files.h"
+#include "glint/scene/ply.h"
+#include "metrics/mesh/mesh_scores.h"
+#include "metrics/tools/mesh.h"
+#include "tests/metrics/mesh/shapes.h"
+#include "tests/support/box_room.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+using namespace glint::test;
+using Catch::Contains;
+
+namespace {
+
+struct Result {
+  int code = 0;
+  std::string out, err;
+  Json json() const { return Json::parse(out); }
+};
+
+Result mesh_tool(std::vector<std::string> args) {
+  if (!args.empty()) args.insert(args.end(), {"--quiet", "--samples", "5000"});
+  std::ostringstream out, err;
+  const int code = run_mesh_tool(args, out, err);
+  return {code, out.str(), err.str()};
+}
+
+// pred.ply and ref.ply: squares 3 cm apart.
+struct Pair : TempFolder {
+  std::string pred = *this / "pred.ply", ref = *this / "ref.ply";
+  Pair() {
+    write_mesh_ply(pred, unit_square(0.03f));
+    write_mesh_ply(ref, unit_square(0));
+  }
+  Result run(std::vector<std::string> options = {}) const {
+    options.insert(options.begin(), {pred, ref});
+    return mesh_tool(options);
+  }
+  // With another prediction.
+  Result run_file(const std::string& name, const std::string& content) const {
+    write_file(*this / name, content);
+    return mesh_tool({*this / name, ref});
+  }
+};
+
+std::string ascii_mesh(int faces, const std::string& rows) {
+  return fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n{}",
+      faces,
+      rows
+  );
+}
+
+// The box room of the nerfstudio folder, with a cupboard's inside that nobody sees.
+TriangleMesh room_mesh() {
+  TriangleMesh mesh = parallelogram({0, 0, 0}, {4, 0, 0}, {0, 3, 0}, 20, 20);
+  append(mesh, parallelogram({0, 0, -0.5f}, {4, 0, 0}, {0, 3, 0}, 20, 20));
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("glint-mesh prints what the functions give, with protocol and unrounded numbers") {
+  const Pair pair;
+  const Result result = pair.run({"--json"});
+  REQUIRE(result.code == 0);
+  const Json json = result.json();
+  MeshProtocol protocol;
+  protocol.num_samples = 5000;
+  protocol.cull = MeshCulling::kNone;
+  const auto values =
+      mesh_values(mesh_scores(unit_square(0.03f), unit_square(0), protocol), protocol);
+  REQUIRE(json["metrics"].size() == values.size());
+  for (const auto& [id, value] : values) CHECK(json["metrics"][id] == value);
+  CHECK(json["protocol"] == config_to_json(protocol));
+  CHECK(json["metrics"]["mesh-f1@5cm"] == 1.0);
+  CHECK(json["metrics"]["mesh-f1@2cm"] == 0.0);
+  CHECK(json["curve"].size() == 100);
+  CHECK(json["surfaces"]["prediction"]["cleaning"]["faces_after"] == 2);
+}
+
+TEST_CASE("glint-mesh prints a line per value, or one CSV row") {
+  const Pair pair;
+  const Result text = pair.run();
+  CHECK(text.code == 0);
+  CHECK_THAT(text.out, Contains("mesh-cd 0.030000 m\n") && Contains("mesh-f1@5cm 1.00000\n"));
+  CHECK_THAT(text.out, Contains("protocol {\"num_samples\":5000"));
+  const Result csv = pair.run({"--csv", "--thresholds", "0.04", "--distance", "point-to-point"});
+  CHECK_THAT(csv.out, Catch::StartsWith("name,mesh-cd-p2p,mesh-accuracy-p2p"));
+  CHECK_THAT(csv.out, Contains("mesh-f1@4cm-p2p") && Contains(pair.pred));
+  CHECK(std::count(csv.out.begin(), csv.out.end(), '\n') == 2);
+}
+
+TEST_CASE("glint-mesh takes a run folder's and a dataset folder's meshes and culls by its cameras"
+) {
+  const TempFolder folder;
+  write_nerfstudio(folder / "data", box_room_views(10, {32, 24}));
+  TriangleMesh floor = room_mesh();
+  write_mesh_ply(folder / "data/gt/mesh.ply", floor);
+  for (Vec3f& v : floor.vertices) v.z += 0.02f;
+  write_mesh_ply(folder / "run/mesh.ply", floor);
+  const Result result = mesh_tool({folder / "run", folder / "data", "--json"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const Json json = result.json();
+  CHECK(json["prediction"] == (folder / "run/mesh.ply").string());
+  CHECK(json["protocol"]["cull"] == "cameras");
+  const Json& recipe = json["surfaces"]["reference"]["culling"];
+  CHECK(recipe["num_cameras"] == 8);
+  CHECK(recipe["faces_before"] == 1600);
+  CHECK(recipe["area_after_m2"].get<double>() > 1);
+  CHECK(recipe["area_after_m2"].get<double>() < 12.001);  // the upper floor at most
+  CHECK(json["metrics"]["mesh-accuracy"].get<double>() < 0.05);
+  const Result plain = mesh_tool({folder / "run", folder / "data", "--cull", "none", "--json"});
+  CHECK_FALSE(plain.json()["surfaces"]["reference"].contains("culling"));
+  CHECK(plain.json()["protocol"]["cull"] == "none");
+  const Result by_option = mesh_tool(
+      {folder / "run/mesh.ply", folder / "data/gt/mesh.ply", "--dataset", folder / "data", "--json"}
+  );
+  CHECK(by_option.json()["metrics"] == json["metrics"]);
+}
+
+TEST_CASE("glint-mesh writes coloured surfaces and the curve") {
+  const Pair pair;
+  const Result result = pair.run(
+      {"--colored",
+       pair / "c.ply",
+       "--colored-reference",
+       pair / "r.ply",
+       "--curve",
+       pair / "curve.png"}
+  );
+  REQUIRE(result.code == 0);
+  CHECK_THAT(result.out, Contains("colours: 0 m yellow to 0.1 m violet"));
+  const TriangleMesh colored = read_mesh_ply(pair / "c.ply");
+  REQUIRE(colored.colors.size() == 4);
+  CHECK(length(colored.colors[0] - colored.colors[3]) == 0);  // all 3 cm away
+  CHECK(read_mesh_ply(pair / "r.ply").colors.size() == 4);
+  const Image curve = read_image(pair / "curve.png", 3);
+  CHECK(curve.size() == ImageSize{720, 480});
+  CHECK(curve.at(0, 0, 0) == 1);
+}
+
+TEST_CASE("glint-mesh measures point clouds, and does not cull them") {
+  const Pair pair;
+  write_point_ply(
+      pair / "points.ply",
+      {{{0.5f, 0.5f, 0.1f}, {0.25f, 0.5f, 0.1f}}, {{0, 0, 0}, {0, 0, 0}}, {{0, 0, 2}, {0, 0, 2}}}
+  );
+  const Result result =
+      mesh_tool({pair / "points.ply", pair.ref, "--json", "--colored", pair / "c.ply"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  CHECK(result.json()["metrics"]["mesh-accuracy"].get<double>() == Approx(0.1));
+  CHECK(result.json()["metrics"]["mesh-normal"].get<double>() == Approx(1));
+  CHECK(result.json()["surfaces"]["prediction"]["kind"] == "points");
+  CHECK(read_point_ply(pair / "c.ply").positions.size() == 2);
+  write_nerfstudio(pair / "data", box_room_views(10, {32, 24}));
+  write_mesh_ply(pair / "data/gt/mesh.ply", room_mesh());
+  const Result culled = mesh_tool({pair / "points.ply", pair / "data"});
+  CHECK(culled.code == 2);
+  CHECK_THAT(culled.err, Contains("cannot be culled") && Contains("--cull none"));
+}
+
+TEST_CASE("glint-mesh gives the same bytes with one and two threads") {
+  const Pair pair;
+  write_mesh_ply(pair.pred, sphere(0.7, 30));
+  const std::string one = pair.run({"--json", "--threads", "1"}).out;
+  const std::string two = pair.run({"--json", "--threads", "2"}).out;
+  set_num_threads(0);
+  CHECK(one == two);
+}
+
+TEST_CASE("a mesh without faces is an error that says what to do") {
+  const Pair pair;
+  const Result result = pair.run_file("x.ply", ascii_mesh(0, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"));
+  CHECK(result.code == 2);
+  CHECK_THAT(result.err, Contains("x.ply") && Contains("4 vertices without faces"));
+}
+
+TEST_CASE("vertices that are not finite cost their faces and are reported") {
+  const Pair pair;
+  const Result result =
+      pair.run_file("x.ply", ascii_mesh(2, "0 0 0\n1 0 0\n1 1 0\nnan 1 0\n3 0 1 2\n3 0 2 3\n"));
+  CHECK(result.code == 0);
+  CHECK_THAT(result.out, Contains("prediction: of 2 faces dropped 1 not finite"));
+  const Result none =
+      pair.run_file("x.ply", ascii_mesh(1, "0 0 0\n1 0 0\n1 1 0\nnan 1 0\n3 0 2 3\n"));
+  CHECK(none.code == 2);
+  CHECK_THAT(none.err, Contains("none of 1 faces can be used: 1 are not finite"));
+}
+
+TEST_CASE("repeated faces and non-manifold edges are reported") {
+  const Pair pair;
+  const Result result = pair.run_file(
+      "x.ply", ascii_mesh(4, "0 0 0\n1 0 0\n1 1 0\n0 0 1\n3 0 1 2\n3 2 1 0\n3 0 1 3\n3 1 0 2\n")
+  );
+  CHECK(result.code == 0);
+  CHECK_THAT(result.out, Contains("2 repeated"));
+  const Result fins = pair.run_file(
+      "x.ply", ascii_mesh(3, "0 0 0\n1 0 0\n1 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n")
+  );
+  CHECK(fins.code == 0);
+  CHECK_THAT(fins.out, !Contains("non-manifold"));
+}
+
+TEST_CASE("an empty file is an error with the side's exit code") {
+  const Pair pair;
+  const Result prediction = pair.run_file("x.ply", "");
+  CHECK(prediction.code == 2);
+  CHECK_THAT(prediction.err, Contains("x.ply: not a PLY file"));
+  CHECK(mesh_tool({pair.pred, pair / "x.ply"}).code == 3);
+}
+
+TEST_CASE("another format is an error that names the one that is read") {
+  const Pair pair;
+  const Result result = pair.run_file("x.obj", "v 0 0 0\n");
+  CHECK(result.code == 2);
+  CHECK_THAT(
+      result.err, Contains("x.obj: '.obj' files are not read; expected") && Contains(".ply")
+  );
+}
+
+TEST_CASE("missing files, and folders without a mesh, are errors with the side's exit code") {
+  const Pair pair;
+  CHECK(mesh_tool({pair / "none.ply", pair.ref}).code == 2);
+  CHECK(mesh_tool({pair.pred, pair / "none.ply"}).code == 3);
+  fs::create_directories(pair / "run");
+  const Result result = mesh_tool({pair / "run", pair.ref});
+  CHECK(result.code == 2);
+  CHECK_THAT(result.err, Contains("run/mesh.ply: no such file"));
+}
+
+TEST_CASE("a mesh that no camera sees is an error that asks for the frame") {
+  const TempFolder folder;
+  write_nerfstudio(folder / "data", box_room_views(10, {32, 24}));
+  write_mesh_ply(folder / "data/gt/mesh.ply", room_mesh());
+  write_mesh_ply(folder / "away.ply", parallelogram({0, 0, 90}, {1, 0, 0}, {0, 1, 0}));
+  const Result result = mesh_tool({folder / "away.ply", folder / "data"});
+  CHECK(result.code == 2);
+  CHECK_THAT(result.err, Contains("none of 2 faces is seen by any of 8 cameras"));
+}
+
+TEST_CASE("impossible options are usage errors, and help has an example") {
+  const Pair pair;
+  CHECK(mesh_tool({}).code == 1);
+  CHECK(pair.run({"--thresholds", "-0.01"}).code == 1);
+  CHECK(pair.run({"--distance", "nearest"}).code == 1);
+  CHECK(pair.run({"--colored", "out.obj"}).code == 1);
+  CHECK(pair.run({"--json", "--csv"}).code == 1);
+  const Result cull = pair.run({"--cull", "cameras"});
+  CHECK(cull.code == 1);
+  CHECK_THAT(cull.err, Contains("--dataset"));
+  std::ostringstream out, err;
+  CHECK(run_mesh_tool({pair.pred, pair.ref, "--samples", "0"}, out, err) == 1);
+  const Result help = mesh_tool({"--help"});
+  CHECK(help.code == 0);
+  CHECK_THAT(help.out, Contains("glint-mesh out/ci/runs/room_1/2dgs/0 data/room_1"));
+}
