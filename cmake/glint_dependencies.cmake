@@ -64,6 +64,10 @@ glint_find_library(minizip minizip/unzip.h minizip)
 glint_find_library(onednn oneapi/dnnl/dnnl.hpp dnnl)
 set(GLINT_NETWORKS onednn $<LINK_ONLY:OpenMP::OpenMP_CXX> minizip)
 
+# Meshes; its config forgets to look for Eigen where another package has.
+find_package(Eigen3 3.4 QUIET CONFIG)
+find_package(Open3D QUIET CONFIG)
+
 set(GLINT_FMT fmt::fmt)
 set(GLINT_IMAGE_CODECS opencv::core opencv::imgproc opencv::imgcodecs)
 set(GLINT_RAY_TRACER embree)

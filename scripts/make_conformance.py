@@ -153,7 +153,8 @@ def image_vectors():
         "psnr-8bit", grey, tight, SKIMAGE, "16-bit integers are divided by 65535")
     wang, _ = goldens.wang_map(p, r)
     padded = goldens.zero_padded_map(p, r)
-    add("ssim/wang", run("glint-ssim", "prediction.png"), "ssim-wang", wang, tight, SKIMAGE,
+    add("ssim/wang", run("glint-ssim", "prediction.png", "--variant", "wang"),
+        "ssim-wang", wang, tight, SKIMAGE,
         "Gaussian window 11, sigma 1.5, population covariance, valid region, mean over channels")
     add("ssim/3dgs", run("glint-ssim", "prediction.png"), "ssim-3dgs", padded.mean(), tight, SCIPY,
         "the same window, zeros outside the picture, every pixel")
@@ -254,8 +255,8 @@ def mesh_vectors():
     write_ply("mesh/sphere_095.ply", *sphere(0.95, 3))
     write_ply("mesh/tilted.ply", square @ np.array([[1, 0, 0.1], [0, 1, 0], [0, 0, 1]]), two)
 
-    def run(a, b, *more):
-        return ["glint-mesh", f"mesh/{a}", f"mesh/{b}", "--cull", "none", "--samples", "50000",
+    def run(a, b, *more, samples=50000):
+        return ["glint-mesh", f"mesh/{a}", f"mesh/{b}", "--cull", "none", "--samples", str(samples),
                 *more]
 
     above = run("square.ply", "square_above.ply")
@@ -274,7 +275,7 @@ def mesh_vectors():
     # Accuracy: from z = 0.1 x to the plane: 0.1 x, mean 0.05. Completeness: along the tilted
     # plane's normal, 0.1 x / sqrt(1.01), for all places whose foot lies on the tilted square
     # (x <= 1: the foot of x is x / 1.01).
-    tilted = run("tilted.ply", "square.ply", "--samples", "400000")
+    tilted = run("tilted.ply", "square.ply", samples=400000)
     add("mesh/tilted-accuracy", tilted, "mesh-accuracy", 0.05, 2e-4, CLOSED,
         "a square that rises 0.1 over its length, to the flat one")
     add("mesh/tilted-completeness", tilted, "mesh-completeness", 0.05 / 1.01 ** 0.5, 2e-4, CLOSED,

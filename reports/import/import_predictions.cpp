@@ -44,13 +44,15 @@ RenderOutput read_view(
   for (const auto& [map, path] : files)
     if (map == "rgb") {
       output.rgb = read_for(path, 3, view);
+    } else if (map == "transmitted" || map == "reflected") {
+      output.layers[map] = read_for(path, 3, view);
     } else if (map == "normal") {
       output.normal = read_for(path, 3, view);
       to_our_normals(output.normal, view.camera, options.normals);
     } else {
       Image& image = map == "depth" ? output.depth : output.layers[map];
       image = read_for(path, 1, view);
-      if (map != "transparency") to_our_depth(image, view.camera, options.depth);
+      if (map == "depth" || map == "behind_depth") to_our_depth(image, view.camera, options.depth);
     }
   return output;
 }

@@ -173,6 +173,9 @@ const std::vector<MapPlaces>& map_places() {
         "transparency/*.exr",
         "transparency/*.npy",
         "transparency/*.png"}},
+      {"specularity", {"renders/specularity.exr"}},
+      {"transmitted", {"renders/transmitted.exr"}},
+      {"reflected", {"renders/reflected.exr"}},
       {"behind_depth", {"renders/behind_depth.exr", "behind_depth/*.exr", "behind_depth/*.npy"}}};
   return places;
 }

@@ -14,7 +14,7 @@ namespace glint {
 // means its last match in natural order, in the file any name. A file may also lie in a folder per
 // view.
 struct MapPlaces {
-  std::string map;  // "rgb", "depth", "normal", "transparency", "behind_depth"
+  std::string map;  // "rgb", "depth", ...: the names of docs/RECORDS.md
   std::vector<std::string> places;
 };
 // Own run folders, the layouts of 3DGS, 2DGS and PGSR (test/ours_*/renders), EasyVolcap, EnvGS and

@@ -13,6 +13,7 @@
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"
 #include "metrics/tools/pairing.h"
+#include "metrics/tools/tool.h"
 #include "reports/mesh/tsdf.h"
 
 namespace glint {
@@ -148,24 +149,7 @@ int run_tsdf_program(const std::vector<std::string>& args, std::ostream& out, st
   CLI::App app("A mesh from depth maps: Open3D's TSDF and marching cubes.", "glint-tsdf");
   TsdfArguments arguments;
   add_options(app, arguments);
-  try {
-    if (args.empty()) {
-      err << app.help();
-      return static_cast<int>(ExitCode::kUsage);
-    }
-    app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
-    run(arguments, out);
-  } catch (const CLI::ParseError& error) {
-    const bool success = app.exit(error, out, err) == 0;
-    return static_cast<int>(success ? ExitCode::kSuccess : ExitCode::kUsage);
-  } catch (const Error& error) {
-    err << "glint-tsdf: " << error.what() << "\n";
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    err << "glint-tsdf: " << error.what() << "\n";
-    return static_cast<int>(ExitCode::kEnvironment);
-  }
-  return static_cast<int>(ExitCode::kSuccess);
+  return run_program(app, args, out, err, [&] { run(arguments, out); });
 }
 
 }  // namespace glint
