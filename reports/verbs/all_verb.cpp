@@ -4,6 +4,7 @@
 #include "glint/core/progress.h"
 #include "reports/bench/interrupt.h"
 #include "reports/bench/runner.h"
+#include "reports/verbs/report_verb.h"
 #include "reports/verbs/result_tables.h"
 
 namespace glint {
@@ -41,17 +42,19 @@ int run_all(const CommonOptions& common, bool force) {
   const RunSummary summary = run_profile(options);
   const auto tables = result_tables(options.out);
   write_tables(options.out, tables);
+  const fs::path page = write_report(common, options.out, tables);
   if (common.json)
     print_summary_json(summary, options.out, tables);
   else
     print_tables(tables);
   log::info(fmt::format(
-      "{} run, {} reused, {} failed{}; tables in {}",
+      "{} run, {} reused, {} failed{}; tables in {}, page {}",
       summary.ran,
       summary.reused,
       summary.failed,
       summary.interrupted ? ", interrupted (the same command goes on)" : "",
-      (options.out / "tables").string()
+      (options.out / "tables").string(),
+      page.string()
   ));
   return exit_code_of(summary);
 }

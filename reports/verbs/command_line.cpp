@@ -92,6 +92,7 @@ CommandLine::CommandLine() {
         add_render_verb,
         add_eval_verb,
         add_table_verb,
+        add_report_verb,
         add_status_verb,
         add_perf_verb,
         add_doctor_verb})

@@ -60,6 +60,7 @@ void add_train_verb(CommandLine& line);
 void add_render_verb(CommandLine& line);
 void add_eval_verb(CommandLine& line);
 void add_table_verb(CommandLine& line);
+void add_report_verb(CommandLine& line);
 void add_perf_verb(CommandLine& line);
 void add_doctor_verb(CommandLine& line);
 
