@@ -261,7 +261,7 @@ Json run_commands(const PageRun& run, const PageOptions& options) {
   Json commands = Json::array();
   const auto add = [&](const char* what, const std::vector<std::string>& words) {
     std::string command = "glint-bench";
-    for (const std::string& word : words) command += " " + shell_word(word);
+    for (const std::string& word : words) command.append(" ").append(shell_word(word));
     commands.push_back({{"what", what}, {"command", command}});
   };
   const CellKey& cell = run.record->cell;

@@ -86,7 +86,7 @@ std::string shell_word(const std::string& text) {
   if (harmless) return text;
   std::string quoted = text;
   replace_all(quoted, "'", "'\\''");
-  return "'" + quoted + "'";
+  return fmt::format("'{}'", quoted);
 }
 
 }  // namespace glint
