@@ -275,6 +275,8 @@ Json run_commands(const PageRun& run, const PageOptions& options) {
       options.data,
       "--only",
       cell.text(),
+      "--seed",
+      fmt::format("{}", cell.seed),
       "--force"};
   std::vector<std::string> changes;
   if (run.spec) {

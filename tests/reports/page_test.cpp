@@ -145,8 +145,8 @@ TEST_CASE("commands of a run quote every word and name its settings") {
   const Json commands = run_commands(scenes[0].runs[0], store.options);
   CHECK(
       commands[0]["command"] ==
-      "glint-bench all --profile test --out out --data data --only room_1/fake/0 --force "
-      "--iterations 30 --set grey=0.5"
+      "glint-bench all --profile test --out out --data data --only room_1/fake/0 --seed 0 "
+      "--force --iterations 30 --set grey=0.5"
   );
   CHECK(
       commands[1]["command"].get<std::string>().find("--dataset 'data of it'\\''s own'") !=

@@ -134,6 +134,7 @@ async function testModesAndLayers(page) {
     .locator(".content")
     .evaluateAll((all) => all.map((one) => one.style.transform));
   assert.equal(new Set(transforms).size, 1, "one zoom for all");
+  assert.equal(transforms.length, 3);
   assert.match(transforms[0], /scale\(2\)/);
   await page.keyboard.press("o");
   await page.waitForSelector(".outline path");
@@ -186,7 +187,7 @@ async function testKeyboard(page) {
   await page.waitForSelector("dialog[open] kbd");
   await shot(page, "keys");
   await page.keyboard.press("Escape");
-  assert.equal(await page.locator("dialog").count(), 0);
+  await page.waitForSelector("dialog", { state: "detached" });
   await page.keyboard.press("2");
   await page.waitForSelector(".viewer");
   await page.keyboard.press("1");

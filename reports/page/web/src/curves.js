@@ -12,7 +12,7 @@ let charts = [];
 
 const cssColor = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-function axis(label) {
+function axis(label, size) {
   const grid = { stroke: cssColor("--line"), width: 1 };
   return {
     label,
@@ -21,7 +21,7 @@ function axis(label) {
     ticks: grid,
     font: "12px system-ui, sans-serif",
     labelFont: "12px system-ui, sans-serif",
-    size: 56,
+    size,
     labelSize: 22,
   };
 }
@@ -57,9 +57,12 @@ function showCurve(parent, scene, field, title) {
     {
       title,
       scales: { x: { time: false } },
-      axes: [axis(xLabel), axis(title)],
+      axes: [axis(xLabel, 34), axis(title, 56)],
       series: [{ label: xLabel }, ...runs.map(({ run, i }) => lineSeries(runTitle(scene, run), i))],
       cursor: { drag: { x: true, y: false } },
+      legend: {
+        markers: { dash: (plot, i) => (plot.series[i].dash?.length ? "dashed" : "solid") },
+      },
     },
     data,
   );
@@ -130,7 +133,7 @@ function showCost(parent, sceneIndex, scene) {
     {
       title: `${metricTitle(state.metric)} against ${metricTitle(state.cost)}`,
       scales: { x: { time: false, range: margin }, y: { range: margin } },
-      axes: [axis(metricTitle(state.cost)), axis(metricTitle(state.metric))],
+      axes: [axis(metricTitle(state.cost), 34), axis(metricTitle(state.metric), 56)],
       series: [{ label: state.cost }, ...series],
     },
     uPlot.join(points.map(({ x, y }) => [[x], [y]])),

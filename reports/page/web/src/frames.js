@@ -61,7 +61,7 @@ function frameButton(state, view, largest) {
   );
 }
 
-export function showFrames(container, state) {
+export function showFrames(container, state, sceneChoice) {
   const { scene } = state;
   const metrics = scene.metrics.map((id) => [id, metricTitle(id)]);
   const runs = scene.runs.map((run, i) => [i, runTitle(scene, run)]);
@@ -71,6 +71,7 @@ export function showFrames(container, state) {
   );
   replace(
     container,
+    sceneChoice,
     h("h2", {}, `${scene.views.length} test views`),
     metrics.length > 0 &&
       select("Sorted by", metrics, state.metric, (id) => state.set({ metric: id }), "frame-metric"),

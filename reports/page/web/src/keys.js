@@ -15,8 +15,9 @@ function isTyping(event) {
   return kTyping.includes(tagName) && type !== "checkbox" && type !== "range";
 }
 
-// Space and Enter belong to a focused button.
+// Space and Enter belong to a focused button, arrows to a focused slider.
 function belongsToControl(event) {
+  if (event.target.type === "range") return /^(Arrow|Page|Home|End)/.test(event.key);
   const onControl = event.target.closest?.("button, a, summary, input, select");
   return onControl && [" ", "Enter"].includes(event.key);
 }

@@ -44,7 +44,7 @@ async function geometryOf(data) {
 }
 
 // Fronts are lit, backs are of one colour that shows where a surface is seen from behind or cut.
-function meshOf(geometry, wire, planes) {
+function meshOf(geometry, { wire, backs }, planes) {
   const colored = geometry.hasAttribute("color");
   const common = { wireframe: wire, clippingPlanes: planes };
   const front = new MeshLambertMaterial({
@@ -56,7 +56,8 @@ function meshOf(geometry, wire, planes) {
   });
   const back = new MeshBasicMaterial({ color: kBackColor, side: BackSide, ...common });
   const group = new Group();
-  group.add(new Mesh(geometry, front), new Mesh(geometry, back));
+  group.add(new Mesh(geometry, front));
+  if (backs) group.add(new Mesh(geometry, back));
   return group;
 }
 
@@ -85,12 +86,12 @@ class MeshView {
     this.watcher.observe(stage);
   }
 
-  async add(meshes, wire) {
+  async add(meshes, options) {
     this.box = new Box3();
     this.scenes = [];
     for (const { data } of meshes) {
       const scene = new Scene();
-      const mesh = meshOf(await geometryOf(data), wire, [this.plane]);
+      const mesh = meshOf(await geometryOf(data), options, [this.plane]);
       const sun = new DirectionalLight(0xffffff, 1.6);
       sun.position.set(0.4, -0.7, 1);
       const lamp = new DirectionalLight(0xffffff, 0.8);
@@ -105,7 +106,7 @@ class MeshView {
   home() {
     const center = this.box.getCenter(new Vector3());
     const radius = this.box.getSize(new Vector3()).length() / 2 || 1;
-    const distance = radius / Math.sin((kFieldOfView * Math.PI) / 360);
+    const distance = (0.8 * radius) / Math.sin((kFieldOfView * Math.PI) / 360);
     this.camera.near = distance / 500;
     this.camera.far = distance * 10;
     this.camera.position
@@ -175,13 +176,13 @@ class MeshView {
 }
 
 window.GLINT_MESH_VIEW = {
-  // meshes: {title, data}, one or two.
-  async open(stage, meshes, { wire }) {
+  // meshes: {title, data}, one or two; options: {wire, backs}.
+  async open(stage, meshes, options) {
     const view = new MeshView(
       stage,
       meshes.map(({ title }) => title),
     );
-    await view.add(meshes, wire);
+    await view.add(meshes, options);
     return view;
   },
 };

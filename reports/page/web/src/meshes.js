@@ -3,7 +3,16 @@ import { loadPart, loadScene, loadScript, report, runTitle, sceneTitle } from ".
 import { checkbox, h, replace, segmented, select } from "./dom.js";
 import { setViewKeys } from "./keys.js";
 
-const state = { scene: 0, left: 0, right: -1, axis: "x", cut: 0, flipped: false, wire: false };
+const state = {
+  scene: 0,
+  left: 0,
+  right: -1,
+  axis: "x",
+  cut: 0,
+  flipped: false,
+  wire: false,
+  backs: false,
+};
 const kAxes = [
   ["x", "x"],
   ["y", "y"],
@@ -70,6 +79,7 @@ function controls(meshes, again) {
       segmented("Axis of the cut", kAxes, state.axis, (axis) => setCut({ axis })),
       h("label", { class: "field grow" }, h("span", {}, "Cut"), cut),
       checkbox("other side", state.flipped, (flipped) => setCut({ flipped })),
+      checkbox("backs of faces", state.backs, (backs) => setCut({ backs })),
       checkbox("wires", state.wire, (wire) => setCut({ wire })),
       h("button", { type: "button", onclick: () => view3d?.home() }, "Fit"),
     ),
@@ -97,6 +107,11 @@ function meshKeys(again) {
       help: "wires",
       run: () => (Object.assign(state, { wire: !state.wire }), again()),
     },
+    {
+      keys: ["b"],
+      help: "backs of faces",
+      run: () => (Object.assign(state, { backs: !state.backs }), again()),
+    },
     { keys: ["0"], help: "whole mesh", run: () => view3d?.home() },
     { keys: ["ArrowLeft"], help: "turn", run: () => view3d?.turn(-0.1, 0) },
     { keys: ["ArrowRight"], help: "turn", run: () => view3d?.turn(0.1, 0) },
@@ -111,7 +126,7 @@ async function show3d(stage, meshes) {
   const opened = await openMeshes(meshes);
   await loadScript("mesh3d", () => window.GLINT_MESH_VIEW !== undefined);
   try {
-    view3d = await window.GLINT_MESH_VIEW.open(stage, opened, { wire: state.wire });
+    view3d = await window.GLINT_MESH_VIEW.open(stage, opened, state);
     applyCut();
   } catch (error) {
     replace(
@@ -168,7 +183,7 @@ export async function showMeshes(container, index = state.scene) {
       h(
         "p",
         { class: "note" },
-        "Drag to turn, wheel to approach, right drag to shift. Backs of faces are orange. Large meshes are merged to 300,000 faces for this view.",
+        "Drag to turn, wheel to approach, right drag to shift. Backs of faces are left out, or orange. Large meshes are merged to 300,000 faces for this view.",
       ),
     ),
   );

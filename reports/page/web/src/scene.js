@@ -17,6 +17,12 @@ const kModes = [
 
 const step = (list, current, by) => list[(list.indexOf(current) + by + list.length) % list.length];
 
+function sceneChoice() {
+  const scenes = report.scenes.map((_, i) => [i, sceneTitle(i)]);
+  const open = (index) => (location.hash = `#scene/${index}`);
+  return select("Scene", scenes, state.index, open, "scene-choice");
+}
+
 function ownerChoices(scene) {
   return [-1, ...scene.runs.map((_, i) => i)].map((owner) => [owner, ownerTitle(scene, owner)]);
 }
@@ -124,37 +130,25 @@ class SceneView {
   }
 
   show() {
-    const scenes = report.scenes.map((_, i) => [i, sceneTitle(i)]);
+    const { note, views } = state.scene;
     const stage = h("div", { class: "stage card" }, this.viewer.element, this.legend);
+    const column = h("div", { class: "main-column" }, this.controls, stage, this.probe);
     replace(
       this.container,
-      h(
-        "div",
-        { class: "bar" },
-        select(
-          "Scene",
-          scenes,
-          state.index,
-          (index) => (location.hash = `#scene/${index}`),
-          "scene-choice",
-        ),
-      ),
-      state.scene.note && h("p", { class: "note warning" }, state.scene.note),
-      state.scene.views.length === 0
-        ? h("p", { class: "card" }, "No view of this scene was rendered: missing.")
-        : h(
-            "div",
-            { class: "scene-layout" },
-            this.frames,
-            h("div", { class: "main-column" }, this.controls, stage, this.probe),
-          ),
+      note && h("p", { class: "note warning" }, note),
+      views.length > 0
+        ? h("div", { class: "scene-layout" }, this.frames, column)
+        : [
+            h("div", { class: "bar" }, sceneChoice()),
+            h("p", { class: "card" }, "No view of this scene was rendered: missing."),
+          ],
     );
-    if (state.scene.views.length > 0) this.update();
+    if (views.length > 0) this.update();
   }
 
   update() {
     const focused = document.activeElement?.closest("[data-value], [data-view], [id]");
-    showFrames(this.frames, state);
+    showFrames(this.frames, state, sceneChoice());
     replace(this.controls, controls());
     replace(this.legend, legend(state.layer, state.scene.depth_from_truth));
     this.viewer.show();

@@ -55,10 +55,16 @@ const isMeasured = (table) =>
     }),
   );
 
+const titleOf = (table, id) => table.columns.find((column) => column.id === id)?.title ?? id;
+
 function agreementOf(table) {
   if (table.order_agreement.length === 0) return null;
   const chips = table.order_agreement.map(({ column, kendall_tau: tau, n_methods: count }) =>
-    h("span", { class: "chip", title: `${count} methods` }, `${column}  τ = ${tau.toFixed(2)}`),
+    h(
+      "span",
+      { class: "chip" },
+      `${titleOf(table, column)}: τ = ${tau.toFixed(2)} (${count} methods)`,
+    ),
   );
   const hint =
     "Kendall's τ of the method order, measured against published: 1 is the same order, −1 the reverse.";
@@ -69,6 +75,9 @@ function agreementOf(table) {
     chips,
   );
 }
+
+// Without the agreement of orders, which has chips of its own.
+const shownNotes = (table) => table.notes.filter((note) => !note.startsWith("Kendall's tau"));
 
 function tableSection(table) {
   const measured = isMeasured(table);
@@ -83,7 +92,7 @@ function tableSection(table) {
     h(
       "ul",
       { class: "notes" },
-      table.notes.map((note) => h("li", {}, note)),
+      shownNotes(table).map((note) => h("li", {}, note)),
     ),
   );
 }

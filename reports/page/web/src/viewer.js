@@ -38,6 +38,8 @@ export class Viewer {
     this.contents = [];
     const { mode } = this.state;
     this.element.dataset.mode = mode;
+    const [width, height] = this.#size();
+    this.element.style.setProperty("--aspect", String(width / height));
     if (mode === "grid") this.#showGrid();
     else if (mode === "slider") this.#showSlider();
     else this.#showFlicker();
@@ -72,9 +74,12 @@ export class Viewer {
     });
   }
 
+  // A missing picture stays as it is when the others are enlarged.
   #content(owner) {
     const { outline, values } = this.state;
-    const content = h("div", { class: "content" }, this.#picture(owner));
+    const picture = this.#picture(owner);
+    if (picture.classList.contains("missing")) return picture;
+    const content = h("div", { class: "content" }, picture);
     if (outline && this.state.outlinePath())
       content.append(outlineElement(this.state.outlinePath(), values.width, values.height));
     content.append(h("span", { class: "mark", hidden: true }));
