@@ -71,7 +71,9 @@ export function runTitle(scene, run) {
   return seeds > 1 ? `${run.method} · seed ${run.seed}` : run.method;
 }
 
-export const sceneTitle = (index) => {
+const severalDatasets = new Set(report.scenes.map(({ dataset }) => dataset)).size > 1;
+
+export function sceneTitle(index) {
   const { name, dataset } = report.scenes[index];
-  return `${dataset} / ${name}`;
-};
+  return severalDatasets ? `${dataset} / ${name}` : name;
+}

@@ -14,20 +14,27 @@ const kShown = [
   "fps",
   "train-minutes",
 ];
+const kNumbers = ["Seed", "Surfels"];
 let allMetrics = false;
 
 function fieldColumns() {
-  const columns = kFields.map((title, i) => ({ title, value: (row) => row[i] }));
+  const columns = kFields.map((title, i) => ({
+    title,
+    className: kNumbers.includes(title) ? "number" : "text",
+    value: (row) => row[i],
+  }));
   columns[4].value = (row) => (row[4] ? "ok" : "failed");
-  columns[4].cell = (row) => h("td", { class: row[4] ? "" : "failed" }, row[4] ? "ok" : "✕ failed");
+  columns[4].cell = (row) =>
+    h("td", { class: row[4] ? "text" : "text failed" }, row[4] ? "ok" : "✕ failed");
+  columns[7].cell = (row) => row[7]?.replace("T", " ").replace(/:\d+Z$/, " UTC");
   return columns;
 }
 
 function metricColumns() {
   const { metrics } = report.records;
-  return metrics
-    .map((id, i) => ({ id, at: kFields.length + i }))
-    .filter(({ id }) => allMetrics || kShown.includes(id))
+  const ids = allMetrics ? metrics : kShown.filter((id) => metrics.includes(id));
+  return ids
+    .map((id) => ({ id, at: kFields.length + metrics.indexOf(id) }))
     .map(({ id, at }) => ({
       title: metricTitle(id),
       className: "number",

@@ -35,52 +35,45 @@ function layersThere(scene) {
   return scene.layers.filter(({ id }) => there.has(id));
 }
 
-function controls() {
-  const { scene } = state;
-  const layers = layersThere(scene).map(({ id, title }) => [id, title]);
-  const toggleRun = (i) => (on) => {
+function methodChecks() {
+  const toggle = (i) => (on) => {
     if (on) state.hiddenRuns.delete(i);
     else state.hiddenRuns.add(i);
     state.set({});
   };
-  const forMode =
-    state.mode === "grid"
-      ? h(
-          "div",
-          { class: "checks", role: "group", "aria-label": "Methods" },
-          scene.runs.map((run, i) =>
-            checkbox(runTitle(scene, run), !state.hiddenRuns.has(i), toggleRun(i)),
-          ),
-        )
-      : [
-          select(
-            "Left",
-            ownerChoices(scene),
-            state.left,
-            (owner) => state.set({ left: Number(owner) }),
-            "left-owner",
-          ),
-          h(
-            "button",
-            {
-              type: "button",
-              title: "swap (x)",
-              onclick: () => state.set({ left: state.right, right: state.left }),
-            },
-            "⇄",
-          ),
-          select(
-            "Right",
-            ownerChoices(scene),
-            state.right,
-            (owner) => state.set({ right: Number(owner) }),
-            "right-owner",
-          ),
-          state.mode === "flicker" &&
-            checkbox("in turn by itself", state.flickerRuns, (on) =>
-              state.set({ flickerRuns: on }),
-            ),
-        ];
+  const checks = state.scene.runs.map((run, i) =>
+    checkbox(runTitle(state.scene, run), !state.hiddenRuns.has(i), toggle(i), `shown-${i}`),
+  );
+  return h("div", { class: "checks", role: "group", "aria-label": "Methods" }, checks);
+}
+
+const swap = () => state.set({ left: state.right, right: state.left });
+
+function sideChoices() {
+  const owners = ownerChoices(state.scene);
+  const choose = (side) => (owner) => state.set({ [side]: Number(owner) });
+  return [
+    select("Left", owners, state.left, choose("left"), "left-owner"),
+    h("button", { type: "button", title: "swap (x)", id: "swap", onclick: swap }, "⇄"),
+    select("Right", owners, state.right, choose("right"), "right-owner"),
+    state.mode === "flicker" &&
+      checkbox("by itself", state.flickerRuns, (on) => state.set({ flickerRuns: on }), "auto"),
+  ];
+}
+
+function zoomButtons() {
+  const { transform } = state;
+  const button = (title, text, onclick) => h("button", { type: "button", title, onclick }, text);
+  return [
+    button("zoom out (-)", "−", () => transform.zoom(0.5)),
+    h("output", { class: "zoom" }),
+    button("zoom in (+)", "+", () => transform.zoom(2)),
+    button("whole picture (0)", "Fit", () => transform.reset()),
+  ];
+}
+
+function controls() {
+  const layers = layersThere(state.scene).map(({ id, title }) => [id, title]);
   return h(
     "div",
     { class: "controls card" },
@@ -93,24 +86,9 @@ function controls() {
       "div",
       { class: "bar" },
       segmented("Mode", kModes, state.mode, (mode) => state.set({ mode })),
-      forMode,
+      zoomButtons(),
       checkbox("Glass outline", state.outline, (on) => state.set({ outline: on }), "outline"),
-      h(
-        "button",
-        { type: "button", title: "zoom out (-)", onclick: () => state.transform.zoom(0.5) },
-        "−",
-      ),
-      h("output", { class: "zoom" }),
-      h(
-        "button",
-        { type: "button", title: "zoom in (+)", onclick: () => state.transform.zoom(2) },
-        "+",
-      ),
-      h(
-        "button",
-        { type: "button", title: "whole picture (0)", onclick: () => state.transform.reset() },
-        "Fit",
-      ),
+      state.mode === "grid" ? methodChecks() : sideChoices(),
     ),
   );
 }
@@ -252,7 +230,7 @@ function sceneKeys() {
     {
       keys: ["x"],
       help: "swap left and right",
-      run: () => state.set({ left: state.right, right: state.left }),
+      run: swap,
     },
     { keys: ["o"], help: "outline of glass", run: () => state.set({ outline: !state.outline }) },
     { keys: ["+", "="], help: "zoom in", run: () => state.transform.zoom(2) },

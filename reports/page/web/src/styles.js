@@ -3,8 +3,9 @@
 
 const kLight = ["#0072b2", "#d55e00", "#00795b", "#b3548f", "#8a6d00", "#2b86c5", "#333333"];
 const kDark = ["#56b4e9", "#ff9e4a", "#2fc69a", "#e59cc8", "#f0e442", "#9ad0f5", "#dddddd"];
-const kDashes = [[], [8, 4], [2, 3], [10, 3, 2, 3]];
-const kMarkers = ["●", "■", "▲", "◆", "✚", "★", "▼"];
+// Five dashes and twelve markers beside seven colours: 35 methods differ in lines, 84 in points.
+const kDashes = [[], [8, 4], [2, 3], [10, 3, 2, 3], [16, 5]];
+const kMarkers = ["●", "■", "▲", "◆", "✚", "★", "▼", "○", "□", "△", "◇", "☆"];
 
 export const isDark = () => document.documentElement.dataset.theme === "dark";
 
@@ -12,7 +13,7 @@ export function methodStyle(index) {
   const colors = isDark() ? kDark : kLight;
   return {
     color: colors[index % colors.length],
-    dash: kDashes[Math.floor(index / colors.length + index) % kDashes.length],
+    dash: kDashes[index % kDashes.length],
     marker: kMarkers[index % kMarkers.length],
   };
 }

@@ -56,11 +56,19 @@ export class Viewer {
     return [width || 16, height || 9];
   }
 
+  // The layer that is shown of an owner; of the reference its image where it has no such layer.
+  #layerOf(owner) {
+    const { scene, view, layer } = this.state;
+    const entry = scene.views[view];
+    const there = owner < 0 ? entry.truth : (entry.runs?.[owner] ?? []);
+    if (there.includes(layer.id)) return layer;
+    return owner < 0 ? scene.layers.find(({ id }) => id === "render" && there.includes(id)) : null;
+  }
+
   #picture(owner) {
     const { scene, view, index, layer } = this.state;
-    const entry = scene.views[view];
-    const layers = owner < 0 ? entry.truth : (entry.runs?.[owner] ?? []);
-    if (!layers.includes(layer.id))
+    const shown = this.#layerOf(owner);
+    if (!shown)
       return h(
         "div",
         { class: "missing" },
@@ -68,8 +76,8 @@ export class Viewer {
         h("span", {}, whyMissing(scene, owner, layer)),
       );
     return h("img", {
-      src: pictureUrl(index, view, ownerKey(owner), layer.id),
-      alt: `${layer.title}, ${ownerTitle(scene, owner)}, view ${entry.name}`,
+      src: pictureUrl(index, view, ownerKey(owner), shown.id),
+      alt: `${shown.title}, ${ownerTitle(scene, owner)}, view ${scene.views[view].name}`,
       draggable: false,
     });
   }
@@ -88,12 +96,14 @@ export class Viewer {
   }
 
   #label(owner, side) {
-    const { scene, view, metric } = this.state;
+    const { scene, view, metric, layer } = this.state;
     const score = owner < 0 ? null : scoreOf(scene, owner, view, metric);
+    const shown = this.#layerOf(owner);
     return h(
       "span",
       { class: `label ${side ?? ""}` },
       ownerTitle(scene, owner),
+      shown && shown !== layer && h("span", { class: "score" }, "image"),
       score !== null && h("span", { class: "score" }, `${metric} ${metricText(metric, score)}`),
     );
   }
