@@ -168,6 +168,9 @@ async function testOthers(page) {
     whole,
     "the cut changes the picture",
   );
+  await page.getByLabel("beside").selectOption({ index: 2 });
+  await page.waitForFunction(() => document.querySelectorAll("#stage3d .label").length === 2);
+  await page.waitForTimeout(300);
   await shot(page, "meshes");
   await openView(page, "records", "#record-filter");
   await page.fill("#record-filter", "failed");

@@ -149,11 +149,16 @@ class SceneView {
 
   async loadValues() {
     const { index, view } = state;
-    const values = await ViewValues.load(index, view).catch(() => null);
-    if (state.index !== index || state.view !== view || !values) return;
-    state.values = values;
-    if (state.outline) this.viewer.show();
-    this.showPixel();
+    const here = () => state.index === index && state.view === view;
+    try {
+      const values = await ViewValues.load(index, view);
+      if (!here()) return;
+      state.values = values;
+      if (state.outline) this.viewer.show();
+      this.showPixel();
+    } catch (error) {
+      if (here()) replace(this.probe, h("p", { class: "note" }, `No values: ${error.message}`));
+    }
   }
 
   point(pixel, kind) {
