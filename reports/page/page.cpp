@@ -97,16 +97,35 @@ void remove_folder(const fs::path& folder) {
   GLINT_CHECK(!code, kEnvironment, "{}: cannot be removed ({})", folder.string(), code.message());
 }
 
+void move_folder(const fs::path& from, const fs::path& to) {
+  std::error_code code;
+  fs::rename(from, to, code);
+  GLINT_CHECK(
+      !code,
+      kEnvironment,
+      "{}: cannot be moved to {} ({})",
+      from.string(),
+      to.string(),
+      code.message()
+  );
+}
+
 }  // namespace
 
 fs::path write_page(const PageOptions& options, const std::vector<Table>& tables) {
   const fs::path report = options.folder / "report", assets = report / "assets";
+  const fs::path fresh = report / "assets.new";  // an error leaves the page before as it was
+  remove_folder(fresh);
+  write_assets(options, tables, fresh);
+  const std::string html =
+      options.single_file ? inlined_page(options, fresh) : linked_page(options);
   remove_folder(assets);
-  write_assets(options, tables, assets);
-  const fs::path index = report / "index.html";
-  write_file(index, options.single_file ? inlined_page(options, assets) : linked_page(options));
-  if (options.single_file) remove_folder(assets);
-  return index;
+  if (options.single_file)
+    remove_folder(fresh);
+  else
+    move_folder(fresh, assets);
+  write_file(report / "index.html", html);
+  return report / "index.html";
 }
 
 }  // namespace glint

@@ -262,6 +262,16 @@ TEST_CASE("a page that is written again keeps nothing of the one before") {
   CHECK(!fs::exists(store.asset("scene_7.js")));
 }
 
+TEST_CASE("records that cannot be read leave the page before as it was") {
+  const Store store;
+  store.add(record_of("room_1", "fake"));
+  store.write();
+  const std::string before = read_file(store.asset("data.js"));
+  write_file(store.options.folder / "records.jsonl", "{\"method\": 1}\n");
+  test::error_of(ExitCode::kBadPrediction, [&] { write_page(store.options, {}); });
+  CHECK(read_file(store.asset("data.js")) == before);
+}
+
 TEST_CASE("depths of all methods of a scene have one range") {
   const Store store;
   Scene scene = fake_scene("room_1");

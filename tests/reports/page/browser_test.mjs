@@ -153,25 +153,30 @@ async function testModesAndLayers(page) {
   await shot(page, "scene_slider");
 }
 
+async function testMeshes(page) {
+  const stage = page.locator("#stage3d canvas");
+  const picture = async () => {
+    await page.waitForSelector("#stage3d[data-ready] canvas");
+    await page.waitForTimeout(300);
+    return (await stage.screenshot()).toString("base64");
+  };
+  await openView(page, "meshes", "#stage3d canvas");
+  const whole = await picture();
+  await page.locator("#cut").fill("50");
+  assert.notEqual(await picture(), whole, "the cut changes the picture");
+  await page.getByLabel("beside").selectOption({ index: 2 });
+  await page.waitForFunction(() => document.querySelectorAll("#stage3d .label").length === 2);
+  const both = await picture();
+  await shot(page, "meshes");
+  await page.locator("#cut").fill("100");
+  assert.notEqual(await picture(), both, "two meshes are drawn and cut");
+}
+
 async function testOthers(page) {
   await openView(page, "curves", ".u-over");
   assert.equal(await page.locator(".uplot").count(), 3);
   await shot(page, "curves");
-  await openView(page, "meshes", "#stage3d canvas");
-  await page.waitForTimeout(300);
-  const stage = page.locator("#stage3d canvas");
-  const whole = (await stage.screenshot()).toString("base64");
-  await page.locator("#cut").fill("50");
-  await page.waitForTimeout(300);
-  assert.notEqual(
-    (await stage.screenshot()).toString("base64"),
-    whole,
-    "the cut changes the picture",
-  );
-  await page.getByLabel("beside").selectOption({ index: 2 });
-  await page.waitForFunction(() => document.querySelectorAll("#stage3d .label").length === 2);
-  await page.waitForTimeout(300);
-  await shot(page, "meshes");
+  await testMeshes(page);
   await openView(page, "records", "#record-filter");
   await page.fill("#record-filter", "failed");
   assert.equal(await page.locator("main tbody tr").count(), 1);

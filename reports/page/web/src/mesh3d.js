@@ -106,7 +106,9 @@ class MeshView {
   home() {
     const center = this.box.getCenter(new Vector3());
     const radius = this.box.getSize(new Vector3()).length() / 2 || 1;
-    const distance = (0.9 * radius) / Math.sin((kFieldOfView * Math.PI) / 360);
+    const aspect = this.stage.clientWidth / this.scenes.length / this.stage.clientHeight || 1;
+    const fitted = (0.9 * radius) / Math.sin((kFieldOfView * Math.PI) / 360);
+    const distance = fitted / Math.min(1, aspect);
     this.camera.near = distance / 500;
     this.camera.far = distance * 10;
     this.camera.position

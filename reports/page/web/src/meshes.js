@@ -128,6 +128,7 @@ async function show3d(stage, meshes) {
   try {
     view3d = await window.GLINT_MESH_VIEW.open(stage, opened, state);
     applyCut();
+    stage.dataset.ready = "true";
   } catch (error) {
     replace(
       stage,
@@ -171,7 +172,11 @@ export async function showMeshes(container, index = state.scene) {
     return stop;
   }
   setViewKeys(meshKeys(again));
-  const stage = h("div", { class: "stage3d", id: "stage3d" });
+  const stage = h(
+    "div",
+    { class: "stage3d", id: "stage3d" },
+    h("p", { class: "note" }, "Loading …"),
+  );
   replace(
     container,
     bar,
