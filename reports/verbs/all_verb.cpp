@@ -17,10 +17,14 @@ int exit_code_of(const RunSummary& summary) {
 }
 
 void print_summary_json(
-    const RunSummary& summary, const fs::path& folder, const std::vector<Table>& tables
+    const RunSummary& summary,
+    const fs::path& folder,
+    const fs::path& page,
+    const std::vector<Table>& tables
 ) {
   Json json = {
       {"folder", folder.string()},
+      {"page", page.string()},
       {"ran", summary.ran},
       {"reused", summary.reused},
       {"failed", summary.failed},
@@ -44,7 +48,7 @@ int run_all(const CommonOptions& common, bool force) {
   write_tables(options.out, tables);
   const fs::path page = write_report(common, options.out, tables);
   if (common.json)
-    print_summary_json(summary, options.out, tables);
+    print_summary_json(summary, options.out, page, tables);
   else
     print_tables(tables);
   log::info(fmt::format(
@@ -66,7 +70,7 @@ void add_all_verb(CommandLine& line) {
   CLI::App* verb = line.add_verb(
       line.app,
       "all",
-      "run every cell of a profile and print the tables",
+      "run every cell of a profile, print the tables and write the report",
       [&line, force] { return run_all(line.common, *force); }
   );
   verb->add_flag("--force", *force, "run finished cells again");

@@ -108,7 +108,7 @@ class MeshView {
     const radius = this.box.getSize(new Vector3()).length() / 2 || 1;
     const aspect = this.stage.clientWidth / this.scenes.length / this.stage.clientHeight || 1;
     const fitted = (0.9 * radius) / Math.sin((kFieldOfView * Math.PI) / 360);
-    const distance = fitted / Math.min(1, aspect);
+    const distance = fitted / Math.min(1, aspect / 1.3);
     this.camera.near = distance / 500;
     this.camera.far = distance * 10;
     this.camera.position
