@@ -52,13 +52,15 @@ const swap = () => state.set({ left: state.right, right: state.left });
 function sideChoices() {
   const owners = ownerChoices(state.scene);
   const choose = (side) => (owner) => state.set({ [side]: Number(owner) });
-  return [
+  return h(
+    "div",
+    { class: "sides" },
     select("Left", owners, state.left, choose("left"), "left-owner"),
     h("button", { type: "button", title: "swap (x)", id: "swap", onclick: swap }, "⇄"),
     select("Right", owners, state.right, choose("right"), "right-owner"),
     state.mode === "flicker" &&
       checkbox("by itself", state.flickerRuns, (on) => state.set({ flickerRuns: on }), "auto"),
-  ];
+  );
 }
 
 function zoomButtons() {
