@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files of reports/ that are compiled into the programs, by their path below reports/:
-// "paper/glint.json", "tables/table1_photometric.toml", "profiles/ci.toml".
+// "paper/glint.json", "tables/table1_photometric.toml", "profiles/ci.toml", "page/dist/report.js".
 #pragma once
 
 #include <map>

@@ -12,6 +12,9 @@ for table in table1_photometric table2_geometry table3_ablation tableB_cost regi
   done
 done
 grep -q '^2DGS\|^2dgs' "$out/tables/table1_photometric.csv" || fail "no row for 2dgs in table1_photometric.csv"
+for file in index.html assets/data.js assets/scene_0.js assets/probe_0_0.js assets/pictures/s0/v0_r0_render.png; do
+  [ -s "$out/report/$file" ] || fail "$out/report/$file is missing or empty"
+done
 # Variants (2dgs/prior) are one folder deeper than methods.
 runs=0
 while IFS= read -r config; do
@@ -25,4 +28,4 @@ done < <(find "$out/runs" -name config.json)
 [ "$runs" -eq "$(grep -o '"scene":"[^"]*","method":"[^"]*","seed":[0-9]*' "$out/records.jsonl" | sort -u | wc -l)" ] ||
   fail "$runs run folders in $out/runs, but another number of cells in $out/records.jsonl"
 [ "$runs" -gt 0 ] || fail "no run folders in $out/runs"
-echo "check_outputs: $runs runs, six tables in four formats" >&2
+echo "check_outputs: $runs runs, six tables in four formats, a page" >&2

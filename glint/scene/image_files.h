@@ -39,9 +39,12 @@ float srgb_encode(float linear);
 float srgb_decode(float encoded);
 
 // Colour maps for people: depth over [low, high], normals as n * 0.5 + 0.5 with y, z turned towards
-// the viewer (the field's habit), scalar maps in grey.
+// the viewer (the field's habit), both black where there is nothing; other maps dark (low) to light
+// (high), mid-grey where not finite. All maps are perceptual and safe for colour-blind readers.
 Image colorize_depth(ImageView depth, float low, float high);
 Image colorize_normal(ImageView normal);
+enum class ScalarColors { kViridis, kMagma };
+Image colorize_scalar(ImageView map, float low, float high, ScalarColors colors);
 
 // Black letters over the picture, ASCII, the first one's lower left corner at (left, baseline), its
 // capitals `cap_height` pixels tall. What lies outside of the picture is cut off.

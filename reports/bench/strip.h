@@ -8,20 +8,13 @@
 
 #include "glint/core/files.h"
 #include "glint/scene/scene.h"
+#include "reports/bench/depth_scale.h"
 
 namespace glint {
 
 inline constexpr std::size_t kStripViews =
     4;                                     // rows of a run's strip, evenly spread over the views
 inline constexpr float kErrorGain = 4.0f;  // |render - truth| is shown this much brighter
-
-// The limits of the depth colours in metres: the 1st and 99th percentile of the true depths of all
-// views, first surface and behind glass. Without truth, of the depths that this run rendered.
-struct DepthScale {
-  float low = 0, high = 1;
-  bool from_truth = false;
-};
-DepthScale depth_scale(const fs::path& run, const std::vector<View>& views);
 
 // The panels of a run, alike in all its strips: truth, render, error, then each map that any view
 // has under renders/, followed by its truth.

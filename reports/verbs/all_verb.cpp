@@ -4,6 +4,7 @@
 #include "glint/core/progress.h"
 #include "reports/bench/interrupt.h"
 #include "reports/bench/runner.h"
+#include "reports/verbs/report_verb.h"
 #include "reports/verbs/result_tables.h"
 
 namespace glint {
@@ -16,10 +17,14 @@ int exit_code_of(const RunSummary& summary) {
 }
 
 void print_summary_json(
-    const RunSummary& summary, const fs::path& folder, const std::vector<Table>& tables
+    const RunSummary& summary,
+    const fs::path& folder,
+    const fs::path& page,
+    const std::vector<Table>& tables
 ) {
   Json json = {
       {"folder", folder.string()},
+      {"page", page.string()},
       {"ran", summary.ran},
       {"reused", summary.reused},
       {"failed", summary.failed},
@@ -41,17 +46,19 @@ int run_all(const CommonOptions& common, bool force) {
   const RunSummary summary = run_profile(options);
   const auto tables = result_tables(options.out);
   write_tables(options.out, tables);
+  const fs::path page = write_report(common, options.out, tables);
   if (common.json)
-    print_summary_json(summary, options.out, tables);
+    print_summary_json(summary, options.out, page, tables);
   else
     print_tables(tables);
   log::info(fmt::format(
-      "{} run, {} reused, {} failed{}; tables in {}",
+      "{} run, {} reused, {} failed{}; tables in {}, page {}",
       summary.ran,
       summary.reused,
       summary.failed,
       summary.interrupted ? ", interrupted (the same command goes on)" : "",
-      (options.out / "tables").string()
+      (options.out / "tables").string(),
+      page.string()
   ));
   return exit_code_of(summary);
 }
@@ -63,7 +70,7 @@ void add_all_verb(CommandLine& line) {
   CLI::App* verb = line.add_verb(
       line.app,
       "all",
-      "run every cell of a profile and print the tables",
+      "run every cell of a profile, print the tables and write the report",
       [&line, force] { return run_all(line.common, *force); }
   );
   verb->add_flag("--force", *force, "run finished cells again");

@@ -94,6 +94,7 @@ CommandLine::CommandLine() {
         add_mesh_verb,
         add_selftest_verb,
         add_table_verb,
+        add_report_verb,
         add_status_verb,
         add_perf_verb,
         add_doctor_verb})

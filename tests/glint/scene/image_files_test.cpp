@@ -356,6 +356,22 @@ TEST_CASE("colour maps leave missing pixels black and turn normals towards the v
   CHECK(shown.at(1, 0, 0) == 0);
 }
 
+TEST_CASE("colours of scalar maps get lighter with the value, and grey where there is none") {
+  Image ramp(11, 1, 1);
+  for (int i = 0; i < 10; ++i) ramp.at(i, 0) = 2.0f + static_cast<float>(i) / 9;
+  ramp.at(10, 0) = std::numeric_limits<float>::quiet_NaN();
+  for (const ScalarColors map : {ScalarColors::kViridis, ScalarColors::kMagma}) {
+    const Image colors = colorize_scalar(ramp, 2, 3, map);
+    const auto luminance = [&](int x) {  // Rec. 709 of linear values
+      return 0.2126f * srgb_decode(colors.at(x, 0, 0)) + 0.7152f * srgb_decode(colors.at(x, 0, 1)) +
+             0.0722f * srgb_decode(colors.at(x, 0, 2));
+    };
+    for (int i = 1; i < 10; ++i) CHECK(luminance(i) > luminance(i - 1));
+    CHECK(colors.at(10, 0, 0) == 0.5f);
+    CHECK(colorize_scalar(Image(1, 1, 1, 99.0f), 2, 3, map).at(0, 0, 1) == colors.at(9, 0, 1));
+  }
+}
+
 TEST_CASE("letters are black, as tall as asked for, and end where their width says") {
   Image picture(200, 60, 3, 1.0f);
   draw_text(picture, "HI", 20, 40, 20);

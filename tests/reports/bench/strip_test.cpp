@@ -97,20 +97,20 @@ TEST_CASE("depth has the scale of the true depths, whatever a method rendered") 
   views[0].truth.depth = Image(kWidth, kHeight, 1, 1.5f);
   views[1].truth.behind_depth = Image(kWidth, kHeight, 1, 5.5f);
   views[1].truth.behind_depth.at(0, 0) = 0;  // none
-  const DepthScale scale = depth_scale(run.path(), views);
+  const DepthScale scale = depth_scale({run.path()}, views);
   CHECK(scale.from_truth);
   CHECK(scale.low == 1.5f);
   CHECK(scale.high == 5.5f);
   const test::TempFolder other;
   render_views(other.path(), all_layers());
-  CHECK(depth_scale(other.path(), views).high == scale.high);
+  CHECK(depth_scale({other.path()}, views).high == scale.high);
 }
 
 TEST_CASE("without true depths, the rendered ones give the scale") {
   const test::TempFolder run;
   auto views = render_views(run.path(), {});
   for (View& view : views) view.truth.depth = {};
-  const DepthScale scale = depth_scale(run.path(), views);
+  const DepthScale scale = depth_scale({run.path()}, views);
   CHECK_FALSE(scale.from_truth);
   CHECK(scale.low == 2.0f);
   CHECK(scale.high == 2.0f);
@@ -121,7 +121,7 @@ TEST_CASE("one stray depth in a hundred does not set the scale") {
   auto views = render_views(run.path(), {});
   views[0].truth.depth.at(3, 3) = 1000.0f;
   views[0].truth.depth.at(4, 4) = 0.01f;
-  const DepthScale scale = depth_scale(run.path(), views);
+  const DepthScale scale = depth_scale({run.path()}, views);
   CHECK(scale.low == 2.5f);
   CHECK(scale.high == 2.5f);
 }

@@ -81,6 +81,25 @@ TEST_CASE("plan, status and table work before anything was run") {
   CHECK(fs::exists(folder.path() / "smoke/tables/table1_photometric.csv"));
 }
 
+TEST_CASE("a report needs records, and nothing else") {
+  const test::TempFolder folder;
+  const char* out = folder.path().c_str();
+  CHECK(run({"report", "--profile", "smoke", "--out", out}) == 2);
+  const fs::path records = folder.path() / "smoke/records.jsonl";
+  write_file(
+      records,
+      R"({"scene": "room_1", "method": "2dgs", "dataset": "glassroom"})"
+      "\n"
+  );
+  CHECK(run({"report", "--profile", "smoke", "--out", out}) == 0);
+  CHECK(fs::exists(folder.path() / "smoke/report/index.html"));
+  CHECK(fs::exists(folder.path() / "smoke/report/assets/data.js"));
+  CHECK(run({"report", "--profile", "smoke", "--out", out, "--single-file"}) == 0);
+  CHECK(!fs::exists(folder.path() / "smoke/report/assets"));
+  write_file(records, "{\"method\": 1}\n");
+  CHECK(run({"report", "--profile", "smoke", "--out", out}) == 2);
+}
+
 TEST_CASE("an output folder that cannot be written exits with 6") {
   CHECK(run({"table", "--profile", "smoke", "--out", "/proc/nowhere"}) == 6);
 }

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "reports/page/mesh_part.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "reports/page/script_text.h"
+
+namespace glint {
+
+namespace {
+
+using Cell = std::array<std::int64_t, 3>;
+
+struct Box {
+  std::array<float, 3> low{}, high{};
+  float longest() const {
+    float side = 0;
+    for (std::size_t i = 0; i < 3; ++i) side = std::max(side, high[i] - low[i]);
+    return side;
+  }
+};
+
+std::array<float, 3> components(Vec3f v) { return {v.x, v.y, v.z}; }
+
+Box box_of(const TriangleMesh& mesh) {
+  Box box;
+  if (!mesh.vertices.empty()) box.low = box.high = components(mesh.vertices.front());
+  for (const Vec3f& vertex : mesh.vertices)
+    for (std::size_t i = 0; i < 3; ++i) {
+      box.low[i] = std::min(box.low[i], components(vertex)[i]);
+      box.high[i] = std::max(box.high[i], components(vertex)[i]);
+    }
+  return box;
+}
+
+Cell cell_of(Vec3f vertex, float cell) {
+  Cell at{};
+  for (std::size_t i = 0; i < 3; ++i)
+    at[i] = static_cast<std::int64_t>(std::floor(components(vertex)[i] / cell));
+  return at;
+}
+
+std::vector<std::uint8_t> position_codes(const TriangleMesh& mesh, const Box& box) {
+  const std::size_t count = 3 * mesh.vertices.size();
+  std::vector<std::uint8_t> codes(2 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t axis = i % 3;
+    const float side = std::max(box.high[axis] - box.low[axis], 1e-12f);
+    const float share = (components(mesh.vertices[i / 3])[axis] - box.low[axis]) / side;
+    const long code = std::lround(std::clamp(share, 0.0f, 1.0f) * 65535);
+    codes[i] = static_cast<std::uint8_t>(code & 255);
+    codes[count + i] = static_cast<std::uint8_t>(code >> 8);
+  }
+  return codes;
+}
+
+std::vector<std::uint8_t> index_bytes(const TriangleMesh& mesh) {
+  std::vector<std::uint8_t> bytes;
+  for (const auto& face : mesh.faces)
+    for (const std::int32_t index : face)
+      for (int shift = 0; shift < 32; shift += 8)
+        bytes.push_back(static_cast<std::uint8_t>(index >> shift & 255));
+  return bytes;
+}
+
+Json color_codes(const TriangleMesh& mesh) {
+  if (mesh.colors.size() != mesh.vertices.size()) return nullptr;
+  std::vector<std::uint8_t> codes;
+  for (const Vec3f& color : mesh.colors)
+    for (const float value : components(color))
+      codes.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255)));
+  return packed(codes);
+}
+
+}  // namespace
+
+TriangleMesh merge_vertices(const TriangleMesh& mesh, float cell) {
+  std::map<Cell, std::int32_t> merged_of;
+  std::vector<std::int32_t> merged(mesh.vertices.size());
+  std::vector<float> counts;
+  TriangleMesh coarse;
+  const bool colored = mesh.colors.size() == mesh.vertices.size();
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const auto next = static_cast<std::int32_t>(merged_of.size());
+    const auto [it, added] = merged_of.emplace(cell_of(mesh.vertices[i], cell), next);
+    const auto at = static_cast<std::size_t>(merged[i] = it->second);
+    if (added) {
+      coarse.vertices.emplace_back();
+      if (colored) coarse.colors.emplace_back();
+      counts.push_back(0);
+    }
+    coarse.vertices[at] = coarse.vertices[at] + mesh.vertices[i];
+    if (colored) coarse.colors[at] = coarse.colors[at] + mesh.colors[i];
+    ++counts[at];
+  }
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    coarse.vertices[i] = (1 / counts[i]) * coarse.vertices[i];
+    if (colored) coarse.colors[i] = (1 / counts[i]) * coarse.colors[i];
+  }
+  for (const auto& face : mesh.faces) {
+    std::array<std::int32_t, 3> corners{};
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = merged[static_cast<std::size_t>(face[i])];
+    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+      coarse.faces.push_back(corners);
+  }
+  return coarse;
+}
+
+TriangleMesh with_few_faces(const TriangleMesh& mesh, std::size_t max_faces) {
+  TriangleMesh coarse = mesh;
+  float cell = box_of(mesh).longest() / 1024;
+  while (coarse.faces.size() > max_faces && cell > 0) {
+    coarse = merge_vertices(mesh, cell);
+    cell *= 1.25f;
+  }
+  return coarse;
+}
+
+Json mesh_json(const TriangleMesh& mesh) {
+  const Box box = box_of(mesh);
+  return {
+      {"vertices", mesh.vertices.size()},
+      {"faces", mesh.faces.size()},
+      {"low", box.low},
+      {"high", box.high},
+      {"position", packed(position_codes(mesh, box))},
+      {"index", packed(index_bytes(mesh))},
+      {"color", color_codes(mesh)}};
+}
+
+}  // namespace glint

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "reports/page/page.h"
+
+#include "glint/core/progress.h"
+#include "reports/embedded.h"
+#include "reports/page/page_scenes.h"
+#include "reports/page/page_summary.h"
+#include "reports/page/script_text.h"
+
+namespace glint {
+
+namespace {
+
+// Scripts that the page loads at once, in this order; every other one comes when it is needed.
+constexpr const char* kFirstScripts[] = {"data.js", "report.js"};
+
+std::string_view page_file(const std::string& name) {
+  return embedded_files().at("page/dist/" + name);
+}
+
+void replace_mark(std::string& text, std::string_view mark, const std::string& by) {
+  const std::size_t at = text.find(mark);
+  GLINT_CHECK(at != std::string::npos, kEnvironment, "page/dist/index.html has no {}", mark);
+  text.replace(at, mark.size(), by);
+}
+
+std::string html_text(const std::string& text) {
+  std::string safe;
+  for (const char c : text)
+    safe += c == '<' ? "&lt;" : (c == '&' ? "&amp;" : (c == '"' ? "&quot;" : std::string(1, c)));
+  return safe;
+}
+
+std::string index_html(
+    const PageOptions& options, const std::string& styles, const std::string& scripts
+) {
+  std::string html(page_file("index.html"));
+  const std::string profile = fs::path(options.profile).stem().string();
+  replace_mark(html, "<!--TITLE-->", html_text("GLINT Bench: " + profile));
+  replace_mark(html, "<!--STYLES-->", styles);
+  replace_mark(html, "<!--SCRIPTS-->", scripts);
+  return html;
+}
+
+std::string linked_page(const PageOptions& options) {
+  std::string scripts;
+  for (const char* name : kFirstScripts)
+    scripts += fmt::format("<script defer src=\"assets/{}\"></script>\n", name);
+  return index_html(options, "<link rel=\"stylesheet\" href=\"assets/report.css\">", scripts);
+}
+
+// Pictures become data URIs in window.GLINT_ASSETS; scripts keep their order, report.js is last.
+std::string inlined_page(const PageOptions& options, const fs::path& assets) {
+  std::string scripts, pictures = "window.GLINT_ASSETS={";
+  const auto add = [&](const fs::path& file) {
+    scripts += fmt::format("<script>{}</script>\n", inline_text(read_file(file)));
+  };
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(assets))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    const std::string name = file.lexically_relative(assets).generic_string();
+    if (file.extension() == ".png")
+      pictures +=
+          fmt::format("\"{}\":\"data:image/png;base64,{}\",\n", name, base64(read_file(file)));
+    else if (file.extension() == ".js" && name != "report.js")
+      add(file);
+  }
+  scripts += fmt::format("<script>{}}};</script>\n", pictures);
+  add(assets / "report.js");
+  const std::string styles = fmt::format("<style>{}</style>", inline_text(page_file("report.css")));
+  const std::string html = index_html(options, styles, scripts);
+  if (html.size() > kLargePageBytes)
+    log::warn(fmt::format(
+        "report: the single file has {} MB and will open slowly; leave out --single-file",
+        html.size() / 1'000'000
+    ));
+  return html;
+}
+
+void write_assets(
+    const PageOptions& options, const std::vector<Table>& tables, const fs::path& assets
+) {
+  for (const char* name : {"report.js", "mesh3d.js", "report.css", "LICENSES.txt"})
+    write_file(assets / name, page_file(name));
+  const auto records = read_records(options.folder / "records.jsonl");
+  const auto scenes = page_scenes(records, options.folder);
+  for (std::size_t i = 0; i < scenes.size(); ++i) write_scene(scenes[i], i, options, assets);
+  const Json summary = page_summary(options, tables, records, scenes);
+  write_file(assets / "data.js", fmt::format("window.GLINT_REPORT={};\n", script_json(summary)));
+}
+
+void remove_folder(const fs::path& folder) {
+  std::error_code code;
+  fs::remove_all(folder, code);
+  GLINT_CHECK(!code, kEnvironment, "{}: cannot be removed ({})", folder.string(), code.message());
+}
+
+void move_folder(const fs::path& from, const fs::path& to) {
+  std::error_code code;
+  fs::rename(from, to, code);
+  GLINT_CHECK(
+      !code,
+      kEnvironment,
+      "{}: cannot be moved to {} ({})",
+      from.string(),
+      to.string(),
+      code.message()
+  );
+}
+
+}  // namespace
+
+fs::path write_page(const PageOptions& options, const std::vector<Table>& tables) {
+  const fs::path report = options.folder / "report", assets = report / "assets";
+  const fs::path fresh = report / "assets.new";  // an error leaves the page before as it was
+  remove_folder(fresh);
+  write_assets(options, tables, fresh);
+  const std::string html =
+      options.single_file ? inlined_page(options, fresh) : linked_page(options);
+  remove_folder(assets);
+  if (options.single_file)
+    remove_folder(fresh);
+  else
+    move_folder(fresh, assets);
+  write_file(report / "index.html", html);
+  return report / "index.html";
+}
+
+}  // namespace glint

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// The scenes of a store as the page shows them, one at a time: pictures, probe values, scores of
+// each view, curves, meshes and commands of every run.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/page/page.h"
+
+namespace glint {
+
+struct PageRun {
+  const Record* record = nullptr;
+  fs::path folder;
+  std::optional<RunSpec> spec;  // nothing: no run folder, or a damaged one
+};
+
+struct PageScene {
+  std::string dataset, name;
+  std::vector<PageRun> runs;  // finished and failed, in the order of the records
+};
+
+// In the order of the records, which must outlive the result.
+std::vector<PageScene> page_scenes(const std::vector<Record>& records, const fs::path& folder);
+
+// Commands that repeat a run: {"what", "command"}; without a spec only the one for the cell.
+Json run_commands(const PageRun& run, const PageOptions& options);
+
+// Writes pictures/s<index>/, scene_<index>.js, probe_<index>_<view>.js and mesh_<index>_*.js into
+// `assets`.
+void write_scene(
+    const PageScene& scene, std::size_t index, const PageOptions& options, const fs::path& assets
+);
+
+}  // namespace glint

@@ -1,0 +1,121 @@
+// Tables whose columns sort, rendered a stretch at a time so that 10,000 rows open at once.
+import { h, replace } from "./dom.js";
+
+const kChunk = 100; // rows added whenever the end comes near
+
+function comparator(value, sign) {
+  return (a, b) => {
+    const x = value(a);
+    const y = value(b);
+    if (x === null || x === undefined) return y === null || y === undefined ? 0 : 1;
+    if (y === null || y === undefined) return -1;
+    const order =
+      typeof x === "number" && typeof y === "number"
+        ? x - y
+        : `${x}`.localeCompare(`${y}`, "en", { numeric: true });
+    return sign * order;
+  };
+}
+
+function groupRow(columns) {
+  if (!columns.some(({ group }) => group)) return null;
+  const cells = [];
+  for (const { group, className } of columns) {
+    const last = cells.at(-1);
+    if (last && last.group === group) ++last.span;
+    else cells.push({ group, className, span: 1 });
+  }
+  return h(
+    "tr",
+    { class: "groups" },
+    cells.map(({ group, className, span }) =>
+      h("th", { colSpan: span, scope: "colgroup", class: className }, group ?? ""),
+    ),
+  );
+}
+
+// columns: {title, group, value(row), cell(row) -> node or text, className, firstSign}. Missing values sort last
+// in either direction. `firstSign`: -1 sorts descending at the first click.
+export class DataTable {
+  constructor({ columns, rows, label, emptyText = "Nothing here." }) {
+    this.columns = columns;
+    this.rows = rows;
+    this.emptyText = emptyText;
+    this.sorted = { column: -1, sign: 1 };
+    this.heads = columns.map((column, index) => this.#head(column, index));
+    this.body = h("tbody");
+    this.end = h("div", { class: "table-end", "aria-hidden": "true" });
+    this.element = h(
+      "div",
+      { class: "table-scroll", tabindex: "0", role: "region", "aria-label": label },
+      h(
+        "table",
+        { "aria-label": label, "aria-rowcount": String(rows.length) },
+        h("thead", {}, groupRow(columns), h("tr", {}, this.heads)),
+        this.body,
+      ),
+      this.end,
+    );
+    this.watcher = new IntersectionObserver((entries) => {
+      if (entries.some((entry) => entry.isIntersecting)) this.#grow();
+    });
+    this.watcher.observe(this.end);
+    this.show(rows);
+  }
+
+  #head(column, index) {
+    const button = h("button", { type: "button", onclick: () => this.sort(index) }, column.title);
+    return h("th", { scope: "col", class: column.className, title: column.hint }, button);
+  }
+
+  // The first click on a column sorts best first.
+  sort(index) {
+    const again = this.sorted.column === index;
+    const first = this.columns[index].firstSign ?? 1;
+    this.sorted = { column: index, sign: again ? -this.sorted.sign : first };
+    this.heads.forEach((head, i) => {
+      head.removeAttribute("aria-sort");
+      if (i === index)
+        head.setAttribute("aria-sort", this.sorted.sign > 0 ? "ascending" : "descending");
+    });
+    this.show(this.rows);
+  }
+
+  show(rows) {
+    this.rows = rows;
+    const { column, sign } = this.sorted;
+    this.order = column < 0 ? rows : [...rows].sort(comparator(this.columns[column].value, sign));
+    this.shown = 0;
+    replace(this.body);
+    if (rows.length === 0)
+      this.body.append(h("tr", {}, h("td", { colSpan: this.columns.length }, this.emptyText)));
+    this.#grow();
+  }
+
+  #grow() {
+    const next = this.order.slice(this.shown, this.shown + kChunk);
+    this.shown += next.length;
+    this.body.append(...next.map((row) => this.#row(row)));
+    if (next.length > 0 && this.shown < this.order.length) {
+      // Observed anew: an element that stays visible is reported once only.
+      this.watcher.unobserve(this.end);
+      this.watcher.observe(this.end);
+    }
+  }
+
+  #row(row) {
+    return h(
+      "tr",
+      {},
+      this.columns.map((column, index) => {
+        const cell = column.cell ? column.cell(row) : column.value(row);
+        if (cell instanceof HTMLTableCellElement) return cell;
+        return h(
+          index === 0 ? "th" : "td",
+          { class: column.className, scope: index === 0 ? "row" : null },
+          cell ?? "–",
+        );
+      }),
+    );
+  }
+}

@@ -1,0 +1,213 @@
+// Pictures of one view side by side, one over the other, or in turn, with one zoom for all.
+import { metricText, pictureUrl, runTitle } from "./data.js";
+import { h, replace } from "./dom.js";
+import { scoreOf } from "./frames.js";
+import { outlineElement } from "./outline.js";
+import { watchPointer } from "./transform.js";
+
+const kFlickerMs = 800;
+
+// Owner -1 is the reference, others are indices of runs.
+export const ownerKey = (owner) => (owner < 0 ? "t" : `r${owner}`);
+export const ownerTitle = (scene, owner) =>
+  owner < 0 ? "Reference" : runTitle(scene, scene.runs[owner]);
+
+function whyMissing(scene, owner, layer) {
+  if (owner < 0) return scene.note || "no reference for this layer";
+  const run = scene.runs[owner];
+  if (!run.ok) return `run failed: ${run.failure}`;
+  return layer.id === "error" || layer.id === "angle" ? "cannot be compared" : "not rendered";
+}
+
+export class Viewer {
+  constructor(state, onPixel) {
+    this.state = state;
+    this.onPixel = onPixel;
+    this.element = h("div", { class: "viewer" });
+    this.contents = [];
+    state.transform.listeners.clear();
+    state.transform.listeners.add(() => this.place());
+  }
+
+  stop() {
+    clearInterval(this.timer);
+  }
+
+  show() {
+    this.stop();
+    this.contents = [];
+    const { mode } = this.state;
+    this.element.dataset.mode = mode;
+    const [width, height] = this.#size();
+    this.element.style.setProperty("--aspect", String(width / height));
+    if (mode === "grid") this.#showGrid();
+    else if (mode === "slider") this.#showSlider();
+    else this.#showFlicker();
+    this.place();
+  }
+
+  place() {
+    for (const content of this.contents) content.style.transform = this.state.transform.css();
+    this.#placeMark();
+  }
+
+  #size() {
+    const [width, height] = this.state.scene.views[this.state.view].size;
+    return [width || 16, height || 9];
+  }
+
+  // The layer that is shown of an owner; of the reference its image where it has no such layer.
+  #layerOf(owner) {
+    const { scene, view, layer } = this.state;
+    const entry = scene.views[view];
+    const there = owner < 0 ? entry.truth : (entry.runs?.[owner] ?? []);
+    if (there.includes(layer.id)) return layer;
+    return owner < 0 ? scene.layers.find(({ id }) => id === "render" && there.includes(id)) : null;
+  }
+
+  #picture(owner) {
+    const { scene, view, index, layer } = this.state;
+    const shown = this.#layerOf(owner);
+    if (!shown)
+      return h(
+        "div",
+        { class: "missing" },
+        h("strong", {}, "missing"),
+        h("span", {}, whyMissing(scene, owner, layer)),
+      );
+    return h("img", {
+      src: pictureUrl(index, view, ownerKey(owner), shown.id),
+      alt: `${shown.title}, ${ownerTitle(scene, owner)}, view ${scene.views[view].name}`,
+      draggable: false,
+    });
+  }
+
+  // A missing picture stays as it is when the others are enlarged.
+  #content(owner) {
+    const { outline, values } = this.state;
+    const picture = this.#picture(owner);
+    if (picture.classList.contains("missing")) return picture;
+    const content = h("div", { class: "content" }, picture);
+    if (outline && this.state.outlinePath())
+      content.append(outlineElement(this.state.outlinePath(), values.width, values.height));
+    content.append(h("span", { class: "mark", hidden: true }));
+    this.contents.push(content);
+    return content;
+  }
+
+  #label(owner, side) {
+    const { scene, view, metric, layer } = this.state;
+    const score = owner < 0 ? null : scoreOf(scene, owner, view, metric);
+    const shown = this.#layerOf(owner);
+    return h(
+      "span",
+      { class: `label ${side ?? ""}` },
+      ownerTitle(scene, owner),
+      shown && shown !== layer && h("span", { class: "score" }, "image"),
+      score !== null && h("span", { class: "score" }, `${metric} ${metricText(metric, score)}`),
+    );
+  }
+
+  #pane(children, onDrag) {
+    const [width, height] = this.#size();
+    const pane = h(
+      "div",
+      { class: "pane", style: { aspectRatio: `${width} / ${height}` } },
+      children,
+    );
+    const pixel = (u, v) => [
+      Math.min(width - 1, Math.max(0, Math.floor(u * width))),
+      Math.min(height - 1, Math.max(0, Math.floor(v * height))),
+    ];
+    watchPointer(pane, this.state.transform, {
+      onHover: (u, v) => this.onPixel(pixel(u, v), "hover"),
+      onClick: (u, v) => this.onPixel(pixel(u, v), "click"),
+      onLeave: () => this.onPixel(null, "leave"),
+      onDrag,
+    });
+    return pane;
+  }
+
+  #showGrid() {
+    const owners = [-1, ...this.state.shownRuns()];
+    const panes = owners.map((owner) =>
+      h("figure", {}, this.#pane([this.#content(owner)]), h("figcaption", {}, this.#label(owner))),
+    );
+    replace(this.element, h("div", { class: "grid" }, panes));
+  }
+
+  #showSlider() {
+    const { left, right } = this.state;
+    const handle = h("input", {
+      type: "range",
+      class: "handle",
+      min: "0",
+      max: "100",
+      step: "0.5",
+      value: String(this.state.split),
+      "aria-label": "Divider",
+      oninput: () => this.#split(Number(handle.value)),
+    });
+    this.upper = h("div", { class: "clip" }, this.#content(right));
+    this.line = h("div", { class: "divider", "aria-hidden": "true" });
+    this.handle = handle;
+    const pane = this.#pane(
+      [
+        h("div", { class: "clip" }, this.#content(left)),
+        this.upper,
+        this.line,
+        this.#label(left, "left"),
+        this.#label(right, "right"),
+      ],
+      (u) => this.#split(100 * u),
+    );
+    replace(this.element, pane, handle);
+    this.#split(this.state.split);
+  }
+
+  #split(percent) {
+    this.state.split = Math.min(100, Math.max(0, percent));
+    this.upper.style.clipPath = `inset(0 0 0 ${this.state.split}%)`;
+    this.line.style.left = `${this.state.split}%`;
+    this.handle.value = String(this.state.split);
+  }
+
+  moveDivider(step) {
+    if (this.state.mode === "slider") this.#split(this.state.split + step);
+  }
+
+  #showFlicker() {
+    const { left, right, flickerRuns } = this.state;
+    const sides = [left, right].map((owner) =>
+      h("div", { class: "clip" }, this.#content(owner), this.#label(owner, "left")),
+    );
+    this.sides = sides;
+    this.front = 0;
+    replace(this.element, this.#pane(sides));
+    this.flip(0);
+    if (flickerRuns) this.timer = setInterval(() => this.flip(), kFlickerMs);
+  }
+
+  flip(side = 1 - this.front) {
+    if (this.state.mode !== "flicker") return;
+    this.front = side;
+    this.sides.forEach((element, i) => (element.hidden = i !== side));
+  }
+
+  #placeMark() {
+    const [width, height] = this.#size();
+    const { pixel } = this.state;
+    for (const content of this.contents) {
+      const mark = content.querySelector(".mark");
+      mark.hidden = !pixel;
+      if (!pixel) continue;
+      Object.assign(mark.style, {
+        left: `${(100 * pixel[0]) / width}%`,
+        top: `${(100 * pixel[1]) / height}%`,
+        width: `${100 / width}%`,
+        height: `${100 / height}%`,
+      });
+      mark.style.setProperty("--thin", `${1 / this.state.transform.scale}px`);
+    }
+  }
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "reports/verbs/report_verb.h"
+
+#include <memory>
+
+#include "datasets/dataset.h"
+#include "glint/core/progress.h"
+#include "reports/verbs/result_tables.h"
+
+namespace glint {
+
+namespace {
+
+Scene load_run_data(const RunSpec& spec) {
+  LoadOptions options;
+  options.max_pixels = spec.max_pixels;
+  options.with_priors = false;
+  return load_scene(spec.dataset_folder, options);
+}
+
+int run_report(const CommonOptions& common, bool single_file) {
+  const fs::path folder = common.profile_folder(common.resolved_profile());
+  GLINT_CHECK(
+      fs::exists(folder / "records.jsonl"),
+      kBadPrediction,
+      "{}: no records.jsonl; run `glint-bench all --profile {} --out {}` first",
+      folder.string(),
+      common.profile,
+      common.out
+  );
+  const fs::path index = write_report(common, folder, result_tables(folder), single_file);
+  if (common.json)
+    print_json({{"page", index.string()}});
+  else
+    print_text(index.string() + "\n");
+  return 0;
+}
+
+}  // namespace
+
+fs::path write_report(
+    const CommonOptions& common,
+    const fs::path& folder,
+    const std::vector<Table>& tables,
+    bool single_file
+) {
+  PageOptions options;
+  options.folder = folder;
+  options.profile = common.profile;
+  options.out = common.out;
+  options.data = common.data;
+  options.single_file = single_file;
+  options.load = load_run_data;
+  return write_page(options, tables);
+}
+
+void add_report_verb(CommandLine& line) {
+  auto single_file = std::make_shared<bool>(false);
+  CLI::App* verb = line.add_verb(
+      line.app,
+      "report",
+      "write OUT/PROFILE/report/index.html, a page with all results",
+      [&line, single_file] { return run_report(line.common, *single_file); }
+  );
+  verb->add_flag("--single-file", *single_file, "everything inside index.html");
+}
+
+}  // namespace glint

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The page of a profile's folder, for `all` and `report`.
+#pragma once
+
+#include "reports/page/page.h"
+#include "reports/verbs/verb.h"
+
+namespace glint {
+
+// FOLDER/report/index.html; returns its path. Errors: as write_page.
+fs::path write_report(
+    const CommonOptions& common,
+    const fs::path& folder,
+    const std::vector<Table>& tables,
+    bool single_file = false
+);
+
+}  // namespace glint
