@@ -48,6 +48,7 @@ function(glint_add_program name)
   cmake_parse_arguments(ARG "" "" "SRCS;LINK" ${ARGN})
   add_executable(${name} ${ARG_SRCS})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} glint_warnings)
+  set_property(GLOBAL APPEND PROPERTY GLINT_PROGRAMS ${name})  # target `programs` builds them all
 endfunction()
 
 # tests/a/b_test.cpp -> program test_a_b, CTest name a/b; LABELS default to "unit".

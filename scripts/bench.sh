@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh
-scripts/build.sh release glint-bench
+scripts/build.sh release programs
 if [ $# -eq 0 ]; then
   set -- --profile ci
 fi

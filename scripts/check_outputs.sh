@@ -19,7 +19,7 @@ done
 runs=0
 while IFS= read -r config; do
   run=$(dirname "$config")
-  for file in config.json env.json metrics.json log.jsonl interface.ply; do
+  for file in config.json env.json metrics.json log.jsonl interface.ply mesh.ply mesh.json; do
     [ -s "$run/$file" ] || fail "$run/$file is missing or empty"
   done
   compgen -G "$run/renders/*/rgb.exr" >/dev/null || fail "$run has no renders"

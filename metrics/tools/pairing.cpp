@@ -57,6 +57,13 @@ fs::path image_in(const fs::path& folder, const FolderLayout& layout, const std:
   return files.empty() ? fs::path() : files[0];
 }
 
+// A path that is there is never a glob, whatever its name.
+bool is_glob(const fs::path& path) {
+  std::error_code code;
+  return path.filename().string().find_first_of("*?[") != std::string::npos &&
+         !fs::exists(path, code);
+}
+
 void check_exists(const fs::path& path, ExitCode exit_code, const char* what) {
   std::error_code code;
   if (!fs::exists(path, code))
@@ -85,6 +92,23 @@ fs::path mask_for(const std::string& name, const fs::path& mask, const FilesByNa
   const auto found = masks.find(name);
   GLINT_CHECK(found != masks.end(), kBadReference, "{}: no mask named '{}'", mask.string(), name);
   return found->second;
+}
+
+// The files of a glob by the part of their names that '*' and '?' stand for, so that
+// "frame1_rgb.png" and "frame1_gt.png" are a pair: common beginnings and ends are cut off.
+FilesByName list_glob(const fs::path& glob, const FolderLayout& layout) {
+  if (!is_glob(glob)) return list_by_name(glob, layout, {});
+  const std::string pattern = glob.filename().string();
+  const std::size_t head = pattern.find_first_of("*?[");
+  const std::size_t tail = pattern.size() - 1 - pattern.find_last_of("*?]");
+  const fs::path folder = glob.has_parent_path() ? glob.parent_path() : fs::path(".");
+  FilesByName files;
+  for (const fs::path& file : list_files(folder, kExtensions)) {
+    const std::string name = file.filename().string();
+    if (glob_match(pattern, name)) files[name.substr(head, name.size() - head - tail)] = file;
+  }
+  GLINT_CHECK(!files.empty(), kBadReference, "{}: matches no image", glob.string());
+  return files;
 }
 
 FilesByName list_masks(const fs::path& mask, const FolderLayout& layout) {
@@ -124,6 +148,27 @@ Pairing match_by_name(const FilesByName& predictions, const FilesByName& referen
   return pairing;
 }
 
+void add_masks(const PairingOptions& options, Pairing& pairing) {
+  const FilesByName masks = list_masks(options.mask, options.mask_layout);
+  const FilesByName glass = list_masks(options.glass, options.mask_layout);
+  for (FilePair& pair : pairing.pairs) {
+    pair.mask = mask_for(pair.name, options.mask, masks);
+    pair.glass = mask_for(pair.name, options.glass, glass);
+  }
+}
+
+// A glob against a glob or a folder.
+Pairing pair_globs(const PairingOptions& options) {
+  const FilesByName predictions = with_exit_code(ExitCode::kBadPrediction, [&] {
+    return list_glob(options.prediction, options.prediction_layout);
+  });
+  Pairing pairing =
+      match_by_name(predictions, list_glob(options.reference, options.reference_layout));
+  check_missing(pairing, options);
+  add_masks(options, pairing);
+  return pairing;
+}
+
 }  // namespace
 
 std::vector<NamedFile> list_images(
@@ -160,6 +205,7 @@ std::vector<NamedFile> list_images(
 }
 
 Pairing pair_files(const PairingOptions& options) {
+  if (is_glob(options.prediction) || is_glob(options.reference)) return pair_globs(options);
   check_exists(options.prediction, ExitCode::kBadPrediction, "prediction");
   check_exists(options.reference, ExitCode::kBadReference, "reference");
   const bool folders = fs::is_directory(options.reference);
@@ -182,12 +228,7 @@ Pairing pair_files(const PairingOptions& options) {
     const std::string name = options.prediction.stem().string();
     pairing.pairs.push_back({name, options.prediction, options.reference, {}, {}});
   }
-  const FilesByName masks = list_masks(options.mask, options.mask_layout);
-  const FilesByName glass = list_masks(options.glass, options.mask_layout);
-  for (FilePair& pair : pairing.pairs) {
-    pair.mask = mask_for(pair.name, options.mask, masks);
-    pair.glass = mask_for(pair.name, options.glass, glass);
-  }
+  add_masks(options, pairing);
   return pairing;
 }
 

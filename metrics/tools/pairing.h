@@ -34,8 +34,9 @@ struct FilePair {
 };
 
 struct PairingOptions {
-  fs::path prediction, reference, mask, glass;  // files or folders; mask and glass may be empty
-  std::string pattern;                          // of predictions
+  // Files, folders, or globs in a file's name ("renders/*_rgb.png"); mask and glass may be empty.
+  fs::path prediction, reference, mask, glass;
+  std::string pattern;  // of predictions
   bool allow_missing = false;
   FolderLayout prediction_layout, reference_layout, mask_layout;
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <exception>
 #include <iostream>
 
 #include "glint/core/error.h"
@@ -97,8 +98,8 @@ LoadedPair load_pair(const MetricTool& tool, const FilePair& files) {
   return pair;
 }
 
-ImageScores score_pair(const MetricTool& tool, const FilePair& files) {
-  const LoadedPair pair = load_pair(tool, files);
+ImageScores score_pair(const MetricTool& tool, const LoadedPair& pair) {
+  const FilePair& files = pair.files;
   const std::vector<Region> regions = load_regions(pair);
   ImageScores image{files, {}};
   try {
@@ -120,6 +121,22 @@ ImageScores score_pair(const MetricTool& tool, const FilePair& files) {
   return image;
 }
 
+// Decoded side by side, as many as there are threads; errors come in the order of the files.
+std::vector<LoadedPair> load_pairs(const MetricTool& tool, std::span<const FilePair> files) {
+  std::vector<LoadedPair> pairs(files.size());
+  std::vector<std::exception_ptr> errors(files.size());
+  parallel_for(files.size(), 1, [&](std::size_t i) {
+    try {
+      pairs[i] = load_pair(tool, files[i]);
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
+  return pairs;
+}
+
 ToolReport score_all(const MetricTool& tool, const PairingOptions& options) {
   const Pairing pairing = pair_files(options);
   ToolReport report{
@@ -129,10 +146,14 @@ ToolReport score_all(const MetricTool& tool, const PairingOptions& options) {
   std::unique_ptr<Progress> progress;
   if (pairing.pairs.size() > 1)
     progress = std::make_unique<Progress>(tool.name(), pairing.pairs.size());
-  for (const FilePair& files : pairing.pairs) {
-    report.images.push_back(score_pair(tool, files));
-    if (progress) progress->advance(1, files.name);
-  }
+  const std::span<const FilePair> files = pairing.pairs;
+  const auto at_once = static_cast<std::size_t>(std::max(1, num_threads()));
+  for (std::size_t begin = 0; begin < files.size(); begin += at_once)
+    for (const LoadedPair& pair :
+         load_pairs(tool, files.subspan(begin, std::min(at_once, files.size() - begin)))) {
+      report.images.push_back(score_pair(tool, pair));
+      if (progress) progress->advance(1, pair.files.name);
+    }
   return report;
 }
 

@@ -49,7 +49,8 @@ class MetricTool {
   // After parsing, before the first pair. Errors: kUsage; kEnvironment for files it needs.
   virtual void check_options() {}
 
-  // One of a pair's files as the metric wants it. Errors (kBadReference): see image_files.h.
+  // One of a pair's files as the metric wants it; called by several threads. Errors
+  // (kBadReference): see image_files.h.
   virtual Image load_prediction(const fs::path& path) const = 0;
   virtual Image load_reference(const fs::path& path) const = 0;
   // One entry per region; an empty one where nothing can be scored. Sizes agree already.

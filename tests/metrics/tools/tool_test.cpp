@@ -142,6 +142,31 @@ TEST_CASE("folders without a common name are an error even when names may be mis
   CHECK(psnr_tool({folder / "pred", folder / "ref", "--allow-missing"}).code == 2);
 }
 
+TEST_CASE("globs pair files by what their wildcards stand for, in natural order") {
+  const Folder folder;
+  for (const int frame : {2, 10}) {
+    write_png(folder / fmt::format("frame{}_rgb.png", frame), rendered());
+    write_png(folder / fmt::format("frame{}_gt.png", frame), reference());
+  }
+  const Result result = psnr_tool({folder / "frame*_rgb.png", folder / "frame*_gt.png", "--json"});
+  REQUIRE(result.code == 0);
+  const Json images = result.json()["images"];
+  REQUIRE(images.size() == 2);
+  CHECK(images[0]["name"] == "2");
+  CHECK(images[1]["name"] == "10");
+  CHECK(psnr_tool({folder / "frame*_rgb.png", folder / "nothing*.png"}).code == 3);
+  CHECK(psnr_tool({folder / "nothing*.png", folder / "frame*_gt.png"}).code == 2);
+  fs::remove(folder / "frame10_gt.png");
+  CHECK(psnr_tool({folder / "frame*_rgb.png", folder / "frame*_gt.png"}).code == 2);
+}
+
+TEST_CASE("a file whose name looks like a glob is a file") {
+  const Folder folder;
+  write_png(folder / "frame[1].png", rendered());
+  write_png(folder / "gt.png", reference());
+  CHECK(psnr_tool({folder / "frame[1].png", folder / "gt.png"}).code == 0);
+}
+
 TEST_CASE("two files of one name ask for a pattern") {
   const Folder folder;
   write_png(folder / "pred/a.png", reference());
