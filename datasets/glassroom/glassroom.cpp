@@ -20,7 +20,8 @@ namespace glint {
 namespace {
 
 // Part of every cache key: raise it whenever the same options give other files.
-constexpr int kGeneratorVersion = 2;
+constexpr int kGeneratorVersion = 1;
+constexpr const char* kBehindMeshFile = "mesh_behind.ply";
 constexpr int kTestEvery = 8;
 // Noise in training views averages out over the views; in a test view it bounds the score.
 constexpr int kTestSampleFactor = 4;
@@ -157,6 +158,11 @@ Json items_json(const RoomModel& room) {
   return items;
 }
 
+void write_meshes(const TraceScene& scene, const fs::path& folder) {
+  write_mesh_ply(folder / "gt" / "mesh.ply", truth_mesh(scene, TruthLayer::kFirst));
+  write_mesh_ply(folder / "gt" / kBehindMeshFile, truth_mesh(scene, TruthLayer::kBehind));
+}
+
 // Renders and writes one scene into a folder.
 class SceneMaker {
  public:
@@ -190,9 +196,7 @@ class SceneMaker {
     }
     write_cameras(folder_, scene_->cameras);
     write_point_ply(folder_ / "sparse" / "0" / "points3D.ply", cloud_);
-    const TraceScene& scene = scene_->room.scene;
-    write_mesh_ply(folder_ / "gt" / "mesh.ply", truth_mesh(scene, TruthLayer::kFirst));
-    write_mesh_ply(folder_ / "gt" / "mesh_behind.ply", truth_mesh(scene, TruthLayer::kBehind));
+    write_meshes(scene_->room.scene, folder_);
     write_png(folder_ / "contact_sheet.png", sheet_.image());
     write_file(folder_ / "scene.json", description().dump(1) + "\n");
   }
@@ -273,7 +277,12 @@ std::string glassroom_hash(const GlassRoomOptions& options) {
 }
 
 bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder) {
-  if (stored_hash(folder) == glassroom_hash(options)) return false;
+  if (stored_hash(folder) == glassroom_hash(options)) {
+    // Made before there was such a file: the scene is the same, so nothing is rendered again.
+    if (!fs::exists(folder / "gt" / kBehindMeshFile))
+      write_meshes(build_glassroom_scene(options)->room.scene, folder);
+    return false;
+  }
   UnfinishedFolder unfinished(folder);
   SceneMaker(options, unfinished.path()).make();
   unfinished.finish(folder);

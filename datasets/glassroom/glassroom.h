@@ -37,7 +37,8 @@ struct GlassRoomOptions {
 std::string glassroom_hash(const GlassRoomOptions& options);
 
 // Makes the scene in `folder` unless it is there already with the same hash (then returns false).
-// Rendered into a temporary folder and renamed, so an interrupted run leaves no half scene.
+// Rendered into a temporary folder and renamed, so an interrupted run leaves no half scene. A scene
+// of an earlier release gets gt/mesh_behind.ply added.
 bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder);
 
 }  // namespace glint

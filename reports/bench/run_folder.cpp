@@ -125,6 +125,19 @@ std::optional<TrainCost> trained_cost(const RunSpec& spec) {
   return TrainCost{json.value("train_seconds", 0.0), json.value("peak_memory_mb", 0.0)};
 }
 
+std::optional<TrainedElsewhere> trained_elsewhere(const RunSpec& spec) {
+  if (!fs::exists(spec.folder / "config.json") || !fs::exists(spec.folder / "env.json"))
+    return std::nullopt;
+  RunSpec there = read_run_spec(spec.folder);
+  const bool same = there.method == spec.method && there.config == spec.config &&
+                    there.options.iterations == spec.options.iterations &&
+                    there.options.seed == spec.options.seed &&
+                    there.dataset_hash == spec.dataset_hash;
+  if (!same || !trained_cost(there)) return std::nullopt;
+  const Json environment = parse_file(spec.folder / "env.json");
+  return TrainedElsewhere{there.config_hash, environment.value("git_revision", "unknown")};
+}
+
 fs::path view_folder(const fs::path& run, const std::string& view_name) {
   std::string name = view_name;
   std::replace(name.begin(), name.end(), '/', '_');

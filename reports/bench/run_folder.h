@@ -42,6 +42,13 @@ struct TrainCost {
 void write_trained(const RunSpec& spec, const TrainCost& cost);
 std::optional<TrainCost> trained_cost(const RunSpec& spec);
 
+// What another revision's training of the same thing (method, overrides, iterations, seed, data)
+// left in spec.folder; nothing: it holds no such run.
+struct TrainedElsewhere {
+  std::string config_hash, revision;
+};
+std::optional<TrainedElsewhere> trained_elsewhere(const RunSpec& spec);
+
 // renders/<view>: the view's name with '/' replaced.
 fs::path view_folder(const fs::path& run, const std::string& view_name);
 

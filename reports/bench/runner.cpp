@@ -88,11 +88,20 @@ void run_stages(
   record.metrics = std::move(scores.means);
   record.not_measured = std::move(scores.not_measured);
   record.num_surfels = method->num_surfels();
-  record.warnings = method->warnings();
+  for (const std::string& warning : method->warnings()) record.warnings.push_back(warning);
   const Camera& camera = loaded.scene.test.front().camera;
   record.resolution = fmt::format("{}x{}", camera.width, camera.height);
   clock.leave();
   record.timings["train"] = trained_cost(spec)->seconds;
+}
+
+// With --rescore: the run in the folder as what it is, with the hash of the code that trained it.
+void accept_earlier_training(RunSpec& spec, const RunnerOptions& options, Record& record) {
+  if (!options.rescore || trained_cost(spec)) return;
+  const auto earlier = trained_elsewhere(spec);
+  if (!earlier) return;
+  spec.config_hash = record.config_hash = earlier->config_hash;
+  record.warnings.push_back("trained by revision " + earlier->revision);
 }
 
 Failure failure_of(const std::exception& error, const std::string& stage, const fs::path& run) {
@@ -104,7 +113,8 @@ Record run_cell(const PlanCell& cell, const RunnerOptions& options, const Loaded
   Record record = record_of(cell, options);
   record.dataset_hash = loaded.scene.spec_hash;
   StageClock clock(record.timings);
-  const RunSpec spec = spec_of(cell, options, loaded);
+  RunSpec spec = spec_of(cell, options, loaded);
+  accept_earlier_training(spec, options, record);
   try {
     run_stages(spec, loaded, options, record, clock);
   } catch (const Interrupted&) {

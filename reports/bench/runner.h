@@ -16,6 +16,7 @@ struct RunnerOptions {
   std::vector<std::string> assignments;  // of --set
   fs::path out;                          // the profile's folder: records.jsonl, runs/, tables/
   bool force = false;                    // run finished cells again, training included
+  bool rescore = false;  // runs that other code trained are rendered and scored, not trained again
   SceneLoader load;
 };
 

@@ -34,7 +34,7 @@ void print_summary_json(
   print_json(json);
 }
 
-int run_all(const CommonOptions& common, bool force) {
+int run_all(const CommonOptions& common, bool force, bool rescore) {
   install_interrupt_handler();
   RunnerOptions options;
   options.profile = common.resolved_profile();
@@ -42,6 +42,7 @@ int run_all(const CommonOptions& common, bool force) {
   options.assignments = common.set;
   options.out = common.profile_folder(options.profile);
   options.force = force;
+  options.rescore = rescore;
   options.load = common.scene_loader();
   const RunSummary summary = run_profile(options);
   const auto tables = result_tables(options.out);
@@ -66,14 +67,19 @@ int run_all(const CommonOptions& common, bool force) {
 }  // namespace
 
 void add_all_verb(CommandLine& line) {
-  auto force = std::make_shared<bool>(false);
+  auto force = std::make_shared<bool>(false), rescore = std::make_shared<bool>(false);
   CLI::App* verb = line.add_verb(
       line.app,
       "all",
       "run every cell of a profile, print the tables and write the report",
-      [&line, force] { return run_all(line.common, *force); }
+      [&line, force, rescore] { return run_all(line.common, *force, *rescore); }
   );
   verb->add_flag("--force", *force, "run finished cells again");
+  verb->add_flag(
+      "--rescore",
+      *rescore,
+      "render and score runs that an earlier version trained; records say which"
+  );
 }
 
 }  // namespace glint

@@ -103,6 +103,30 @@ TEST_CASE("a second run reuses finished cells, a changed configuration runs agai
   CHECK(run_profile(options).ran == 4);
 }
 
+TEST_CASE("a run that other code trained is scored again on request, and the record says so") {
+  const test::TempFolder folder;
+  RunnerOptions options = fake_run(folder.path());
+  run_profile(options);
+  const int trainings = FakeMethod::trainings;
+  const fs::path run = folder.path() / "runs/room_1/fake/0";
+  for (const char* file : {"config.json", "env.json"}) {
+    Json json = Json::parse(read_file(run / file));
+    json["config_hash"] = "0123456789abcdef";
+    json["git_revision"] = "abc1234";
+    write_file(run / file, json.dump());
+  }
+  fs::remove(folder.path() / "records.jsonl");
+  options.rescore = true;
+  CHECK(run_profile(options).ran == 4);
+  CHECK(FakeMethod::trainings == trainings);
+  const auto records = read_records(folder.path() / "records.jsonl");
+  CHECK(records[0].config_hash == "0123456789abcdef");
+  CHECK(records[0].warnings.at(0) == "trained by revision abc1234");
+  options.profile.iterations = 20;  // that is no such run
+  run_profile(options);
+  CHECK(FakeMethod::trainings == trainings + 4);
+}
+
 TEST_CASE("a trained cell without a record is scored without training again") {
   const test::TempFolder folder;
   const RunnerOptions options = fake_run(folder.path());
