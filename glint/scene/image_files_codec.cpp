@@ -29,28 +29,29 @@ cv::Mat decode(const fs::path& path, const std::string& file, std::string_view f
 
 // Blue and red change places.
 template <class T>
-void copy_values(const cv::Mat& pixels, detail::Picture& picture) {
-  const int n = pixels.channels();
-  std::uint16_t* to = picture.values.data();
+void copy_values(const cv::Mat& pixels, int full_range, Image& picture) {
+  const float* value_of = detail::unit_values(full_range);
+  const int n = pixels.channels(), first = n >= 3 ? 2 : 0;
   for (int y = 0; y < pixels.rows; ++y) {
     const T* from = pixels.ptr<T>(y);
-    for (int x = 0; x < pixels.cols; ++x, from += n, to += n)
-      for (int c = 0; c < n; ++c) to[c] = from[n >= 3 && c < 3 ? 2 - c : c];
+    float* to = &picture.at(0, y);
+    for (int x = 0; x < pixels.cols; ++x, from += n, to += n) {
+      to[0] = value_of[from[first]];
+      if (n > 1) to[1] = value_of[from[1]];
+      if (n > 2) to[2] = value_of[from[0]];
+      if (n > 3) to[3] = value_of[from[3]];
+    }
   }
 }
 
-detail::Picture to_picture(const fs::path& path, const cv::Mat& pixels) {
-  detail::Picture picture;
-  picture.size = {pixels.cols, pixels.rows};
-  picture.channels = pixels.channels();
-  picture.values.resize(picture.size.num_pixels() * static_cast<std::size_t>(picture.channels));
+Image to_picture(const fs::path& path, const cv::Mat& pixels) {
+  Image picture(pixels.cols, pixels.rows, pixels.channels());
   switch (pixels.depth()) {
     case CV_8U:
-      copy_values<unsigned char>(pixels, picture);
+      copy_values<unsigned char>(pixels, 255, picture);
       break;
     case CV_16U:
-      picture.full_range = 65535;
-      copy_values<unsigned short>(pixels, picture);
+      copy_values<unsigned short>(pixels, 65535, picture);
       break;
     default:
       detail::fail_incomplete(path, "image", "values are neither 8- nor 16-bit integers");
@@ -60,11 +61,11 @@ detail::Picture to_picture(const fs::path& path, const cv::Mat& pixels) {
 
 }  // namespace
 
-detail::Picture detail::decode_png(const fs::path& path, const std::string& file) {
+Image detail::decode_png(const fs::path& path, const std::string& file) {
   return to_picture(path, decode(path, file, "PNG"));
 }
 
-detail::Picture detail::decode_jpeg(const fs::path& path, const std::string& file) {
+Image detail::decode_jpeg(const fs::path& path, const std::string& file) {
   return to_picture(path, decode(path, file, "JPEG"));
 }
 

@@ -57,11 +57,15 @@ void read_header(const Reader& reader) {
   png_read_update_info(reader.png, reader.info);
 }
 
-std::vector<std::uint16_t> widened(const std::vector<unsigned char>& bytes, bool wide) {
-  if (!wide) return {bytes.begin(), bytes.end()};
-  std::vector<std::uint16_t> values(bytes.size() / 2);
-  std::memcpy(values.data(), bytes.data(), bytes.size());
-  return values;
+template <class T>
+void copy_values(const unsigned char* bytes, int full_range, Image& picture) {
+  const float* value_of = detail::unit_values(full_range);
+  for (float& value : picture.values()) {
+    T stored;
+    std::memcpy(&stored, bytes, sizeof(T));
+    bytes += sizeof(T);
+    value = value_of[stored];
+  }
 }
 
 struct Writer {
@@ -80,31 +84,32 @@ void flush_nothing(png_structp) {}
 
 }  // namespace
 
-detail::Picture detail::decode_png(const fs::path& path, const std::string& file) {
+Image detail::decode_png(const fs::path& path, const std::string& file) {
   Reader reader;
   Source source{file.data(), file.size()};
   png_set_read_fn(reader.png, &source, read_from_source);
   if (!completes(reader.png, [&] { read_header(reader); }))
     fail_incomplete(path, "PNG", reader.error);
-  Picture picture;
-  picture.size = {
+  Image picture(
       static_cast<int>(png_get_image_width(reader.png, reader.info)),
-      static_cast<int>(png_get_image_height(reader.png, reader.info))};
-  picture.channels = png_get_channels(reader.png, reader.info);
-  const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
-  if (wide) picture.full_range = 65535;
+      static_cast<int>(png_get_image_height(reader.png, reader.info)),
+      png_get_channels(reader.png, reader.info)
+  );
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
-  const auto height = static_cast<std::size_t>(picture.size.height);
+  const auto height = static_cast<std::size_t>(picture.height());
   std::vector<unsigned char> bytes(row_bytes * height);
   std::vector<png_bytep> rows(height);
   for (std::size_t y = 0; y < height; ++y) rows[y] = &bytes[y * row_bytes];
   if (!completes(reader.png, [&] { png_read_image(reader.png, rows.data()); }))
     fail_incomplete(path, "PNG", reader.error);
-  picture.values = widened(bytes, wide);
+  if (png_get_bit_depth(reader.png, reader.info) == 16)
+    copy_values<std::uint16_t>(bytes.data(), 65535, picture);
+  else
+    copy_values<unsigned char>(bytes.data(), 255, picture);
   return picture;
 }
 
-detail::Picture detail::decode_jpeg(const fs::path& path, const std::string&) {
+Image detail::decode_jpeg(const fs::path& path, const std::string&) {
   throw Error(
       ExitCode::kEnvironment,
       fmt::format(

@@ -17,17 +17,14 @@ Image read_png_or_jpeg(const fs::path& path);
 Image read_exr(const fs::path& path);
 Image read_npy(const fs::path& path);
 
-// Decoded integers [height][width][channels]: 1 (grey), 2 (grey, alpha), 3 (R G B) or 4 channels.
-struct Picture {
-  ImageSize size;
-  int channels = 0;
-  std::uint16_t full_range = 255;  // or 65535
-  std::vector<std::uint16_t> values;
-};
-// The codecs, of files whose container was walked: OpenCV's, or libpng's in the lean build. Errors
-// (kBadReference): damaged; kEnvironment: a lean build has no JPEG.
-Picture decode_png(const fs::path& path, const std::string& file);
-Picture decode_jpeg(const fs::path& path, const std::string& file);
+// The codecs, of files whose container was walked: OpenCV's, or libpng's in the lean build.
+// Integers divided by their maximum, [height][width] with 1 (grey), 2 (grey, alpha), 3 (R G B) or 4
+// channels. Errors (kBadReference): damaged; kEnvironment: a lean build has no JPEG.
+Image decode_png(const fs::path& path, const std::string& file);
+Image decode_jpeg(const fs::path& path, const std::string& file);
+
+// n / full_range for n = 0 ... full_range (255 or 65535): what integers of a file stand for.
+const float* unit_values(int full_range);
 // The file. 1 or 3 channels, full range.
 std::string encode_png(MaskView image);
 

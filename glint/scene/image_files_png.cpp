@@ -85,14 +85,14 @@ PictureHeader walk(const fs::path& path, std::string_view file) {
 }
 
 // `grey` keeps one of the equal channels; alpha is dropped.
-Image to_floats(const detail::Picture& picture, bool grey) {
-  const int stored = picture.channels, kept = grey || stored < 3 ? 1 : 3;
-  const auto full_range = static_cast<float>(picture.full_range);
-  Image image(picture.size.width, picture.size.height, kept);
-  const std::uint16_t* from = picture.values.data();
+Image without_alpha(Image picture, bool grey) {
+  const int stored = picture.channels(), kept = grey || stored < 3 ? 1 : 3;
+  if (kept == stored) return picture;
+  Image image(picture.width(), picture.height(), kept);
+  const float* from = picture.data();
   float* to = image.data();
   for (std::size_t i = 0; i < image.num_pixels(); ++i, from += stored, to += kept)
-    for (int c = 0; c < kept; ++c) to[c] = static_cast<float>(from[c]) / full_range;
+    std::copy_n(from, kept, to);
   return image;
 }
 
@@ -108,7 +108,18 @@ Image detail::read_png_or_jpeg(const fs::path& path) {
   const PictureHeader header = walk(path, file);
   check_claimed_size(path, header.size, file.size());
   const bool is_png = file.starts_with(kPngSignature);
-  return to_floats(is_png ? decode_png(path, file) : decode_jpeg(path, file), header.grey);
+  return without_alpha(is_png ? decode_png(path, file) : decode_jpeg(path, file), header.grey);
+}
+
+const float* detail::unit_values(int full_range) {
+  const auto fill = [](int last) {
+    std::vector<float> values;
+    for (int n = 0; n <= last; ++n)
+      values.push_back(static_cast<float>(n) / static_cast<float>(last));
+    return values;
+  };
+  static const std::vector<float> bytes = fill(255), words = fill(65535);
+  return full_range == 255 ? bytes.data() : words.data();
 }
 
 ImageSize read_image_size(const fs::path& path) {

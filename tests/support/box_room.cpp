@@ -113,8 +113,8 @@ Image encode_normal(const Image& normal) {
 PointCloud wall_points(const std::vector<View>& views) {
   PointCloud points;
   for (const View& view : views)
-    for (int y = 1; y < view.camera.height; y += 8)
-      for (int x = 1; x < view.camera.width; x += 8) {
+    for (int y = 1; y < view.truth.depth.height(); y += 8)  // tests change the camera's size
+      for (int x = 1; x < view.truth.depth.width(); x += 8) {
         const double z = static_cast<double>(view.truth.depth.at(x, y));
         const Vec3d p = view.camera.to_world(z * view.camera.ray_in_cam(x + 0.5, y + 0.5));
         points.positions.push_back(cast<float>(p));
