@@ -7,7 +7,6 @@
 #include <set>
 
 #include "glint/core/error.h"
-#include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "reports/bench/machine.h"
 #include "reports/mesh/tsdf_volume.h"
@@ -188,11 +187,7 @@ TriangleMesh integrate_all(
 
 std::unique_ptr<TsdfVolume> make_volume(const TsdfOptions& options, int stride) {
   return make_tsdf_volume(
-      {options.voxel,
-       options.voxel * options.truncation_voxels,
-       kBlockVoxels,
-       stride,
-       num_threads()}
+      {options.voxel, options.voxel * options.truncation_voxels, kBlockVoxels, stride}
   );
 }
 

@@ -63,7 +63,9 @@ class Open3dVolume final : public TsdfVolume {
             options.block,
             options.depth_stride
         ) {
-    omp_set_num_threads(options.threads);
+    // Open3D opens a parallel region for every small block: with two threads they wait longer for
+    // each other than they work, and on a busy machine ten times as long.
+    omp_set_num_threads(1);
   }
 
   void integrate(ImageView depth, ImageView rgb, const Camera& c) override {

@@ -18,7 +18,6 @@ struct TsdfVolumeOptions {
   double voxel = 0, truncation = 0;  // metres
   int block = 16;                    // edge of what is allocated at once, in voxels
   int depth_stride = 1;              // every so many pixels open blocks
-  int threads = 1;
 };
 
 // Mind the module's boundary: only what is defined in headers crosses it.
