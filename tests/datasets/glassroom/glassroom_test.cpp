@@ -47,7 +47,7 @@ TEST_CASE("The same options give the same bytes, and a finished scene is not mad
   const auto written = fs::last_write_time(a / "scene.json");
   CHECK_FALSE(make_glassroom(kTiny, a));
   CHECK(fs::last_write_time(a / "scene.json") == written);
-  CHECK(num_entries(temporary.path) == 2);  // nothing temporary is left
+  CHECK(num_entries(temporary.path) == 2);   // nothing temporary is left
   fs::remove(a / "gt" / "mesh_behind.ply");  // as earlier releases left it
   CHECK_FALSE(make_glassroom(kTiny, a));
   CHECK(file_hashes(a) == file_hashes(b));
