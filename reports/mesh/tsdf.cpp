@@ -14,8 +14,7 @@
 namespace glint {
 namespace {
 
-constexpr int kBlockVoxels = 16;       // edge of Open3D's unit of allocation, in voxels
-constexpr int kFewPixels = 320 * 180;  // up to here every pixel opens blocks, else every fourth
+constexpr int kBlockVoxels = 16;  // edge of Open3D's unit of allocation, in voxels
 
 void check_options(const TsdfOptions& options) {
   const auto check = [](bool good, const char* field, double value, const char* expected) {
@@ -74,8 +73,23 @@ std::size_t keep_valid(FusionView& view, const TsdfOptions& options) {
   return kept;
 }
 
-int depth_stride(ImageSize size) {
-  return size.num_pixels() <= static_cast<std::size_t>(kFewPixels) ? 1 : 4;
+// Half of the largest depth that counts; without a limit, of the view's.
+double usual_depth(const FusionView& view, const TsdfOptions& options) {
+  double largest = depth_limit(options);
+  if (std::isfinite(largest)) return largest / 2;
+  largest = 0;
+  for (const float depth : view.depth.values())
+    if (std::isfinite(depth)) largest = std::max(largest, static_cast<double>(depth));
+  return largest / 2;
+}
+
+// Every so many pixels open blocks: as few as leave no block of a surface out, with a factor of two
+// to spare. A pixel between two surfaces, as splats render them at edges, opens blocks where
+// nothing is; the fewer are asked, the fewer of those.
+int depth_stride(const FusionView& view, const TsdfOptions& options) {
+  constexpr double kMost = 4;                                        // Open3D's own
+  const double pixel = usual_depth(view, options) / view.camera.fx;  // metres across
+  return static_cast<int>(std::clamp(kBlockVoxels * options.voxel / 2 / pixel, 1.0, kMost));
 }
 
 using Block = std::array<std::int32_t, 3>;
@@ -199,7 +213,7 @@ TriangleMesh fuse_depth(
   check_options(options);
   TsdfReport local;
   GLINT_CHECK(num_views > 0, kBadPrediction, "no view to fuse");
-  const int stride = depth_stride(view(0).camera.size());
+  const int stride = depth_stride(view(0), options);
   const auto volume = make_volume(options, stride);
   estimate(view, num_views, options, stride, volume->bytes_per_voxel(), local);
   const TriangleMesh fused = integrate_all(view, num_views, options, *volume);
