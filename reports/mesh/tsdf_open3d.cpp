@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include "reports/mesh/tsdf_volume.h"
@@ -65,6 +66,8 @@ class Open3dVolume final : public TsdfVolume {
         ) {
     // Open3D opens a parallel region for every small block: with two threads they wait longer for
     // each other than they work, and on a busy machine ten times as long.
+    // Open3D asks OpenMP for its number only where this variable is set, else the machine.
+    ::setenv("OMP_NUM_THREADS", "1", 0);
     omp_set_num_threads(1);
   }
 

@@ -93,6 +93,7 @@ CommandLine::CommandLine() {
         add_eval_verb,
         add_mesh_verb,
         add_selftest_verb,
+        add_results_verb,
         add_table_verb,
         add_report_verb,
         add_status_verb,

@@ -60,6 +60,7 @@ void add_train_verb(CommandLine& line);
 void add_render_verb(CommandLine& line);
 void add_eval_verb(CommandLine& line);
 void add_mesh_verb(CommandLine& line);
+void add_results_verb(CommandLine& line);
 void add_selftest_verb(CommandLine& line);
 void add_table_verb(CommandLine& line);
 void add_report_verb(CommandLine& line);
