@@ -100,6 +100,13 @@ Json column_json(const TableColumn& column) {
 
 }  // namespace
 
+std::string markdown_text(std::string_view text) {
+  std::string safe;
+  for (const char c : text)
+    safe += c == '|' ? "\\|" : (c == '<' ? "&lt;" : (c == '\n' ? " " : std::string(1, c)));
+  return safe;
+}
+
 std::string shown_text(const TableCell& cell, const TableColumn& column) {
   if (cell.status == CellStatus::kNotApplicable) return "–";
   if (!has_value(cell)) return word_of(cell);

@@ -33,6 +33,9 @@ void write_table(const fs::path& folder, const Table& table);
 // listings that are no Table (plan, status, perf).
 std::string aligned_rows(const std::vector<std::vector<std::string>>& rows);
 
+// Text inside a cell of a Markdown table: pipes and tags stay letters.
+std::string markdown_text(std::string_view text);
+
 // Characters of a UTF-8 text (not bytes): the width on a terminal of the scripts used here.
 std::size_t text_width(std::string_view utf8);
 

@@ -7,6 +7,7 @@
 
 #include "reports/kendall.h"
 #include "reports/published.h"
+#include "reports/statistics.h"
 
 namespace glint {
 
@@ -100,23 +101,6 @@ std::set<std::string> scenes_of(const std::vector<Record>& records, const std::s
   for (const Record& record : records)
     if (record.dataset == dataset) scenes.insert(record.cell.scene);
   return scenes;
-}
-
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-// Over seeds. Two values have no meaningful deviation: their range is given instead.
-double spread_of(const std::vector<double>& values) {
-  if (values.size() < 2) return 0;
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  if (values.size() == 2) return *high - *low;
-  const double mean = mean_of(values);
-  double sum = 0;
-  for (const double value : values) sum += (value - mean) * (value - mean);
-  return std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
 std::string failure_note(const Record& record) {
