@@ -24,9 +24,23 @@ std::string table_latex(const Table& table);
 // Method id first, then column ids; unrounded values, or the status word.
 std::string table_csv(const Table& table);
 Json table_json(const Table& table);
-std::string table_terminal(const Table& table, bool color);
+std::string table_html(const Table& table);  // a page of its own, every text escaped
 
-// FOLDER/<id>.md, .tex, .csv, .json
+struct TerminalStyle {
+  bool color = false;
+  std::size_t width = 0;  // columns of the terminal; 0: no limit
+};
+// Wider tables come in blocks below each other, each with the methods; published ones last.
+std::string table_terminal(const Table& table, TerminalStyle style = {});
+
+// Measured minus published, for the columns that the paper has on its first dataset; no columns
+// where it has none, no rows where nothing is measured. The data are not the same.
+Table difference_table(const Table& table);
+
+// A LaTeX document with FOLDER/<id>.tex of all tables: booktabs, xcolor and graphicx.
+std::string latex_document(const std::vector<Table>& tables);
+
+// FOLDER/<id>.md, .tex, .csv, .json, .html; <id>_differences.tex where there are any
 void write_table(const fs::path& folder, const Table& table);
 
 // Plain rows in aligned columns, two spaces apart; the first column flush left, others right. For
