@@ -7,7 +7,7 @@ namespace glint {
 namespace {
 
 constexpr std::string_view kStyle =
-    "body{font:16px/1.5 system-ui,sans-serif;max-width:75rem;margin:2rem auto;padding:0 1rem;"
+    "body{font:16px/1.5 system-ui,sans-serif;max-width:95rem;margin:2rem auto;padding:0 1rem;"
     "color:#111;background:#fff}\n"
     ".wide{overflow-x:auto}\n"
     "table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:1rem 0;"
@@ -15,6 +15,7 @@ constexpr std::string_view kStyle =
     "th,td{padding:.2rem .6rem;text-align:right;white-space:nowrap}\n"
     "th:first-child,td:first-child{text-align:left}\n"
     "thead tr:last-child th{border-bottom:1px solid}\n"
+    "tbody th{font-weight:normal}\n"
     "thead tr:first-child th{text-align:center}\n"
     ".published{color:#444}\n.none{color:#666;font-style:italic}\n";
 

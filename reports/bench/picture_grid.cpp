@@ -10,7 +10,8 @@ namespace glint {
 
 namespace {
 
-constexpr int kGap = 4;  // pixels between panels
+constexpr int kGap = 4;         // pixels between panels
+constexpr int kMaxLetter = 16;  // pixels
 
 // Sizes of a grid in pixels.
 struct Layout {
@@ -43,7 +44,7 @@ Layout layout_of(const PictureGrid& grid) {
     layout.rows.push_back(height_of(row));
     for (const Image& panel : row) layout.column = std::max(layout.column, panel.width());
   }
-  layout.letter = layout.column / 20;
+  layout.letter = std::min(layout.column / 20, kMaxLetter);
   layout.line = 2 * layout.letter;
   layout.baseline = layout.line - layout.letter / 2;
   layout.bar = layout.column / 2;

@@ -15,7 +15,7 @@ namespace glint {
 
 namespace {
 
-constexpr int kLeft = 52, kRight = 12, kTop = 22, kBottom = 40;  // margins around the axes
+constexpr int kLeft = 52, kRight = 24, kTop = 22, kBottom = 40;  // margins around the axes
 constexpr int kLetter = 9, kLegendLine = 17;
 constexpr std::array<std::array<int, 3>, 8> kColors{{
     {0, 114, 178},

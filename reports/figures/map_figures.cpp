@@ -283,9 +283,9 @@ PictureGrid radiance_figure(const std::vector<FigureScene>& scenes) {
        {"transmission", "transmission"},
        {"reflection", "reflection"},
        {"seen through glass", "through"},
-       {"truth", "through", true},
+       {"seen through, truth", "through", true},
        {"mirrored by glass", "mirrored"},
-       {"truth", "mirrored", true}},
+       {"mirrored, truth", "mirrored", true}},
       "through"
   );
   grid.legend = legend_of(scenes, false);
