@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <set>
@@ -200,7 +201,9 @@ std::vector<Record> read_store(const fs::path& path) {
       "{}: no such file; expected a folder with records.jsonl or the file itself",
       file.string()
   );
-  auto records = read_records(file);
+  // Something else altogether is not read line by line, with a warning each.
+  const bool of_objects = std::ifstream(file).peek() == '{';
+  auto records = of_objects ? read_records(file) : std::vector<Record>();
   GLINT_CHECK(
       !records.empty(),
       kBadPrediction,
