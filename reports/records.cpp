@@ -64,14 +64,22 @@ Record fields_of(const Json& json) {
   return record;
 }
 
-void insert_or_replace(std::vector<Record>& records, Record record) {
-  for (Record& existing : records)
-    if (existing.cell == record.cell) {
-      existing = std::move(record);
-      return;
-    }
-  records.push_back(std::move(record));
-}
+// The last record of a cell wins and keeps the cell's place.
+class RecordList {
+ public:
+  void add(Record record) {
+    const auto [it, added] = places_.emplace(record.cell, records_.size());
+    if (added)
+      records_.push_back(std::move(record));
+    else
+      records_[it->second] = std::move(record);
+  }
+  std::vector<Record> take() { return std::move(records_); }
+
+ private:
+  std::vector<Record> records_;
+  std::map<CellKey, std::size_t> places_;
+};
 
 }  // namespace
 
@@ -119,8 +127,8 @@ void append_record(const fs::path& file, const Record& record) {
 }
 
 std::vector<Record> read_records(const fs::path& file) {
-  std::vector<Record> records;
-  if (!fs::exists(file)) return records;
+  if (!fs::exists(file)) return {};
+  RecordList records;
   const std::string content =
       with_exit_code(ExitCode::kBadPrediction, [&] { return read_file(file); });
   std::istringstream lines(content);
@@ -132,9 +140,9 @@ std::vector<Record> read_records(const fs::path& file) {
     if (json.is_discarded())
       log::warn(where + ": torn record (interrupted write), skipped");
     else
-      insert_or_replace(records, record_from_json(json, where));
+      records.add(record_from_json(json, where));
   }
-  return records;
+  return records.take();
 }
 
 const Record* find_record(const std::vector<Record>& records, const CellKey& cell) {

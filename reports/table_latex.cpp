@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -9,7 +10,7 @@ namespace glint {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 17> kLatexForms{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 21> kLatexForms{{
     {"\\", "\\textbackslash{}"},
     {"&", "\\&"},
     {"%", "\\%"},
@@ -27,13 +28,22 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 17> kLatexFo
     {"†", "$^\\dagger$"},
     {"↑", "$\\uparrow$"},
     {"↓", "$\\downarrow$"},
+    {"≈", "$^\\approx$"},
+    {"–", "--"},
+    {"^", "\\textasciicircum{}"},
+    {"|", "$|$"},
 }};
+
+// Printable: what pdfTeX prints without further packages.
+bool is_ascii(char c) { return c >= ' ' && c <= '~'; }
+bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }
 
 std::string latex_text(std::string_view text) {
   std::string result;
   while (!text.empty()) {
-    std::string_view form = text.substr(0, 1);
+    std::string_view form = is_ascii(text[0]) ? text.substr(0, 1) : "?";
     std::size_t length = 1;
+    while (!is_ascii(text[0]) && length < text.size() && is_continuation(text[length])) ++length;
     for (const auto& [plain, latex] : kLatexForms)
       if (text.substr(0, plain.size()) == plain) {
         form = latex;
@@ -43,6 +53,11 @@ std::string latex_text(std::string_view text) {
     text.remove_prefix(length);
   }
   return result;
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
 }
 
 std::string latex_cell(const TableCell& cell, const TableColumn& column) {
@@ -58,12 +73,15 @@ struct ColumnGroup {
   std::size_t first = 0, count = 0;  // columns behind the method's
 };
 
+bool is_difference(const TableColumn& column) { return column.id.rfind("difference/", 0) == 0; }
+
 std::vector<ColumnGroup> groups_of(const Table& table) {
   std::vector<ColumnGroup> groups;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const TableColumn& column = table.columns[i];
-    const std::string title =
-        column.published ? column.group + "† (published)" : column.group + " (measured)";
+    const std::string title = column.published
+                                  ? column.group + "† (published)"
+                                  : column.group + (is_difference(column) ? "" : " (measured)");
     if (groups.empty() || groups.back().title != title) groups.push_back({title, i, 0});
     ++groups.back().count;
   }
@@ -86,7 +104,7 @@ std::string latex_header(const Table& table) {
 }  // namespace
 
 std::string table_latex(const Table& table) {
-  std::string text = fmt::format("% {}: {}\n", table.title, table.caption);
+  std::string text = fmt::format("% {} {}\n", one_line(table.title), one_line(table.caption));
   text += "% \\usepackage{booktabs}\n% \\usepackage[table]{xcolor}\n";
   text += fmt::format("\\begin{{tabular}}{{l{}}}\n", std::string(table.columns.size(), 'c'));
   text += "\\toprule\n" + latex_header(table) + "\\midrule\n";
@@ -97,8 +115,31 @@ std::string table_latex(const Table& table) {
     text += " \\\\\n";
   }
   text += "\\bottomrule\n\\end{tabular}\n";
-  for (const std::string& note : table.notes) text += "% " + note + "\n";
+  for (const std::string& note : table.notes) text += "% " + one_line(note) + "\n";
   return text;
+}
+
+std::string latex_document(const std::vector<Table>& tables) {
+  std::string text =
+      "\\documentclass{article}\n\\usepackage[T1]{fontenc}\n\\usepackage[a4paper,landscape,margin="
+      "15mm]{geometry}\n\\usepackage{booktabs,graphicx}\n\\usepackage[table]{xcolor}\n"
+      "\\newcommand{\\fitted}[1]{\\resizebox{\\ifdim\\width>"
+      "\\linewidth\\linewidth\\else\\width\\fi}"
+      "{!}{\\input{#1}}}\n\\setlength{\\parindent}{0pt}\n\\begin{document}\n";
+  for (const Table& table : tables) {
+    text += fmt::format("\n\\section*{{{}}}\n", latex_text(table.title));
+    text += fmt::format("{}\n\n\\medskip\n\\fitted{{{}}}\n", latex_text(table.caption), table.id);
+    if (const Table differences = difference_table(table); !differences.rows.empty())
+      text += fmt::format(
+          "\n\\medskip\n{}\n\n\\smallskip\n\\fitted{{{}}}\n",
+          latex_text(differences.title),
+          differences.id
+      );
+    text += "\n\\medskip\n{\\footnotesize\n";
+    for (const std::string& note : table_notes(table)) text += latex_text(note) + "\\par\n";
+    text += "}\\clearpage\n";
+  }
+  return text + "\\end{document}\n";
 }
 
 }  // namespace glint

@@ -7,6 +7,7 @@
 
 #include "reports/kendall.h"
 #include "reports/published.h"
+#include "reports/statistics.h"
 
 namespace glint {
 
@@ -102,23 +103,6 @@ std::set<std::string> scenes_of(const std::vector<Record>& records, const std::s
   return scenes;
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-// Over seeds. Two values have no meaningful deviation: their range is given instead.
-double spread_of(const std::vector<double>& values) {
-  if (values.size() < 2) return 0;
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  if (values.size() == 2) return *high - *low;
-  const double mean = mean_of(values);
-  double sum = 0;
-  for (const double value : values) sum += (value - mean) * (value - mean);
-  return std::sqrt(sum / static_cast<double>(values.size() - 1));
-}
-
 std::string failure_note(const Record& record) {
   std::string note = fmt::format(
       "{} failed ({}: {})", record.cell.text(), record.failure->stage, record.failure->message
@@ -164,11 +148,15 @@ TableCell cell_without_values(const RecordPointers& records, const TableColumn& 
 TableCell measured_cell(
     const RecordPointers& records, const TableColumn& column, std::size_t expected
 ) {
+  TableCell cell;
   std::map<std::uint64_t, std::vector<double>> scenes_of_seed;
   for (const Record* record : records)
     if (const auto it = record->metrics.find(column.metric);
-        record->ok() && it != record->metrics.end())
-      scenes_of_seed[record->cell.seed].push_back(it->second * column.scale);
+        record->ok() && it != record->metrics.end()) {
+      const double value = it->second * column.scale;
+      scenes_of_seed[record->cell.seed].push_back(value);
+      cell.values[{record->cell.scene, record->cell.seed}] = value;
+    }
   if (scenes_of_seed.empty()) return cell_without_values(records, column);
 
   std::vector<double> seed_means;
@@ -177,7 +165,6 @@ TableCell measured_cell(
     seed_means.push_back(mean_of(values));
     fewest = std::min(fewest, values.size());
   }
-  TableCell cell;
   cell.value = mean_of(seed_means);
   cell.spread = spread_of(seed_means);
   cell.num_scenes = static_cast<int>(fewest);
@@ -264,6 +251,38 @@ void rank_column(Table& table, std::size_t column) {
   }
 }
 
+const TableCell* first_of(const Table& table, std::size_t column) {
+  for (const TableRow& row : table.rows)
+    if (row.cells[column].rank == 1) return &row.cells[column];
+  return nullptr;
+}
+
+// Of the scenes and seeds that both cells have.
+std::vector<double> paired_differences(const TableCell& a, const TableCell& b) {
+  std::vector<double> differences;
+  for (const auto& [key, value] : a.values)
+    if (const auto it = b.values.find(key); it != b.values.end())
+      differences.push_back(value - it->second);
+  return differences;
+}
+
+// Whether second places can be told from first ones.
+struct TieTests {
+  int tied = 0, too_few_pairs = 0;
+};
+
+void mark_ties(Table& table, std::size_t column, TieTests& tests) {
+  const TableCell* first = first_of(table, column);
+  for (TableRow& row : table.rows) {
+    TableCell& cell = row.cells[column];
+    if (cell.rank != 2) continue;
+    const auto interval = bootstrap_interval(paired_differences(*first, cell));
+    cell.tied = interval && interval->contains(0);
+    tests.tied += cell.tied;
+    tests.too_few_pairs += !interval;
+  }
+}
+
 // Against the first published group, the paper's counterpart of the data.
 void add_agreement(Table& table, std::size_t measured, const std::string& paper_dataset) {
   const std::string published_id =
@@ -286,6 +305,24 @@ void add_agreement(Table& table, std::size_t measured, const std::string& paper_
     table.agreement.push_back({table.columns[measured].id, tau, static_cast<int>(ours.size())});
 }
 
+std::string counted(std::size_t number, std::string_view what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
+void add_tie_notes(Table& table, const TieTests& tests) {
+  if (tests.tied > 0)
+    table.notes.push_back(fmt::format(
+        "≈ tied with the first: the paired bootstrap interval (95 %, {} resamples over scenes and "
+        "seeds) of the difference contains zero.",
+        kBootstrapResamples
+    ));
+  if (tests.too_few_pairs > 0)
+    table.notes.push_back(fmt::format(
+        "Fewer than {} pairs of scene and seed: no interval, so no claim about ties.",
+        kMinBootstrapPairs
+    ));
+}
+
 void add_notes(
     Table& table, const TableDefinition& definition, const std::vector<Record>& records
 ) {
@@ -295,10 +332,11 @@ void add_notes(
   for (const std::string& scene : scenes_of(records, definition.dataset))
     scenes += (scenes.empty() ? "" : ", ") + scene;
   table.notes.push_back(fmt::format(
-      "Mean over test views, then scenes ({}), then {} seed{}.",
+      "Mean over test views, then {} ({}), then {}.{}",
+      counted(scenes_of(records, definition.dataset).size(), "scene"),
       scenes.empty() ? "none run yet" : scenes,
-      seeds.size(),
-      seeds.size() == 1 ? "" : "s"
+      counted(seeds.size(), "seed"),
+      seeds.size() > 1 ? " ±: standard deviation over seeds, of two their range." : ""
   ));
   std::set<std::string> failures;
   for (const Record& record : records)
@@ -321,14 +359,17 @@ Table build_table(const TableDefinition& definition, const std::vector<Record>& 
   table.columns = columns_of(definition, records);
   for (const TableRowDefinition& row : rows_of(definition, records))
     table.rows.push_back(build_row(definition, row, table.columns, records));
+  TieTests ties;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     if (table.columns[i].published) continue;
     rank_column(table, i);
+    mark_ties(table, i, ties);
     if (!table.columns[i].paper_column.empty() && !definition.paper_datasets.empty() &&
         table.columns[i].dataset == definition.dataset)
       add_agreement(table, i, definition.paper_datasets.front());
   }
   add_notes(table, definition, records);
+  add_tie_notes(table, ties);
   return table;
 }
 

@@ -3,7 +3,9 @@
 // records of a profile give one Table, which the writers in table_writers.h print in each format.
 #pragma once
 
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "glint/core/config.h"
@@ -61,9 +63,13 @@ struct TableCell {
   double value = 0;   // in the column's unit, unrounded
   double spread = 0;  // over seeds: sample standard deviation (>= 3 seeds) or range (2)
   int num_scenes = 0, num_seeds = 0;
-  int rank = 0;      // 1, 2, 3; 0: not among them or nothing to rank against
-  std::string text;  // as printed, without marks
-  std::string note;  // why it failed, or what is missing
+  std::map<std::pair<std::string, std::uint64_t>, double> values;  // of each scene and seed
+  int rank = 0;       // 1, 2, 3; 0: not among them or nothing to rank against
+  bool tied = false;  // second, but the interval of the difference to the first contains zero
+  std::string text;   // as printed, without marks
+  std::string note;   // why it failed, or what is missing
+
+  bool has_value() const { return status == CellStatus::kOk || status == CellStatus::kPartial; }
 };
 
 struct TableRow {

@@ -2,6 +2,7 @@
 #include "reports/bench/picture_grid.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "glint/scene/image_files.h"
 
@@ -9,10 +10,12 @@ namespace glint {
 
 namespace {
 
-constexpr int kGap = 4;  // pixels between panels
+constexpr int kGap = 4;         // pixels between panels
+constexpr int kMaxLetter = 16;  // pixels
 
 // Sizes of a grid in pixels.
 struct Layout {
+  int margin = 0;         // width of the rows' titles
   int column = 0;         // width of a panel
   int letter = 0;         // height of capitals
   int line = 0;           // height of a line of text
@@ -27,6 +30,13 @@ int height_of(const std::vector<Image>& row) {
   return height;
 }
 
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 Layout layout_of(const PictureGrid& grid) {
   Layout layout;
   layout.column = kMinPanelWidth;
@@ -34,20 +44,23 @@ Layout layout_of(const PictureGrid& grid) {
     layout.rows.push_back(height_of(row));
     for (const Image& panel : row) layout.column = std::max(layout.column, panel.width());
   }
-  layout.letter = layout.column / 20;
+  layout.letter = std::min(layout.column / 20, kMaxLetter);
   layout.line = 2 * layout.letter;
   layout.baseline = layout.line - layout.letter / 2;
   layout.bar = layout.column / 2;
+  for (const std::string& title : grid.row_titles)
+    for (const std::string& line : lines_of(title))
+      layout.margin = std::max(layout.margin, text_width(line, layout.letter) + 3 * kGap);
   return layout;
 }
 
 int left_of(std::size_t column, const Layout& layout) {
-  return static_cast<int>(column) * (layout.column + kGap);
+  return layout.margin + static_cast<int>(column) * (layout.column + kGap);
 }
 
 int width_of(const LegendLine& line, const Layout& layout) {
   int width = kGap + text_width(line.text, layout.letter) + layout.letter;
-  if (line.depth_bar)
+  if (line.bar != LegendBar::kNone)
     width += layout.bar + layout.letter + text_width(line.rest, layout.letter) + layout.letter;
   return width;
 }
@@ -57,20 +70,23 @@ void paste(const Image& panel, int left, int top, Image& picture) {
     std::copy_n(panel.pixel(0, y), panel.width() * panel.channels(), picture.pixel(left, top + y));
 }
 
-Image depth_bar(int width, int height) {
+Image color_bar(LegendBar bar, int width, int height) {
   Image ramp(width, height, 1);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) ramp.at(x, y) = static_cast<float>(x + 1);
-  return colorize_depth(ramp, 1, static_cast<float>(width));
+  const float high = static_cast<float>(width);
+  if (bar == LegendBar::kDepth) return colorize_depth(ramp, 1, high);
+  const bool share = bar == LegendBar::kShare;
+  return colorize_scalar(ramp, 1, high, share ? ScalarColors::kViridis : ScalarColors::kMagma);
 }
 
 void draw_legend_line(const LegendLine& line, int top, const Layout& layout, Image& picture) {
   const int baseline = top + layout.baseline;
   int left = kGap;
   draw_text(picture, line.text, left, baseline, layout.letter);
-  if (!line.depth_bar) return;
+  if (line.bar == LegendBar::kNone) return;
   left += text_width(line.text, layout.letter) + layout.letter;
-  paste(depth_bar(layout.bar, layout.letter), left, baseline - layout.letter, picture);
+  paste(color_bar(line.bar, layout.bar, layout.letter), left, baseline - layout.letter, picture);
   left += layout.bar + layout.letter;
   draw_text(picture, line.rest, left, baseline, layout.letter);
 }
@@ -87,10 +103,17 @@ void draw_row(
     const std::vector<Image>& row, int top, int height, const Layout& layout, Image& picture
 ) {
   for (std::size_t i = 0; i < row.size(); ++i) {
-    const bool missing = row[i].empty();
-    paste(
-        missing ? Image(layout.column, height, 3, 0.5f) : row[i], left_of(i, layout), top, picture
-    );
+    const int left = left_of(i, layout);
+    paste(row[i].empty() ? Image(layout.column, height, 3, 0.5f) : row[i], left, top, picture);
+    if (row[i].empty())
+      draw_text(picture, "missing", left + 2 * kGap, top + layout.line, layout.letter);
+  }
+}
+
+void draw_row_title(const std::string& title, int top, const Layout& layout, Image& picture) {
+  for (const std::string& line : lines_of(title)) {
+    draw_text(picture, line, kGap, top + layout.baseline, layout.letter);
+    top += layout.line;
   }
 }
 
@@ -120,6 +143,7 @@ Image draw_grid(const PictureGrid& grid) {
   int top = layout.line;
   for (std::size_t i = 0; i < grid.rows.size(); ++i) {
     draw_row(grid.rows[i], top, layout.rows[i], layout, picture);
+    if (i < grid.row_titles.size()) draw_row_title(grid.row_titles[i], top, layout, picture);
     top += layout.rows[i] + kGap;
   }
   for (const LegendLine& line : grid.legend) {

@@ -12,16 +12,20 @@ namespace glint {
 // Panels are enlarged to at least the first, by whole numbers, and shrunk to at most the second.
 inline constexpr int kMinPanelWidth = 200, kMaxPanelWidth = 480;  // pixels
 
+// The colours of a map from low to high, as layer_picture() and the strips show it.
+enum class LegendBar { kNone, kDepth, kShare, kError };
+
 struct LegendLine {
   std::string text;
-  bool depth_bar = false;  // the colours of depth, near to far, behind the text
-  std::string rest;        // behind the bar
+  LegendBar bar = LegendBar::kNone;  // behind the text
+  std::string rest;                  // behind the bar
 };
 
 struct PictureGrid {
   std::vector<std::string> titles;       // one a column
-  std::vector<std::vector<Image>> rows;  // panels [h][w][3] from fit_panel(); empty ones stay grey
+  std::vector<std::vector<Image>> rows;  // panels [h][w][3] from fit_panel(); empty: "missing"
   std::vector<LegendLine> legend;
+  std::vector<std::string> row_titles = {};  // left of the rows, '\n' between lines; none: no room
 };
 
 Image fit_panel(const Image& panel);

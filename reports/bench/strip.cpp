@@ -124,7 +124,7 @@ std::vector<LegendLine> legend_of(const StripPlan& plan, const std::vector<const
   if (shows(show_depth))
     legend.push_back(
         {fmt::format("depth: {:.2f} m", plan.scale.low),
-         true,
+         LegendBar::kDepth,
          fmt::format(
              "{:.2f} m, from {}",
              plan.scale.high,

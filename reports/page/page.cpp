@@ -24,13 +24,6 @@ void replace_mark(std::string& text, std::string_view mark, const std::string& b
   text.replace(at, mark.size(), by);
 }
 
-std::string html_text(const std::string& text) {
-  std::string safe;
-  for (const char c : text)
-    safe += c == '<' ? "&lt;" : (c == '&' ? "&amp;" : (c == '"' ? "&quot;" : std::string(1, c)));
-  return safe;
-}
-
 std::string index_html(
     const PageOptions& options, const std::string& styles, const std::string& scripts
 ) {

@@ -41,6 +41,15 @@ std::string inline_text(std::string_view text) {
   return safe;
 }
 
+std::string html_text(std::string_view text) {
+  std::string safe(text);
+  replace_all(safe, "&", "&amp;");
+  replace_all(safe, "<", "&lt;");
+  replace_all(safe, ">", "&gt;");
+  replace_all(safe, "\"", "&quot;");
+  return safe;
+}
+
 std::string base64(std::string_view bytes) {
   constexpr std::string_view kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

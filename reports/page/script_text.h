@@ -21,6 +21,9 @@ std::string part_script(const std::string& name, const Json& json);
 // Program text for a <script> or <style> element: nothing in it closes the element.
 std::string inline_text(std::string_view text);
 
+// Text for an element or an attribute.
+std::string html_text(std::string_view text);
+
 std::string base64(std::string_view bytes);
 
 // zlib stream (RFC 1950) in base64; the page inflates it with DecompressionStream("deflate").

@@ -4,6 +4,7 @@
 #include "glint/core/progress.h"
 #include "reports/bench/interrupt.h"
 #include "reports/bench/runner.h"
+#include "reports/figures/figures.h"
 #include "reports/verbs/report_verb.h"
 #include "reports/verbs/result_tables.h"
 
@@ -47,6 +48,7 @@ int run_all(const CommonOptions& common, bool force, bool rescore) {
   const RunSummary summary = run_profile(options);
   const auto tables = result_tables(options.out);
   write_tables(options.out, tables);
+  write_figures({options.out, load_run_data});
   const fs::path page = write_report(common, options.out, tables);
   if (common.json)
     print_summary_json(summary, options.out, page, tables);

@@ -96,6 +96,8 @@ CommandLine::CommandLine() {
         add_results_verb,
         add_table_verb,
         add_report_verb,
+        add_compare_verb,
+        add_figures_verb,
         add_status_verb,
         add_perf_verb,
         add_doctor_verb})

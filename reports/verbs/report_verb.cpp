@@ -11,13 +11,6 @@ namespace glint {
 
 namespace {
 
-Scene load_run_data(const RunSpec& spec) {
-  LoadOptions options;
-  options.max_pixels = spec.max_pixels;
-  options.with_priors = false;
-  return load_scene(spec.dataset_folder, options);
-}
-
 int run_report(const CommonOptions& common, bool single_file) {
   const fs::path folder = common.profile_folder(common.resolved_profile());
   GLINT_CHECK(
@@ -37,6 +30,13 @@ int run_report(const CommonOptions& common, bool single_file) {
 }
 
 }  // namespace
+
+Scene load_run_data(const RunSpec& spec) {
+  LoadOptions options;
+  options.max_pixels = spec.max_pixels;
+  options.with_priors = false;
+  return load_scene(spec.dataset_folder, options);
+}
 
 fs::path write_report(
     const CommonOptions& common,

@@ -7,6 +7,9 @@
 
 namespace glint {
 
+// The data that a run was scored against. Errors (kBadReference): not there, damaged.
+Scene load_run_data(const RunSpec& spec);
+
 // FOLDER/report/index.html; returns its path. Errors: as write_page.
 fs::path write_report(
     const CommonOptions& common,

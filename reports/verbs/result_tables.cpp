@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "reports/verbs/result_tables.h"
 
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdlib>
 
 namespace glint {
 
@@ -11,10 +15,18 @@ bool has_measurement(const Table& table) {
   for (const TableRow& row : table.rows)
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       if (!table.columns[i].published &&
-          (row.cells[i].status == CellStatus::kOk || row.cells[i].status == CellStatus::kPartial ||
-           row.cells[i].status == CellStatus::kFailed))
+          (row.cells[i].has_value() || row.cells[i].status == CellStatus::kFailed))
         return true;
   return false;
+}
+
+// COLUMNS, or what the terminal says; 0 where standard output is none.
+std::size_t terminal_width() {
+  if (const char* columns = std::getenv("COLUMNS"))
+    if (const long width = std::strtol(columns, nullptr, 10); width > 0)
+      return static_cast<std::size_t>(width);
+  winsize size{};
+  return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
 void check_ids(
@@ -52,13 +64,14 @@ std::vector<Table> result_tables(const fs::path& folder, const std::vector<std::
 
 void write_tables(const fs::path& folder, const std::vector<Table>& tables) {
   for (const Table& table : tables) write_table(folder / "tables", table);
+  write_file(folder / "tables" / "all.tex", latex_document(tables));
 }
 
 void print_tables(const std::vector<Table>& tables) {
   for (const Table& table : tables)
     print_text(
         has_measurement(table)
-            ? table_terminal(table, color_terminal()) + "\n"
+            ? table_terminal(table, {color_terminal(), terminal_width()}) + "\n"
             : fmt::format("{} ({}): nothing measured yet\n\n", table.title, table.id)
     );
 }

@@ -15,6 +15,7 @@ struct TableVerbOptions {
 std::string table_text(const Table& table, const std::string& format) {
   if (format == "md") return table_markdown(table);
   if (format == "tex") return table_latex(table);
+  if (format == "html") return table_html(table);
   return table_csv(table);
 }
 
@@ -46,8 +47,8 @@ void add_table_verb(CommandLine& line) {
       [&line, options] { return run_table(line.common, *options); }
   );
   verb->add_option("tables", options->ids, "ids, e.g. table1_photometric; none: all, and written");
-  verb->add_option("--format", options->format, "terminal, md, tex, csv or json")
-      ->check(CLI::IsMember({"terminal", "md", "tex", "csv", "json"}))
+  verb->add_option("--format", options->format, "terminal, md, tex, csv, html or json")
+      ->check(CLI::IsMember({"terminal", "md", "tex", "csv", "html", "json"}))
       ->capture_default_str();
 }
 

@@ -64,6 +64,8 @@ void add_results_verb(CommandLine& line);
 void add_selftest_verb(CommandLine& line);
 void add_table_verb(CommandLine& line);
 void add_report_verb(CommandLine& line);
+void add_compare_verb(CommandLine& line);
+void add_figures_verb(CommandLine& line);
 void add_perf_verb(CommandLine& line);
 void add_doctor_verb(CommandLine& line);
 

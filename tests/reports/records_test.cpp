@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -95,6 +96,22 @@ TEST_CASE("records that cannot be trusted are errors naming the line") {
     write_file(file, std::string(line) + "\n");
     CHECK_THROWS_WITH(read_records(file), Catch::Contains("records.jsonl:1"));
   }
+}
+
+TEST_CASE("ten thousand records are read in less than two seconds") {
+  const test::TempFolder folder;
+  const fs::path file = folder.path() / "records.jsonl";
+  std::string text;
+  for (std::uint64_t seed = 0; seed < 10000; ++seed) {
+    Record record = sample_record();
+    record.cell.seed = seed % 9000;  // 1,000 cells twice
+    text += record_to_json(record).dump() + "\n";
+  }
+  write_file(file, text);
+  const auto start = std::chrono::steady_clock::now();
+  CHECK(read_records(file).size() == 9000);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  CHECK(seconds.count() < 2);
 }
 
 TEST_CASE("no file means no records") { CHECK(read_records("does/not/exist.jsonl").empty()); }

@@ -5,10 +5,13 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <cstdlib>
+#include <sstream>
 
 #include "metrics/metric.h"
 #include "reports/published.h"
 #include "reports/table_writers.h"
+#include "tests/support/temp_folder.h"
 
 using namespace glint;
 
@@ -63,7 +66,8 @@ TEST_CASE("methods that were not run are missing, in every format a word") {
   CHECK(cell_of(table, "pgsr", "psnr").status == CellStatus::kMissing);
   CHECK(cell_of(table, "2dgs", "lpips-vgg-3dgs").status == CellStatus::kMissing);
   CHECK(
-      table_csv(table).find("\npgsr,missing,missing,missing,31.96,0.95,0.07") != std::string::npos
+      table_csv(table).find("\npgsr,missing,missing,missing,missing,31.96,0.95,0.07") !=
+      std::string::npos
   );
   CHECK(table_markdown(table).find("| PGSR | missing |") != std::string::npos);
   CHECK(table_json(table)["rows"][1]["cells"]["psnr"]["status"] == "missing");
@@ -80,9 +84,8 @@ TEST_CASE("a metric that the machine had no weights for says so in every format"
   CHECK(cell_of(table, "2dgs", "lpips-vgg-3dgs").status == CellStatus::kUnavailable);
   CHECK(cell_of(table, "2dgs", "lpips-vgg-3dgs").rank == 0);
   CHECK(cell_of(table, "2dgs", "ssim-3dgs").status == CellStatus::kMissing);
-  CHECK(table_csv(table).find("\n2dgs,30,missing,no weights,") != std::string::npos);
-  for (const std::string& text :
-       {table_markdown(table), table_latex(table), table_terminal(table, false)})
+  CHECK(table_csv(table).find("\n2dgs,30,missing,no weights,missing,") != std::string::npos);
+  for (const std::string& text : {table_markdown(table), table_latex(table), table_terminal(table)})
     CHECK(text.find("no weights") != std::string::npos);
   const Json cell = table_json(table)["rows"][0]["cells"]["lpips-vgg-3dgs"];
   CHECK(cell["status"] == "unavailable");
@@ -140,7 +143,7 @@ TEST_CASE("published columns hold the paper's digits and are marked in every for
   CHECK(cell_of(table, "glint", "published/3D-FRONT-T/PSNR").text == "34.50");
   CHECK(table_markdown(table).find("3D-FRONT-T†") != std::string::npos);
   CHECK(table_latex(table).find("3D-FRONT-T$^\\dagger$ (published)") != std::string::npos);
-  CHECK(table_terminal(table, false).find("3D-FRONT-T†") != std::string::npos);
+  CHECK(table_terminal(table).find("3D-FRONT-T†") != std::string::npos);
   CHECK(table_csv(table).find("published/3D-FRONT-T/PSNR") != std::string::npos);
 }
 
@@ -150,8 +153,8 @@ TEST_CASE("ranks shade with the paper's three blues in LaTeX and on a colour ter
   CHECK(
       table_latex(table).find("\\cellcolor[RGB]{225,240,255}31.62 $\\pm$ 0.75") != std::string::npos
   );
-  CHECK(table_terminal(table, true).find("48;2;200;225;255m") != std::string::npos);
-  CHECK(table_terminal(table, false).find('\x1b') == std::string::npos);
+  CHECK(table_terminal(table, {true, 0}).find("48;2;200;225;255m") != std::string::npos);
+  CHECK(table_terminal(table).find('\x1b') == std::string::npos);
 }
 
 TEST_CASE("the order of methods is compared with the paper's, column by column") {
@@ -216,8 +219,123 @@ TEST_CASE("the tables of fixed records equal the golden files") {
     CHECK(table_latex(table) == read_file(kGolden / (id + ".tex")));
     CHECK(table_csv(table) == read_file(kGolden / (id + ".csv")));
     CHECK(table_json(table).dump(2) + "\n" == read_file(kGolden / (id + ".json")));
-    CHECK(table_terminal(table, false) == read_file(kGolden / (id + ".txt")));
+    CHECK(table_terminal(table) == read_file(kGolden / (id + ".txt")));
   }
+}
+
+TEST_CASE("a second place that the paired bootstrap cannot tell from the first is tied") {
+  std::vector<Record> records;
+  const auto add = [&](const char* method, const std::vector<double>& values) {
+    for (std::size_t seed = 0; seed < values.size(); ++seed) {
+      Record record;
+      record.dataset = "glassroom";
+      record.cell = {"room_1", method, seed};
+      record.metrics["psnr"] = values[seed];
+      records.push_back(record);
+    }
+  };
+  add("2dgs", {30.0, 31.0, 32.0});
+  add("envgs", {29.9, 31.2, 31.8});
+  const auto table = [&] { return build_table(definition_of("table1_photometric"), records); };
+  CHECK(cell_of(table(), "envgs", "psnr").rank == 2);
+  CHECK(cell_of(table(), "envgs", "psnr").tied);
+  CHECK_FALSE(cell_of(table(), "2dgs", "psnr").tied);
+  CHECK(table_markdown(table()).find("_30.97 ± 0.97≈_") != std::string::npos);
+  CHECK(table_markdown(table()).find("- ≈ tied with the first") != std::string::npos);
+  CHECK(table_json(table())["rows"][3]["cells"]["psnr"]["tied_with_first"] == true);
+  records.resize(3);
+  add("envgs", {29.9, 30.9, 31.7});  // worse on every seed
+  CHECK_FALSE(cell_of(table(), "envgs", "psnr").tied);
+  CHECK(table_markdown(table()).find("≈") == std::string::npos);
+}
+
+TEST_CASE("fewer than three pairs of scene and seed claim no tie and say so") {
+  std::vector<Record> records;
+  for (const auto& [method, psnr] : {std::pair("2dgs", 30.0), std::pair("envgs", 29.99)}) {
+    Record record;
+    record.dataset = "glassroom";
+    record.cell = {"room_1", method, 0};
+    record.metrics["psnr"] = psnr;
+    records.push_back(record);
+  }
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  CHECK_FALSE(cell_of(table, "envgs", "psnr").tied);
+  CHECK(table_markdown(table).find("- Fewer than 3 pairs") != std::string::npos);
+}
+
+TEST_CASE("differences to the paper stand apart, with a sign, where both numbers are") {
+  const Table differences = difference_table(golden_table("table1_photometric"));
+  REQUIRE(differences.rows.size() == 3);  // 2dgs, envgs, glint
+  REQUIRE(differences.columns.size() == 3);
+  CHECK(differences.columns[0].id == "difference/psnr");
+  CHECK(cell_of(differences, "envgs", "difference/psnr").text == "+0.29");
+  CHECK(
+      cell_of(differences, "envgs", "difference/lpips-vgg-3dgs").status ==
+      CellStatus::kNotApplicable
+  );
+  CHECK(difference_table(golden_table("regions")).rows.empty());
+}
+
+TEST_CASE("the HTML table escapes what records and definitions say") {
+  Table table = golden_table("table1_photometric");
+  table.rows[0].title = "<b>\"&";
+  table.notes.push_back("</ul><script>");
+  const std::string html = table_html(table);
+  CHECK(html.find("<th scope=\"row\">&lt;b&gt;&quot;&amp;</th>") != std::string::npos);
+  CHECK(html.find("<script>") == std::string::npos);
+  CHECK(html.find("class=\"rank1\" title=\"\">34.00</td>") != std::string::npos);
+}
+
+TEST_CASE("on a narrow terminal groups come below each other, each with the methods") {
+  const Table table = golden_table("table1_photometric");
+  CHECK(table_terminal(table, {false, 1000}) == table_terminal(table));
+  for (const std::size_t width : {100, 60, 40}) {
+    std::istringstream lines(table_terminal(table, {false, width}));
+    std::size_t headers = 0;
+    std::string line;
+    std::getline(lines, line);  // title
+    while (std::getline(lines, line) && line.rfind("  Mean", 0) != 0) {
+      CHECK(text_width(line) <= width);
+      headers += line.rfind("Method", 0) == 0;
+      const bool measured = line.find("GlassRoom") != std::string::npos;
+      CHECK_FALSE((measured && line.find("†") != std::string::npos));
+    }
+    // 66 columns measured, 84 published in two groups of 45.
+    CHECK(headers == (width == 100 ? 2 : (width == 60 ? 4 : 6)));
+  }
+}
+
+TEST_CASE("LaTeX gets no character that it cannot print") {
+  Table table = golden_table("table1_photometric");
+  table.rows[0].title = "a\\b_{c}^2 ≈ 漢\t|";
+  const std::string tex = table_latex(table);
+  CHECK(
+      tex.find("a\\textbackslash{}b\\_\\{c\\}\\textasciicircum{}2 $^\\approx$ ??$|$") !=
+      std::string::npos
+  );
+}
+
+TEST_CASE("pdflatex compiles all tables in one document") {
+  if (std::system("command -v pdflatex >/dev/null 2>&1") != 0) {
+    WARN("skipped: no pdflatex (Debian: texlive-latex-recommended)");
+    return;
+  }
+  const test::TempFolder folder;
+  std::vector<Table> tables;
+  for (const TableDefinition& definition : table_definitions()) {
+    tables.push_back(build_table(definition, read_records(kGolden / "records.jsonl")));
+    tables.back().notes.push_back("100% of $a_b$ #1 & ~^\\ {x} 漢");
+    write_table(folder.path(), tables.back());
+  }
+  write_file(folder / "all.tex", latex_document(tables));
+  const std::string command = fmt::format(
+      "cd '{}' && pdflatex -interaction=nonstopmode -halt-on-error all.tex >out.txt 2>&1",
+      folder.path().string()
+  );
+  const bool compiled = std::system(command.c_str()) == 0;
+  INFO((compiled ? "" : read_file(folder / "out.txt")));
+  CHECK(compiled);
+  CHECK(fs::exists(folder / "all.pdf"));
 }
 
 TEST_CASE("a definition with an unknown key or direction is an error naming the file") {

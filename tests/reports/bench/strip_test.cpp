@@ -148,10 +148,21 @@ TEST_CASE("panels grow by whole numbers and shrink to a width that fits a page")
   CHECK(fit_panel(Image(9000, 1, 3)).size() == ImageSize{480, 1});
 }
 
+TEST_CASE("titles of rows stand left of the panels and widen the picture by the longest line") {
+  PictureGrid grid{{"one"}, {{fit_panel(Image(40, 30, 3))}}, {}};
+  const int narrow = draw_grid(grid).width();
+  grid.row_titles = {"a short line\nand a rather longer one"};
+  const Image wide = draw_grid(grid);
+  CHECK(wide.width() > narrow + 100);
+  CHECK(wide.at(wide.width() - narrow / 2, wide.height() / 2) == 0);  // the black panel
+  grid.row_titles = {"short"};
+  CHECK(draw_grid(grid).width() < wide.width());
+}
+
 TEST_CASE("a legend longer than the panels widens the picture") {
   PictureGrid grid{{"one"}, {{fit_panel(Image(40, 30, 3))}}, {{"short"}}};
   const int narrow = draw_grid(grid).width();
-  grid.legend.push_back({std::string(200, 'w'), true, "end"});
+  grid.legend.push_back({std::string(200, 'w'), LegendBar::kDepth, "end"});
   CHECK(narrow == kMinPanelWidth);
   CHECK(draw_grid(grid).width() > 5 * narrow);
 }

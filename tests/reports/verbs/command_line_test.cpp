@@ -100,6 +100,32 @@ TEST_CASE("a report needs records, and nothing else") {
   CHECK(run({"report", "--profile", "smoke", "--out", out}) == 2);
 }
 
+TEST_CASE("compare exits with 4 on a regression and with 2 where there are no records") {
+  const test::TempFolder folder;
+  const auto store = [&](const char* name, double psnr) {
+    const fs::path path = folder.path() / name;
+    write_file(
+        path / "records.jsonl",
+        fmt::format(R"({{"scene": "room_1", "method": "2dgs", "metrics": {{"psnr": {}}}}})", psnr) +
+            "\n"
+    );
+    return path.string();
+  };
+  const std::string before = store("before", 30), slight = store("slight", 29.8),
+                    worse = store("worse", 29.6), none = folder / "none.jsonl",
+                    table = folder / "change.md";
+  CHECK(run({"compare", before.c_str(), slight.c_str()}) == 0);
+  CHECK(run({"compare", before.c_str(), slight.c_str(), "--tolerance", "0.001"}) == 4);
+  CHECK(run({"compare", before.c_str(), worse.c_str(), "--markdown", table.c_str()}) == 4);
+  CHECK(read_file(table).find("| room_1/2dgs | psnr ↑ | 30 | 29.6 | -0.4 |") != std::string::npos);
+  CHECK(run({"compare", worse.c_str(), before.c_str(), "--markdown", "-"}) == 0);
+  CHECK(run({"compare", before.c_str(), none.c_str(), "--json"}) == 2);
+  write_file(none, "\x89PNG\r\n\x1a\n");
+  CHECK(run({"compare", before.c_str(), none.c_str()}) == 2);
+  CHECK(run({"compare", before.c_str()}) == 1);
+  CHECK(run({"compare", before.c_str(), worse.c_str(), "--tolerance", "-1"}) == 1);
+}
+
 TEST_CASE("an output folder that cannot be written exits with 6") {
   CHECK(run({"table", "--profile", "smoke", "--out", "/proc/nowhere"}) == 6);
 }

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "reports/figures/curve_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "metrics/mesh/mesh_protocol.h"
+#include "reports/bench/run_folder.h"
+#include "reports/figures/chart.h"
+#include "reports/page/training_curve.h"
+#include "reports/statistics.h"
+
+namespace glint {
+
+namespace {
+
+constexpr std::size_t kCurvePoints = 100;
+
+using RecordPointers = std::vector<const Record*>;
+using MethodRecords = std::vector<std::pair<std::string, RecordPointers>>;
+
+// Finished records of each scene and method, in the order of the records.
+std::vector<std::pair<std::string, MethodRecords>> finished_runs(const std::vector<Record>& records
+) {
+  std::vector<std::pair<std::string, MethodRecords>> scenes;
+  const auto entry = [](auto& list, const std::string& name) -> auto& {
+    const auto it = std::find_if(list.begin(), list.end(), [&](const auto& candidate) {
+      return candidate.first == name;
+    });
+    if (it != list.end()) return it->second;
+    list.push_back({name, {}});
+    return list.back().second;
+  };
+  for (const Record& record : records)
+    if (record.ok()) entry(entry(scenes, record.cell.scene), record.cell.method).push_back(&record);
+  return scenes;
+}
+
+double metric_of(const Record& record, const std::string& id) {
+  const auto it = record.metrics.find(id);
+  return it == record.metrics.end() ? std::nan("") : it->second;
+}
+
+std::vector<double> numbers_of(const Json& array) {
+  std::vector<double> numbers;
+  for (const Json& value : array)
+    numbers.push_back(value.is_number() ? value.get<double>() : std::nan(""));
+  return numbers;
+}
+
+Chart training_chart(const MethodRecords& methods, const fs::path& folder) {
+  Chart chart{"iteration", "PSNR of training views (dB)", {}};
+  for (const auto& [method, runs] : methods) {
+    const fs::path log = run_folder(folder, runs.front()->cell) / "log.jsonl";
+    const Json curve = training_curve(log, kCurvePoints);
+    chart.series.push_back({method, {}, {}});
+    if (!curve.is_object()) continue;
+    chart.series.back().x = numbers_of(curve.at("iteration"));
+    chart.series.back().y = numbers_of(curve.at("psnr"));
+  }
+  return chart;
+}
+
+Chart scatter_chart(
+    const MethodRecords& methods, const std::string& x_metric, const std::string& x_label
+) {
+  Chart chart{x_label, "PSNR of test views (dB)", {}};
+  for (const auto& [method, runs] : methods) {
+    ChartSeries series{method, {}, {}, true};
+    for (const Record* record : runs) {
+      series.x.push_back(metric_of(*record, x_metric));
+      series.y.push_back(metric_of(*record, "psnr"));
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+// Of a method; no points where fewer than two distances were measured.
+ChartSeries f1_series(const std::string& method, const RecordPointers& runs, const char* prefix) {
+  ChartSeries series{method, {}, {}};
+  for (const double threshold : default_thresholds_m()) {
+    const std::string id = prefix + mesh_metric_id("f1@" + threshold_name(threshold), {});
+    std::vector<double> values;
+    for (const Record* record : runs)
+      if (const double value = metric_of(*record, id); std::isfinite(value))
+        values.push_back(value);
+    if (values.empty()) continue;
+    series.x.push_back(100 * threshold);
+    series.y.push_back(mean_of(values));
+  }
+  if (series.x.size() < 2) return {method, {}, {}};
+  return series;
+}
+
+Chart f1_chart(const MethodRecords& methods, const char* prefix) {
+  Chart chart{"distance (cm)", "F1", {}};
+  for (const auto& [method, runs] : methods)
+    if (ChartSeries series = f1_series(method, runs, prefix); !series.x.empty())
+      chart.series.push_back(std::move(series));
+  return chart;
+}
+
+void add_charts(PictureGrid& grid, const std::string& scene, const std::vector<Chart>& charts) {
+  std::vector<Image> row;
+  for (const Chart& chart : charts) row.push_back(draw_chart(chart));
+  const bool nothing =
+      std::all_of(row.begin(), row.end(), [](const Image& panel) { return panel.empty(); });
+  if (nothing) return;
+  grid.rows.push_back(std::move(row));
+  grid.row_titles.push_back(scene);
+}
+
+}  // namespace
+
+PictureGrid curves_figure(const std::vector<Record>& records, const fs::path& folder) {
+  PictureGrid grid{{"training", "quality and time", "quality and size"}, {}, {}};
+  for (const auto& [scene, methods] : finished_runs(records))
+    add_charts(
+        grid,
+        scene,
+        {training_chart(methods, folder),
+         scatter_chart(methods, "train-minutes", "training (min)"),
+         scatter_chart(methods, "num-surfels", "surfels")}
+    );
+  return grid;
+}
+
+PictureGrid f1_figure(const std::vector<Record>& records) {
+  PictureGrid grid{{"mesh", "mesh behind glass"}, {}, {}};
+  for (const auto& [scene, methods] : finished_runs(records))
+    add_charts(grid, scene, {f1_chart(methods, ""), f1_chart(methods, kBehindMesh)});
+  return grid;
+}
+
+}  // namespace glint

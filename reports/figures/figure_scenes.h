@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// What figures show of a scene: one test view, its truth and what each method rendered of it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "reports/figures/figures.h"
+#include "reports/page/layers.h"
+
+namespace glint {
+
+struct FigureScene {
+  std::string name, view;
+  DepthScale scale;
+  MaskImage glass;                           // empty: the data have none
+  LayerMaps truth;                           // ids of page_layers()
+  std::map<std::string, LayerMaps> methods;  // the first finished seed of each
+};
+
+inline constexpr const char* kViewRule = "the test view with the largest share of glass";
+
+// The view after kViewRule, the first of equals; without glass the middle one.
+std::size_t figure_view(const std::vector<View>& views);
+
+// Scenes whose data can be loaded, in the order of the records; others with a warning.
+std::vector<FigureScene> figure_scenes(
+    const std::vector<Record>& records, const FigureOptions& options
+);
+
+}  // namespace glint

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Figures of a profile's results as PNG: what methods render beside the truth, and curves. One view
+// a scene, chosen by a rule; one range of colours for all methods (docs/REPORT.md).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "glint/core/files.h"
+#include "reports/bench/run_folder.h"
+
+namespace glint {
+
+struct FigureOptions {
+  fs::path folder;                            // OUT/PROFILE with records.jsonl and runs/
+  std::function<Scene(const RunSpec&)> load;  // the data that a run was scored against
+};
+
+// FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves,
+// f1}.png; returns the paths of those that have something to show. What is absent inside a figure
+// says "missing"; scenes without data are left out of figures with maps, with a warning. The lean
+// build has none. Errors: those of read_records(), kEnvironment (disk).
+std::vector<fs::path> write_figures(const FigureOptions& options);
+
+}  // namespace glint

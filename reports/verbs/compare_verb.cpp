@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+
+#include "reports/compare.h"
+#include "reports/verbs/verb.h"
+
+namespace glint {
+
+namespace {
+
+struct CompareVerbOptions {
+  std::string before, after;
+  std::string markdown;  // file, or "-" for standard output
+  CompareOptions compare;
+};
+
+int run_compare(const CommonOptions& common, const CompareVerbOptions& options) {
+  const Comparison comparison =
+      compare_records(read_store(options.before), read_store(options.after), options.compare);
+  const bool on_stdout = options.markdown == "-";
+  if (!options.markdown.empty() && !on_stdout)
+    write_file(options.markdown, comparison_markdown(comparison));
+  if (common.json)
+    print_json(comparison_json(comparison));
+  else
+    print_text(on_stdout ? comparison_markdown(comparison) : comparison_text(comparison));
+  const bool regressed = comparison.num_regressions() > 0;
+  return static_cast<int>(regressed ? ExitCode::kCheckFailed : ExitCode::kSuccess);
+}
+
+}  // namespace
+
+void add_compare_verb(CommandLine& line) {
+  auto options = std::make_shared<CompareVerbOptions>();
+  CLI::App* verb = line.add_verb(
+      line.app,
+      "compare",
+      "what changed between two stores of records; exits with 4 on a regression",
+      [&line, options] { return run_compare(line.common, *options); }
+  );
+  verb->add_option("before", options->before, "folder with records.jsonl, or the file")->required();
+  verb->add_option("after", options->after, "the same, after the change")->required();
+  verb->add_option(
+          "--tolerance",
+          options->compare.tolerance,
+          "relative change that is no regression where there is one seed"
+  )
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb->add_option(
+      "--metric",
+      options->compare.metrics,
+      "globs of metric ids, '*': all; none: the metrics of the tables"
+  );
+  verb->add_flag(
+      "--costs", options->compare.costs, "slower, longer and larger is a regression, too"
+  );
+  verb->add_option(
+      "--markdown", options->markdown, "write a Markdown table to FILE, '-': print it"
+  );
+}
+
+}  // namespace glint

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "reports/figures/figures.h"
+#include "reports/verbs/report_verb.h"
+
+namespace glint {
+
+namespace {
+
+int run_figures(const CommonOptions& common) {
+  const fs::path folder = common.profile_folder(common.resolved_profile());
+  GLINT_CHECK(
+      fs::exists(folder / "records.jsonl"),
+      kBadPrediction,
+      "{}: no records.jsonl; run `glint-bench all --profile {} --out {}` first",
+      folder.string(),
+      common.profile,
+      common.out
+  );
+  Json json = {{"figures", Json::array()}};
+  for (const fs::path& path : write_figures({folder, load_run_data})) {
+    json["figures"].push_back(path.string());
+    if (!common.json) print_text(path.string() + "\n");
+  }
+  if (common.json) print_json(json);
+  return 0;
+}
+
+}  // namespace
+
+void add_figures_verb(CommandLine& line) {
+  line.add_verb(line.app, "figures", "write OUT/PROFILE/figures/*.png", [&line] {
+    return run_figures(line.common);
+  });
+}
+
+}  // namespace glint

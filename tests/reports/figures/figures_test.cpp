@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "reports/figures/figures.h"
+
+#include <catch2/catch.hpp>
+
+#include "glint/scene/image_files.h"
+#include "reports/figures/map_figures.h"
+#include "tests/reports/fake_method.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+
+namespace {
+
+constexpr int kWidth = 16, kHeight = 12;
+
+RenderOutput output_of(float grey, bool layered) {
+  RenderOutput output;
+  output.rgb = Image(kWidth, kHeight, 3, grey);
+  output.depth = Image(kWidth, kHeight, 1, 2.0f);
+  if (!layered) return output;
+  for (const char* name : {"transparency", "behind_depth"})
+    output.layers[name] = Image(kWidth, kHeight, 1, 0.5f);
+  for (const char* name : {"transmitted", "reflected"})
+    output.layers[name] = Image(kWidth, kHeight, 3, 0.25f);
+  return output;
+}
+
+// A finished run with renders of all test views of the fake scene.
+void add_run(const fs::path& folder, const std::string& method, float grey, bool layered = false) {
+  Record record;
+  record.dataset = "glassroom";
+  record.cell = {"room_1", method, 0};
+  record.metrics = {
+      {"psnr", 20.0 + static_cast<double>(grey)}, {"train-minutes", 1}, {"num-surfels", 100}};
+  if (layered) record.metrics.insert({{"mesh-f1@1cm", 0.2}, {"mesh-f1@5cm", 0.6}});
+  append_record(folder / "records.jsonl", record);
+  RunSpec spec;
+  spec.folder = run_folder(folder, record.cell);
+  spec.method = method;
+  spec.scene = "room_1";
+  write_run_spec(spec, Json::object());
+  for (const View& view : fake_scene("room_1").test)
+    write_render(view_folder(spec.folder, view.name), output_of(grey, layered));
+}
+
+Scene load_fake(const RunSpec&) { return fake_scene("room_1"); }
+
+std::vector<std::string> names_of(const std::vector<fs::path>& paths) {
+  std::vector<std::string> names;
+  for (const fs::path& path : paths) names.push_back(path.stem().string());
+  return names;
+}
+
+FigureScene scene_of(std::map<std::string, LayerMaps> methods) {
+  FigureScene scene;
+  scene.name = "room_1";
+  scene.view = "0002";
+  scene.truth["render"] = Image(kWidth, kHeight, 3, 0.5f);
+  scene.methods = std::move(methods);
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("figures have what the runs rendered and nothing else") {
+  const test::TempFolder folder;
+  add_run(folder.path(), "2dgs", 0.4f);
+  CHECK(
+      names_of(write_figures({folder.path(), load_fake})) ==
+      std::vector<std::string>{"qualitative", "curves"}
+  );
+  add_run(folder.path(), "glint", 0.5f, true);
+  add_run(folder.path(), "glint/no-refl", 0.3f);
+  CHECK(
+      names_of(write_figures({folder.path(), load_fake})) ==
+      std::vector<std::string>{
+          "qualitative",
+          "depth_decomposition",
+          "transparency",
+          "radiance",
+          "ablation",
+          "curves",
+          "f1"}
+  );
+  for (const auto& entry : fs::directory_iterator(folder / "figures"))
+    CHECK(read_image(entry.path(), 3).width() > kMinPanelWidth);
+}
+
+TEST_CASE("a figure that has nothing to show any more is removed") {
+  const test::TempFolder folder;
+  add_run(folder.path(), "2dgs", 0.4f);
+  write_file(folder / "figures/f1.png", "of earlier records");
+  write_figures({folder.path(), load_fake});
+  CHECK_FALSE(fs::exists(folder / "figures/f1.png"));
+}
+
+TEST_CASE("without data there are curves, without records nothing") {
+  const test::TempFolder folder;
+  add_run(folder.path(), "2dgs", 0.4f);
+  const auto fails = [](const RunSpec&) -> Scene {
+    throw Error(ExitCode::kBadReference, "the data are gone");
+  };
+  CHECK(names_of(write_figures({folder.path(), fails})) == std::vector<std::string>{"curves"});
+  const test::TempFolder empty;
+  CHECK(write_figures({empty.path(), load_fake}).empty());
+}
+
+TEST_CASE("a damaged render is missing in its panel, not an error") {
+  const test::TempFolder folder;
+  add_run(folder.path(), "2dgs", 0.4f);
+  for (const View& view : fake_scene("room_1").test)
+    write_file(
+        view_folder(run_folder(folder.path(), {"room_1", "2dgs", 0}), view.name) / "depth.exr", "?"
+    );
+  CHECK(names_of(write_figures({folder.path(), load_fake})).front() == "qualitative");
+}
+
+TEST_CASE("the view with the most glass is shown, without glass the middle one") {
+  std::vector<View> views = fake_scene("room_1").test;
+  CHECK(figure_view(views) == 1);
+  views[0].truth.glass = MaskImage(kWidth, kHeight, 1, 0);
+  views[1].truth.glass = views[0].truth.glass;
+  CHECK(figure_view(views) == 1);
+  views[0].truth.glass.at(3, 3) = 255;
+  CHECK(figure_view(views) == 0);
+}
+
+TEST_CASE("the crop is where the methods together err most") {
+  Image first(36, 24, 1), second(36, 24, 1);
+  first.at(30, 20) = 1;
+  second.at(1, 1) = 0.4f;
+  const Crop crop = crop_of_errors({&first, &second});
+  CHECK(crop.width == 12);
+  CHECK(crop.height == 8);
+  CHECK((crop.left <= 30 && 30 < crop.left + crop.width));
+  CHECK((crop.top <= 20 && 20 < crop.top + crop.height));
+  second.at(1, 1) = 1.5f;
+  CHECK(crop_of_errors({&first, &second}).left <= 1);
+}
+
+TEST_CASE("columns of a figure are the truth and every method, empty where one has no map") {
+  const LayerMaps with_depth = {
+      {"render", Image(kWidth, kHeight, 3)}, {"depth", Image(kWidth, kHeight, 1, 1.0f)}};
+  const LayerMaps without = {{"render", Image(kWidth, kHeight, 3)}};
+  const PictureGrid grid =
+      qualitative_figure({scene_of({{"a", with_depth}, {"a/variant", without}, {"b", without}})});
+  CHECK(grid.titles == std::vector<std::string>{"truth", "a", "b"});
+  REQUIRE(grid.rows.size() == 4);  // image and depth with their crops; no normals
+  CHECK(grid.row_titles[2] == "room_1\ndepth");
+  CHECK(grid.rows[2][0].empty());
+  CHECK_FALSE(grid.rows[2][1].empty());
+  CHECK(grid.rows[2][2].empty());
+  CHECK(grid.rows[1][1].size() == grid.rows[0][1].size());
+}
+
+TEST_CASE("the full model stands first in the ablation, variants keep the table's order") {
+  const LayerMaps maps = {{"render", Image(kWidth, kHeight, 3)}};
+  const auto scene =
+      scene_of({{"glint", maps}, {"glint/no-lgeo", maps}, {"glint/no-refl", maps}, {"2dgs", maps}});
+  CHECK(
+      ablation_figure({scene}).titles ==
+      std::vector<std::string>{"truth", "Full model", "w/o G_refl", "w/o L_geo"}
+  );
+  CHECK(ablation_figure({scene_of({{"glint", maps}})}).rows.empty());
+}
