@@ -225,7 +225,7 @@ TEST_CASE("hostile names stay text") {
   const fs::path index = store.write();
   CHECK(read_file(store.asset("data.js")).find('<') == std::string::npos);
   CHECK(read_file(store.asset("scene_0.js")).find('<') == std::string::npos);
-  CHECK(read_file(index).find("<title>GLINT Bench: a&quot;&lt;b></title>") != std::string::npos);
+  CHECK(read_file(index).find("<title>GLINT Bench: a&quot;&lt;b&gt;</title>") != std::string::npos);
   CHECK(
       assigned(store.asset("data.js"))["records"]["rows"][0][1].get<std::string>() ==
       "room" + kHostile
