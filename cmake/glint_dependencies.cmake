@@ -20,9 +20,22 @@ add_library(glint_png INTERFACE)
 target_include_directories(glint_png SYSTEM INTERFACE ${GLINT_PNG_INCLUDE})
 target_link_libraries(glint_png INTERFACE ${GLINT_PNG_LIBRARY} ${GLINT_Z_LIBRARY})
 
+# Pictures: libpng, libdeflate for the common case, libjpeg-turbo. None has a CMake config here.
+set(GLINT_IMAGE_CODECS glint_png)
+foreach(codec deflate:libdeflate.h turbojpeg:turbojpeg.h)
+  string(REPLACE ":" ";" codec ${codec})
+  list(GET codec 0 name)
+  list(GET codec 1 header)
+  find_path(GLINT_${name}_INCLUDE ${header} REQUIRED)
+  find_library(GLINT_${name} NAMES lib${name}.a ${name} REQUIRED)
+  add_library(glint_${name} INTERFACE)
+  target_include_directories(glint_${name} SYSTEM INTERFACE ${GLINT_${name}_INCLUDE})
+  target_link_libraries(glint_${name} INTERFACE ${GLINT_${name}})
+  list(APPEND GLINT_IMAGE_CODECS glint_${name})
+endforeach()
+
 if(GLINT_LEAN)
   set(GLINT_FMT fmt::fmt-header-only)
-  set(GLINT_IMAGE_CODECS glint_png)
   set(GLINT_RAY_TRACER "")
   set(GLINT_NETWORKS "")
   return()
@@ -36,7 +49,7 @@ find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to set how many threads one
 find_package(Bullet REQUIRED)  # module mode: the config mode has relative include folders
 find_package(assimp 5.2 REQUIRED CONFIG)  # glTF furniture
 find_path(GLINT_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-foreach(module core imgproc imgcodecs calib3d)
+foreach(module core imgproc calib3d)
   find_library(GLINT_OPENCV_${module} opencv_${module} REQUIRED)
   add_library(opencv::${module} UNKNOWN IMPORTED)
   set_target_properties(
@@ -69,5 +82,5 @@ find_package(Eigen3 3.4 QUIET CONFIG)
 find_package(Open3D QUIET CONFIG)
 
 set(GLINT_FMT fmt::fmt)
-set(GLINT_IMAGE_CODECS opencv::core opencv::imgproc opencv::imgcodecs)
+list(APPEND GLINT_IMAGE_CODECS opencv::core opencv::imgproc)
 set(GLINT_RAY_TRACER embree)

@@ -23,7 +23,8 @@ if(GLINT_CCACHE)
 endif()
 
 if(GLINT_SANITIZE)
-  add_compile_options(-fsanitize=${GLINT_SANITIZE} -fno-omit-frame-pointer -g)
+  # A report ends the program: a test cannot pass after one.
+  add_compile_options(-fsanitize=${GLINT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
   add_link_options(-fsanitize=${GLINT_SANITIZE})
   if(GLINT_SANITIZE MATCHES thread)
     add_compile_definitions(GLINT_STD_THREADS)  # TSan does not understand TBB

@@ -65,25 +65,11 @@ std::string facts(const ResultsInfo& info, const std::vector<Record>& records) {
   return text;
 }
 
-bool measured(const TableCell& cell, const TableColumn& column) {
-  return !column.published &&
-         (cell.status == CellStatus::kOk || cell.status == CellStatus::kPartial);
-}
-
-bool measured(const Table& table) {
-  for (const TableRow& row : table.rows)
-    for (std::size_t i = 0; i < row.cells.size(); ++i)
-      if (measured(row.cells[i], table.columns[i])) return true;
-  return false;
-}
-
 }  // namespace
 
 ResultsInfo read_results_info(const fs::path& file) {
   ResultsInfo info;
-  const Json json = Json::parse(read_file(file), nullptr, false);
-  GLINT_CHECK(json.is_object(), kBadReference, "{}: not a JSON object", file.string());
-  config_from_json(info, json, file.string());
+  config_from_json(info, read_json_object(file), file.string());
   return info;
 }
 
@@ -94,7 +80,7 @@ std::string results_markdown(const ResultsInfo& info, const std::vector<Record>&
       "differ.\n\n" +
       facts(info, records);
   for (const TableDefinition& definition : table_definitions())
-    if (const Table table = build_table(definition, records); measured(table))
+    if (const Table table = build_table(definition, records); has_measurement(table))
       text += fmt::format("\n{}", table_markdown(table));
   return text;
 }

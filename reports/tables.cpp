@@ -373,6 +373,13 @@ Table build_table(const TableDefinition& definition, const std::vector<Record>& 
   return table;
 }
 
+bool has_measurement(const Table& table) {
+  for (const TableRow& row : table.rows)
+    for (std::size_t i = 0; i < row.cells.size(); ++i)
+      if (!table.columns[i].published && row.cells[i].has_value()) return true;
+  return false;
+}
+
 std::string_view order_arrow(RankOrder order) {
   if (order == RankOrder::kHigherFirst) return "↑";
   return order == RankOrder::kLowerFirst ? "↓" : "";

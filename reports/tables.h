@@ -103,6 +103,9 @@ std::vector<TableDefinition> table_definitions();
 // values.
 Table build_table(const TableDefinition& definition, const std::vector<Record>& records);
 
+// Has it a number that this suite measured, complete or partial?
+bool has_measurement(const Table& table);
+
 std::string_view order_arrow(RankOrder order);  // "↑", "↓", ""
 
 }  // namespace glint

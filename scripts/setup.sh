@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build ccache git ca-certificates
   libembree-dev libopenexr-dev libnanoflann-dev libcli11-dev catch2 libtbb-dev
   nlohmann-json3-dev libtomlplusplus-dev libfmt-dev libbullet-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libturbojpeg0-dev libdeflate-dev
   libassimp-dev libpng-dev libdnnl-dev libminizip-dev libcgal-dev libopen3d-dev
   clang-format-14
 )

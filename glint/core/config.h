@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -21,6 +22,9 @@
 namespace glint {
 
 using Json = nlohmann::ordered_json;
+
+// The file, which must hold a JSON object. Errors (`code`): read_file()'s, anything else in it.
+Json read_json_object(const std::filesystem::path& path, ExitCode code = ExitCode::kBadReference);
 
 // The fields as a JSON object, in the order of visit().
 template <class Config>

@@ -27,7 +27,13 @@ std::string read_file(const fs::path& path) {
   GLINT_CHECK(
       in.good(), kBadReference, "{}: cannot be opened ({})", path.string(), std::strerror(errno)
   );
-  std::string content(std::istreambuf_iterator<char>(in), {});
+  std::string content;
+  for (std::size_t size = 0; in.good(); content.resize(size)) {  // the size it claims may be wrong
+    constexpr std::size_t kBlock = std::size_t{1} << 20;
+    content.resize(size + kBlock);
+    in.read(&content[size], kBlock);
+    size += static_cast<std::size_t>(in.gcount());
+  }
   GLINT_CHECK(!in.bad(), kBadReference, "{}: reading failed", path.string());
   return content;
 }
@@ -67,6 +73,23 @@ void write_file(const fs::path& path, std::string_view content) {
         std::strerror(errno)
     );
   });
+}
+
+TemporaryFolder::TemporaryFolder(std::string_view prefix) {
+  std::string pattern = (fs::temp_directory_path() / fmt::format("{}_XXXXXX", prefix)).string();
+  GLINT_CHECK(
+      ::mkdtemp(pattern.data()) != nullptr,
+      kEnvironment,
+      "{}: cannot be made ({}); TMPDIR names another folder for temporary files",
+      pattern,
+      std::strerror(errno)
+  );
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code code;
+  fs::remove_all(path_, code);
 }
 
 void append_line(const fs::path& path, std::string_view line) {

@@ -24,6 +24,22 @@ void write_file(const fs::path& path, std::string_view content);
 // Appends one line and flushes it; a torn last line of an earlier crash is closed first.
 void append_line(const fs::path& path, std::string_view line);
 
+// An empty folder of its own among the system's temporary files, removed with the object. Errors
+// (kEnvironment): cannot be made.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(std::string_view prefix);
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+  fs::path operator/(const fs::path& name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
 // Regular files in a folder whose extension (lower case, with dot) is one of `extensions` (all when
 // empty), in natural order ("2" before "10"). Errors (kBadReference): not a readable folder.
 std::vector<fs::path> list_files(

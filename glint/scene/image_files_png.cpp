@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
@@ -109,17 +108,6 @@ Image detail::read_png_or_jpeg(const fs::path& path) {
   check_claimed_size(path, header.size, file.size());
   const bool is_png = file.starts_with(kPngSignature);
   return without_alpha(is_png ? decode_png(path, file) : decode_jpeg(path, file), header.grey);
-}
-
-const float* detail::unit_values(int full_range) {
-  const auto fill = [](int last) {
-    std::vector<float> values;
-    for (int n = 0; n <= last; ++n)
-      values.push_back(static_cast<float>(n) / static_cast<float>(last));
-    return values;
-  };
-  static const std::vector<float> bytes = fill(255), words = fill(65535);
-  return full_range == 255 ? bytes.data() : words.data();
 }
 
 ImageSize read_image_size(const fs::path& path) {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nanoflann.hpp>
 
 #include "glint/core/error.h"
+#include "glint/core/kd_tree.h"
 #include "glint/core/parallel.h"
 #include "glint/core/rng.h"
 
@@ -14,20 +14,6 @@ namespace {
 
 constexpr double kMinSpacing = 1e-4;          // metres
 constexpr float kSh0 = 0.28209479177387814f;  // 1 / (2 sqrt(pi)): the constant basis function
-
-struct PointsAdaptor {
-  std::span<const Vec3f> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return static_cast<double>(points[i][static_cast<int>(axis)]);
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using KdTree = nanoflann::
-    KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointsAdaptor>, PointsAdaptor, 3>;
 
 float logit(float probability) { return std::log(probability / (1 - probability)); }
 

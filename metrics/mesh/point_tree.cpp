@@ -2,27 +2,10 @@
 #include "metrics/mesh/point_tree.h"
 
 #include <cmath>
-#include <nanoflann.hpp>
+
+#include "glint/core/kd_tree.h"
 
 namespace glint {
-namespace {
-
-struct PointsAdaptor {
-  std::span<const Vec3f> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return static_cast<double>(points[i][static_cast<int>(axis)]);
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using KdTree = nanoflann::
-    KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointsAdaptor>, PointsAdaptor, 3>;
-
-}  // namespace
-
 struct PointTree::Impl {
   explicit Impl(std::span<const Vec3f> points) : adaptor{points}, tree(3, adaptor) {}
   PointsAdaptor adaptor;

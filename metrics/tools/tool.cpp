@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "metrics/tools/tool.h"
 
+#include <malloc.h>
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -214,6 +216,9 @@ int run_tool(
 }
 
 int run_tool(std::unique_ptr<MetricTool> tool, int argc, char** argv) {
+  // One pair of pictures follows another: memory is kept instead of given back and asked for again.
+  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the largest that it takes
+  ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
   return run_tool(*tool, std::vector<std::string>(argv + 1, argv + argc), std::cout, std::cerr);
 }
 

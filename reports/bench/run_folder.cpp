@@ -25,14 +25,6 @@ void visit_spec(S& spec, V&& v) {
   v("dataset_hash", spec.dataset_hash);
 }
 
-Json parse_file(const fs::path& path) {
-  return with_exit_code(ExitCode::kBadPrediction, [&] {
-    Json json = Json::parse(read_file(path), nullptr, false);
-    GLINT_CHECK(json.is_object(), kBadPrediction, "{}: not a JSON object", path.string());
-    return json;
-  });
-}
-
 void check_map(const fs::path& folder, const std::string& name, const Image& map, ImageSize size) {
   GLINT_CHECK(
       map.size() == size && (map.channels() == 1 || map.channels() == 3),
@@ -76,7 +68,7 @@ RunSpec read_run_spec(const fs::path& folder) {
       "{}: not a run folder (no config.json); make one with `glint-bench train`",
       folder.string()
   );
-  const Json json = parse_file(path);
+  const Json json = read_json_object(path, ExitCode::kBadPrediction);
   RunSpec spec;
   spec.folder = folder;
   try {
@@ -118,7 +110,7 @@ void write_trained(const RunSpec& spec, const TrainCost& cost) {
 std::optional<TrainCost> trained_cost(const RunSpec& spec) {
   const fs::path path = spec.folder / "env.json";
   if (!fs::exists(path)) return std::nullopt;
-  const Json json = parse_file(path);
+  const Json json = read_json_object(path, ExitCode::kBadPrediction);
   const bool same = json.value("config_hash", "") == spec.config_hash &&
                     json.value("dataset_hash", "") == spec.dataset_hash;
   if (!same) return std::nullopt;
@@ -134,14 +126,17 @@ std::optional<TrainedElsewhere> trained_elsewhere(const RunSpec& spec) {
                     there.options.seed == spec.options.seed &&
                     there.dataset_hash == spec.dataset_hash;
   if (!same || !trained_cost(there)) return std::nullopt;
-  const Json environment = parse_file(spec.folder / "env.json");
+  const Json environment = read_json_object(spec.folder / "env.json", ExitCode::kBadPrediction);
   return TrainedElsewhere{there.config_hash, environment.value("git_revision", "unknown")};
 }
 
+std::string flat_view_name(std::string view_name) {
+  std::replace(view_name.begin(), view_name.end(), '/', '_');
+  return view_name;
+}
+
 fs::path view_folder(const fs::path& run, const std::string& view_name) {
-  std::string name = view_name;
-  std::replace(name.begin(), name.end(), '/', '_');
-  return run / "renders" / name;
+  return run / "renders" / flat_view_name(view_name);
 }
 
 void write_render(const fs::path& folder, const RenderOutput& output) {

@@ -49,7 +49,9 @@ struct TrainedElsewhere {
 };
 std::optional<TrainedElsewhere> trained_elsewhere(const RunSpec& spec);
 
-// renders/<view>: the view's name with '/' replaced.
+// The name of a view as run folders write it: '_' for '/'.
+std::string flat_view_name(std::string view_name);
+// renders/<flat name>.
 fs::path view_folder(const fs::path& run, const std::string& view_name);
 
 // rgb.exr (as displayed, not clamped), rgb.png, depth.exr, normal.exr, and each layer under its

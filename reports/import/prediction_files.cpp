@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glint/core/error.h"
+#include "reports/bench/run_folder.h"
 
 namespace glint {
 namespace {
@@ -124,8 +125,7 @@ std::vector<FoundFile> find_map(const fs::path& root, const MapPlaces& map) {
 }
 
 const FoundFile* find_name(const std::vector<FoundFile>& files, const std::string& view) {
-  std::string flat = view;  // as run folders write it
-  std::replace(flat.begin(), flat.end(), '/', '_');
+  const std::string flat = flat_view_name(view);
   for (const FoundFile& file : files)
     if (file.name == view || file.name == flat || file.name == fs::path(view).stem().string())
       return &file;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reports/mesh/mesh_eval.h"
 
-#include "glint/scene/ply.h"
-#include "metrics/mesh/clean.h"
-#include "metrics/mesh/cull.h"
 #include "metrics/mesh/mesh_scores.h"
+#include "metrics/tools/mesh_inputs.h"
 
 namespace glint {
 namespace {
@@ -16,21 +14,22 @@ std::vector<Camera> train_cameras(const Scene& scene) {
 }
 
 // Read, cleaned and culled; `recipe` gets what was done.
-TriangleMesh prepared(
+Surface prepared(
     const fs::path& path,
     ExitCode code,
     const std::vector<Camera>& cameras,
     const MeshProtocol& protocol,
     Json& recipe
 ) {
-  const CleanMesh clean =
-      with_exit_code(code, [&] { return clean_mesh(read_mesh_ply(path, NonFinite::kKeep)); });
-  recipe = {{"file", path.filename().string()}, {"clean", config_to_json(clean.report)}};
-  if (protocol.cull == MeshCulling::kNone) return clean.mesh;
-  CulledMesh culled =
-      cull_unseen(clean.mesh, cameras, protocol.cull_tolerance_m, protocol.cull_max_edge_m);
-  recipe["cull"] = config_to_json(culled.recipe);
-  return std::move(culled.mesh);
+  SurfaceInput input = with_exit_code(code, [&] {
+    SurfaceInput read = read_surface(path);
+    if (protocol.cull == MeshCulling::kCameras) cull_surface(read, cameras, protocol);
+    return read;
+  });
+  recipe = {{"file", path.filename().string()}};
+  if (input.cleaning) recipe["clean"] = config_to_json(*input.cleaning);
+  if (input.culling) recipe["cull"] = config_to_json(*input.culling);
+  return std::move(input.surface);
 }
 
 struct Layer {

@@ -14,6 +14,7 @@
 #include "glint/scene/ply.h"
 #include "metrics/tools/pairing.h"
 #include "metrics/tools/tool.h"
+#include "reports/bench/run_folder.h"
 #include "reports/mesh/tsdf.h"
 
 namespace glint {
@@ -57,11 +58,7 @@ struct Source {
 std::map<std::string, Camera> cameras_by_name(const Scene& scene) {
   std::map<std::string, Camera> cameras;
   for (const auto* views : {&scene.train, &scene.test})
-    for (const View& view : *views) {
-      std::string name = view.name;  // as run folders write it
-      std::replace(name.begin(), name.end(), '/', '_');
-      cameras[name] = view.camera;
-    }
+    for (const View& view : *views) cameras[flat_view_name(view.name)] = view.camera;
   return cameras;
 }
 

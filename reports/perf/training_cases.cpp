@@ -104,10 +104,9 @@ PerfCase step_case(
   config["densify_until"] = 0;
   s->method = create_method(id, config);
   s->method->initialize(s->scene, {30000, 0});
-  const fs::path folder = fs::temp_directory_path() / fmt::format("glint_perf_{}", ::getpid());
-  write_perf_sets(*s->method, folder, options);
-  s->method->load(folder.string());
-  fs::remove_all(folder);
+  const TemporaryFolder folder("glint_perf");
+  write_perf_sets(*s->method, folder.path(), options);
+  s->method->load(folder.path().string());
   return {name, "steps", [] { return 1.0; }, [s] { s->method->step(s->iteration++); }, {}};
 }
 

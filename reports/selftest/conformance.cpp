@@ -47,9 +47,9 @@ void export_conformance(const fs::path& folder) {
 
 std::vector<ConformanceVector> read_vectors(const fs::path& folder) {
   const std::string where = (folder / "vectors.json").string();
-  const Json json = Json::parse(read_file(where), nullptr, false);
+  const Json json = read_json_object(where);
   GLINT_CHECK(
-      json.is_object() && json.contains("vectors") && json["vectors"].is_array(),
+      json.contains("vectors") && json["vectors"].is_array(),
       kBadReference,
       "{}: no list 'vectors'",
       where

@@ -51,27 +51,13 @@ std::string option(const Arguments& arguments, const std::string& name) {
   throw Error(ExitCode::kUsage, "no " + name);
 }
 
-// A folder of its own that goes when the scoring is done.
-struct ScratchFolder {
-  fs::path path;
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "glint_selftest_XXXXXX").string();
-    GLINT_CHECK(::mkdtemp(name.data()) != nullptr, kEnvironment, "{}: cannot be made", name);
-    path = name;
-  }
-  ~ScratchFolder() {
-    std::error_code code;
-    fs::remove_all(path, code);
-  }
-};
-
 ProgramResult eval_predictions(const Arguments& arguments) {
   try {
-    const ScratchFolder scratch;
+    const TemporaryFolder scratch("glint_selftest");
     const fs::path dataset = option(arguments, "--dataset");
     const Scene scene = load_scene(dataset, {});
     RunSpec spec;
-    spec.folder = scratch.path / "run";
+    spec.folder = scratch / "run";
     spec.dataset_folder = dataset;
     import_predictions(option(arguments, "--predictions"), scene, spec, {});
     return {ExitCode::kSuccess, eval_stage(spec, scene, {}), ""};

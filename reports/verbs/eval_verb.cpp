@@ -23,8 +23,8 @@ Scores earlier_cost(const RunSpec& spec) {
   }
   const fs::path path = spec.folder / "metrics.json";
   if (!fs::exists(path)) return cost;
-  const Json json = Json::parse(read_file(path), nullptr, false);
-  if (json.is_object() && json.contains("metrics"))
+  const Json json = read_json_object(path, ExitCode::kBadPrediction);
+  if (json.contains("metrics"))
     for (const char* id : {"fps", "num-surfels"})
       if (const auto it = json["metrics"].find(id); it != json["metrics"].end() && it->is_number())
         cost[id] = it->get<double>();
@@ -35,9 +35,9 @@ Scores earlier_cost(const RunSpec& spec) {
 MeshProtocol mesh_protocol_of(const RunSpec& spec) {
   const fs::path path = spec.folder / "mesh.json";
   if (!fs::exists(path)) return {};
-  const Json json = Json::parse(read_file(path), nullptr, false);
+  const Json json = read_json_object(path, ExitCode::kBadPrediction);
   GLINT_CHECK(
-      json.is_object() && json.contains("options"),
+      json.contains("options"),
       kBadPrediction,
       "{}: not a report of the mesh stage; run `glint-bench mesh` again",
       path.string()

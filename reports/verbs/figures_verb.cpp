@@ -7,15 +7,7 @@ namespace glint {
 namespace {
 
 int run_figures(const CommonOptions& common) {
-  const fs::path folder = common.profile_folder(common.resolved_profile());
-  GLINT_CHECK(
-      fs::exists(folder / "records.jsonl"),
-      kBadPrediction,
-      "{}: no records.jsonl; run `glint-bench all --profile {} --out {}` first",
-      folder.string(),
-      common.profile,
-      common.out
-  );
+  const fs::path folder = folder_with_records(common);
   Json json = {{"figures", Json::array()}};
   for (const fs::path& path : write_figures({folder, load_run_data})) {
     json["figures"].push_back(path.string());

@@ -12,15 +12,7 @@ namespace glint {
 namespace {
 
 int run_report(const CommonOptions& common, bool single_file) {
-  const fs::path folder = common.profile_folder(common.resolved_profile());
-  GLINT_CHECK(
-      fs::exists(folder / "records.jsonl"),
-      kBadPrediction,
-      "{}: no records.jsonl; run `glint-bench all --profile {} --out {}` first",
-      folder.string(),
-      common.profile,
-      common.out
-  );
+  const fs::path folder = folder_with_records(common);
   const fs::path index = write_report(common, folder, result_tables(folder), single_file);
   if (common.json)
     print_json({{"page", index.string()}});
@@ -30,6 +22,19 @@ int run_report(const CommonOptions& common, bool single_file) {
 }
 
 }  // namespace
+
+fs::path folder_with_records(const CommonOptions& common) {
+  const fs::path folder = common.profile_folder(common.resolved_profile());
+  GLINT_CHECK(
+      fs::exists(folder / "records.jsonl"),
+      kBadPrediction,
+      "{}: no records.jsonl; run `glint-bench all --profile {} --out {}` first",
+      folder.string(),
+      common.profile,
+      common.out
+  );
+  return folder;
+}
 
 Scene load_run_data(const RunSpec& spec) {
   LoadOptions options;

@@ -7,6 +7,9 @@
 
 namespace glint {
 
+// OUT/PROFILE. Errors (kBadPrediction): no records.jsonl in it.
+fs::path folder_with_records(const CommonOptions& common);
+
 // The data that a run was scored against. Errors (kBadReference): not there, damaged.
 Scene load_run_data(const RunSpec& spec);
 

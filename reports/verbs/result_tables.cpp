@@ -11,12 +11,11 @@ namespace glint {
 
 namespace {
 
-bool has_measurement(const Table& table) {
+// A table with nothing but failures is shown, too: it says why.
+bool has_failure(const Table& table) {
   for (const TableRow& row : table.rows)
-    for (std::size_t i = 0; i < row.cells.size(); ++i)
-      if (!table.columns[i].published &&
-          (row.cells[i].has_value() || row.cells[i].status == CellStatus::kFailed))
-        return true;
+    for (const TableCell& cell : row.cells)
+      if (cell.status == CellStatus::kFailed) return true;
   return false;
 }
 
@@ -70,7 +69,7 @@ void write_tables(const fs::path& folder, const std::vector<Table>& tables) {
 void print_tables(const std::vector<Table>& tables) {
   for (const Table& table : tables)
     print_text(
-        has_measurement(table)
+        has_measurement(table) || has_failure(table)
             ? table_terminal(table, {color_terminal(), terminal_width()}) + "\n"
             : fmt::format("{} ({}): nothing measured yet\n\n", table.title, table.id)
     );

@@ -14,30 +14,6 @@ struct SelftestArguments {
   std::string export_to, vectors, check;
 };
 
-// The compiled-in vectors unpacked beside nothing of the user's, or a folder of theirs.
-class VectorFolder {
- public:
-  explicit VectorFolder(const std::string& given) : path_(given) {
-    if (!given.empty()) return;
-    std::string name = (fs::temp_directory_path() / "glint_vectors_XXXXXX").string();
-    GLINT_CHECK(::mkdtemp(name.data()) != nullptr, kEnvironment, "{}: cannot be made", name);
-    path_ = name;
-    temporary_ = true;
-    export_conformance(path_);
-  }
-  ~VectorFolder() {
-    std::error_code code;
-    if (temporary_) fs::remove_all(path_, code);
-  }
-  VectorFolder(const VectorFolder&) = delete;
-  VectorFolder& operator=(const VectorFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-  bool temporary_ = false;
-};
-
 std::size_t count(const std::vector<VectorResult>& results, VectorStatus status) {
   return static_cast<std::size_t>(std::count_if(
       results.begin(),
@@ -83,19 +59,6 @@ Json results_json(const std::vector<VectorResult>& results) {
   return {{"vectors", json}};
 }
 
-Json read_values(const std::string& path) {
-  Json values = with_exit_code(ExitCode::kBadPrediction, [&] {
-    return Json::parse(read_file(path), nullptr, false);
-  });
-  GLINT_CHECK(
-      values.is_object(),
-      kBadPrediction,
-      "{}: expected a JSON object of vector ids and numbers, as in {{\"psnr/8bit\": 21.5}}",
-      path
-  );
-  return values;
-}
-
 int run_selftest(const CommonOptions& common, const SelftestArguments& arguments) {
   if (!arguments.export_to.empty()) {
     export_conformance(arguments.export_to);
@@ -106,11 +69,14 @@ int run_selftest(const CommonOptions& common, const SelftestArguments& arguments
     ));
     return 0;
   }
-  const VectorFolder folder(arguments.vectors);
-  const auto vectors = read_vectors(folder.path());
-  const auto results = arguments.check.empty()
-                           ? run_vectors(vectors, folder.path())
-                           : check_values(vectors, read_values(arguments.check));
+  const TemporaryFolder own("glint_vectors");
+  const fs::path folder = arguments.vectors.empty() ? own.path() : fs::path(arguments.vectors);
+  if (arguments.vectors.empty()) export_conformance(folder);
+  const auto vectors = read_vectors(folder);
+  const auto results =
+      arguments.check.empty()
+          ? run_vectors(vectors, folder)
+          : check_values(vectors, read_json_object(arguments.check, ExitCode::kBadPrediction));
   if (common.json)
     print_json(results_json(results));
   else

@@ -2,8 +2,6 @@
 // A folder of a test's own, removed at its end; and failing code with a stated exit code.
 #pragma once
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -12,25 +10,8 @@
 
 namespace glint::test {
 
-class TempFolder {
- public:
-  TempFolder() {
-    std::string pattern = (fs::temp_directory_path() / "glint_test_XXXXXX").string();
-    GLINT_CHECK(::mkdtemp(pattern.data()) != nullptr, kEnvironment, "cannot make {}", pattern);
-    path_ = pattern;
-  }
-  ~TempFolder() {
-    std::error_code code;
-    fs::remove_all(path_, code);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  fs::path path_;
+struct TempFolder : TemporaryFolder {
+  TempFolder() : TemporaryFolder("glint_test") {}
 };
 
 // Runs `body`, which must throw an Error with that exit code, and returns its message.

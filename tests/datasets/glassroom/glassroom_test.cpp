@@ -21,15 +21,8 @@ namespace {
 
 const GlassRoomOptions kTiny{.scene = "room_2", .width = 32, .height = 18, .views = 8, .spp = 2};
 
-// A folder of this process, removed at the end.
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / ("glassroom_test_" + std::to_string(::getpid()));
-  TemporaryFolder() {
-    set_quiet(true);
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~TemporaryFolder() { fs::remove_all(path); }
+struct QuietFolder : TemporaryFolder {
+  QuietFolder() : TemporaryFolder("glassroom_test") { set_quiet(true); }
 };
 
 std::size_t num_entries(const fs::path& folder) {
@@ -39,16 +32,16 @@ std::size_t num_entries(const fs::path& folder) {
 }  // namespace
 
 TEST_CASE("The same options give the same bytes, and a finished scene is not made again") {
-  const TemporaryFolder temporary;
-  const fs::path a = temporary.path / "a", b = temporary.path / "b";
+  const QuietFolder temporary;
+  const fs::path a = temporary.path() / "a", b = temporary.path() / "b";
   REQUIRE(make_glassroom(kTiny, a));
   REQUIRE(make_glassroom(kTiny, b));
   CHECK(file_hashes(a) == file_hashes(b));
   const auto written = fs::last_write_time(a / "scene.json");
   CHECK_FALSE(make_glassroom(kTiny, a));
   CHECK(fs::last_write_time(a / "scene.json") == written);
-  CHECK(num_entries(temporary.path) == 2);   // nothing temporary is left
-  fs::remove(a / "gt" / "mesh_behind.ply");  // as earlier releases left it
+  CHECK(num_entries(temporary.path()) == 2);  // nothing temporary is left
+  fs::remove(a / "gt" / "mesh_behind.ply");   // as earlier releases left it
   CHECK_FALSE(make_glassroom(kTiny, a));
   CHECK(file_hashes(a) == file_hashes(b));
 
@@ -56,12 +49,12 @@ TEST_CASE("The same options give the same bytes, and a finished scene is not mad
   other.seed = 1;
   CHECK(make_glassroom(other, a));
   CHECK(file_hashes(a) != file_hashes(b));
-  CHECK(num_entries(temporary.path) == 2);
+  CHECK(num_entries(temporary.path()) == 2);
 }
 
 TEST_CASE("A scene folder loads, and its maps agree with each other") {
-  const TemporaryFolder temporary;
-  const fs::path folder = temporary.path / "room_2";
+  const QuietFolder temporary;
+  const fs::path folder = temporary.path() / "room_2";
   make_glassroom(kTiny, folder);
   const Scene scene = load_scene(folder, {});
   CHECK(scene.simulated_priors);
@@ -84,11 +77,11 @@ TEST_CASE("A scene folder loads, and its maps agree with each other") {
 }
 
 TEST_CASE("OpenCV reads the camera files, and both rotations are the same") {
-  const TemporaryFolder temporary;
+  const QuietFolder temporary;
   const Camera camera = look_at({1.2, -2, 1.5}, {0.1, 0.2, 0.6}, {0, 0, 1}, {64, 36}, 80);
-  write_cameras(temporary.path, {camera, camera});
-  cv::FileStorage intri((temporary.path / "intri.yml").string(), cv::FileStorage::READ);
-  cv::FileStorage extri((temporary.path / "extri.yml").string(), cv::FileStorage::READ);
+  write_cameras(temporary.path(), {camera, camera});
+  cv::FileStorage intri((temporary.path() / "intri.yml").string(), cv::FileStorage::READ);
+  cv::FileStorage extri((temporary.path() / "extri.yml").string(), cv::FileStorage::READ);
   std::vector<std::string> names;
   intri["names"] >> names;
   CHECK(names == std::vector<std::string>{"0000", "0001"});
@@ -157,31 +150,31 @@ TEST_CASE("The ground-truth mesh behind glass lacks the panes and nothing else")
 }
 
 TEST_CASE("An error leaves no folder behind, and foreign folders are not touched") {
-  const TemporaryFolder temporary;
+  const QuietFolder temporary;
   GlassRoomOptions bad = kTiny;
   bad.scene = "room_7";
-  CHECK_THROWS_AS(make_glassroom(bad, temporary.path / "x"), Error);
-  CHECK(num_entries(temporary.path) == 0);
+  CHECK_THROWS_AS(make_glassroom(bad, temporary.path() / "x"), Error);
+  CHECK(num_entries(temporary.path()) == 0);
 
-  const fs::path foreign = temporary.path / "holiday";
+  const fs::path foreign = temporary.path() / "holiday";
   write_file(foreign / "photo.txt", "mine");
   CHECK_THROWS_WITH(make_glassroom(kTiny, foreign), Catch::Contains("not a GlassRoom scene"));
   CHECK(read_file(foreign / "photo.txt") == "mine");
 }
 
 TEST_CASE("The cache key follows the options and the assets' content") {
-  const TemporaryFolder temporary;
+  const QuietFolder temporary;
   GlassRoomOptions options = kTiny;
   const std::string plain = glassroom_hash(options);
   options.spp = 3;
   CHECK(glassroom_hash(options) != plain);
   options.spp = kTiny.spp;
   CHECK(glassroom_hash(options) == plain);
-  options.assets = (temporary.path / "assets").string();
+  options.assets = (temporary.path() / "assets").string();
   CHECK_THROWS_AS(glassroom_hash(options), Error);
-  write_file(temporary.path / "assets" / "sofa.gltf", "{}");
+  write_file(temporary.path() / "assets" / "sofa.gltf", "{}");
   const std::string first = glassroom_hash(options);
-  write_file(temporary.path / "assets" / "sofa.gltf", "{ }");
+  write_file(temporary.path() / "assets" / "sofa.gltf", "{ }");
   CHECK(glassroom_hash(options) != first);
 }
 
@@ -191,12 +184,12 @@ TEST_CASE("glTF furniture replaces the procedural pieces") {
     WARN("sample furniture is absent: not tested");
     return;
   }
-  const TemporaryFolder temporary;
+  const QuietFolder temporary;
   GlassRoomOptions options = kTiny;
   options.scene = "room_1";
   options.assets = assets.string();
-  REQUIRE(make_glassroom(options, temporary.path / "room"));
-  const Json json = Json::parse(read_file(temporary.path / "room" / "scene.json"));
+  REQUIRE(make_glassroom(options, temporary.path() / "room"));
+  const Json json = Json::parse(read_file(temporary.path() / "room" / "scene.json"));
   std::set<std::string> materials;
   for (const Json& material : json["materials"]) materials.insert(material["name"]);
   CHECK(materials.count("sofa_03_1k") == 1);

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/temp_folder.h"
+
 using namespace glint;
 
 namespace {
@@ -90,4 +92,20 @@ TEST_CASE("A number that does not fit an integer field is an error") {
   usage_error([&] { config_override(config, "steps=0.5", "options"); });
   usage_error([&] { config_override(config, "steps=9999999999", "options"); });
   CHECK(config.steps == 100);
+}
+
+TEST_CASE("A file that must hold a JSON object says what it holds instead") {
+  const test::TempFolder folder;
+  const auto message = [&](const char* content) {
+    write_file(folder / "a.json", content);
+    return test::error_of(ExitCode::kBadPrediction, [&] {
+      read_json_object(folder / "a.json", ExitCode::kBadPrediction);
+    });
+  };
+  CHECK_THAT(message("[1]"), Catch::Contains("a.json: holds array; expected a JSON object"));
+  CHECK_THAT(message("{\"a\": "), Catch::Contains("no JSON"));
+  CHECK_THAT(message(""), Catch::Contains("no JSON"));
+  write_file(folder / "a.json", R"({"a": 1})");
+  CHECK(read_json_object(folder / "a.json") == Json{{"a", 1}});
+  test::bad_reference([&] { read_json_object(folder / "absent.json"); });
 }

@@ -160,3 +160,15 @@ TEST_CASE("appending closes a line that a crash tore") {
   append_line(folder / "log/x.jsonl", "three");
   CHECK(read_file(folder / "log/x.jsonl") == "one\ntor\nthree\n");
 }
+
+TEST_CASE("A temporary folder goes with all that is in it") {
+  fs::path path;
+  {
+    const TemporaryFolder folder("glint_files_test"), other("glint_files_test");
+    path = folder.path();
+    CHECK(path != other.path());
+    CHECK(fs::is_empty(path));
+    write_file(folder / "a" / "b.txt", "text");
+  }
+  CHECK_FALSE(fs::exists(path));
+}

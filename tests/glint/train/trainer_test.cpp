@@ -7,6 +7,7 @@
 #include <set>
 
 #include "glint/core/progress.h"
+#include "tests/support/temp_folder.h"
 
 using namespace glint;
 
@@ -50,8 +51,8 @@ TEST_CASE(
     "A loss that stops being finite ends training, names the term and keeps the last good state"
 ) {
   set_quiet(true);
-  const fs::path folder = fs::temp_directory_path() / "glint_trainer_test";
-  fs::remove_all(folder);
+  const test::TempFolder temporary;
+  const fs::path& folder = temporary.path();
   Exploding method(25);
   TrainOptions options;
   options.run.iterations = 100;
@@ -66,7 +67,6 @@ TEST_CASE(
     CHECK(std::string(error.what()).find("sharpness") != std::string::npos);
   }
   CHECK(read_file(folder / "checkpoint" / "state") == "good");
-  fs::remove_all(folder);
 }
 
 TEST_CASE("Training without views is refused") {

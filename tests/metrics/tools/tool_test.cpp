@@ -15,20 +15,13 @@
 #include "metrics/psnr.h"
 #include "metrics/ssim.h"
 #include "tests/metrics/golden_images.h"
+#include "tests/support/temp_folder.h"
 
 using namespace glint;
 
 namespace {
 
 constexpr int kWidth = 24, kHeight = 16;
-
-// A folder of its own, removed at the end of the test.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / fmt::format("glint_tool_test_{}", ::getpid());
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-  fs::path operator/(const std::string& name) const { return path / name; }
-};
 
 struct Result {
   int code = 0;
@@ -68,7 +61,7 @@ void write_text(const fs::path& path, const std::string& text) {
 }
 
 // A run folder and a dataset folder with views named 2 and 10.
-void write_run(const Folder& folder) {
+void write_run(const test::TempFolder& folder) {
   for (const char* view : {"2", "10"}) {
     write_exr(folder / "run/renders" / view / "rgb.exr", rendered());
     write_png(folder / "run/renders" / view / "rgb.png", rendered());
@@ -77,7 +70,7 @@ void write_run(const Folder& folder) {
 }
 
 // Reads references as write_png() stored them.
-Image stored_reference(const Folder& folder) {
+Image stored_reference(const test::TempFolder& folder) {
   write_png(folder / "stored.png", reference());
   return read_image(folder / "stored.png", 3);
 }
@@ -85,7 +78,7 @@ Image stored_reference(const Folder& folder) {
 }  // namespace
 
 TEST_CASE("glint-psnr gives psnr for a float file and psnr-8bit for a PNG") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_run(folder);
   const std::string ref = folder / "data/images/2/000000.png";
   const Image truth = stored_reference(folder);
@@ -98,7 +91,7 @@ TEST_CASE("glint-psnr gives psnr for a float file and psnr-8bit for a PNG") {
 }
 
 TEST_CASE("a run folder is matched with a dataset folder by view name, in natural order") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_run(folder);
   const Result result = psnr_tool({folder / "run", folder / "data", "--json"});
   REQUIRE(result.code == 0);
@@ -113,7 +106,7 @@ TEST_CASE("a run folder is matched with a dataset folder by view name, in natura
 }
 
 TEST_CASE("files side by side are matched by stem, whatever the extension") {
-  const Folder folder;
+  const test::TempFolder folder;
   for (const char* name : {"a", "b"}) {
     write_exr(folder / "pred" / (std::string(name) + ".exr"), rendered());
     write_png(folder / "ref" / (std::string(name) + ".png"), reference());
@@ -122,7 +115,7 @@ TEST_CASE("files side by side are matched by stem, whatever the extension") {
 }
 
 TEST_CASE("names on one side only are an error unless allowed") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_run(folder);
   fs::remove_all(folder / "run/renders/10");
   const Result strict = psnr_tool({folder / "run", folder / "data"});
@@ -136,14 +129,14 @@ TEST_CASE("names on one side only are an error unless allowed") {
 }
 
 TEST_CASE("folders without a common name are an error even when names may be missing") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_png(folder / "pred/a.png", reference());
   write_png(folder / "ref/b.png", reference());
   CHECK(psnr_tool({folder / "pred", folder / "ref", "--allow-missing"}).code == 2);
 }
 
 TEST_CASE("globs pair files by what their wildcards stand for, in natural order") {
-  const Folder folder;
+  const test::TempFolder folder;
   for (const int frame : {2, 10}) {
     write_png(folder / fmt::format("frame{}_rgb.png", frame), rendered());
     write_png(folder / fmt::format("frame{}_gt.png", frame), reference());
@@ -161,14 +154,14 @@ TEST_CASE("globs pair files by what their wildcards stand for, in natural order"
 }
 
 TEST_CASE("a file whose name looks like a glob is a file") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_png(folder / "frame[1].png", rendered());
   write_png(folder / "gt.png", reference());
   CHECK(psnr_tool({folder / "frame[1].png", folder / "gt.png"}).code == 0);
 }
 
 TEST_CASE("two files of one name ask for a pattern") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_png(folder / "pred/a.png", reference());
   write_exr(folder / "pred/a.exr", reference());
   write_png(folder / "ref/a.png", reference());
@@ -179,7 +172,7 @@ TEST_CASE("two files of one name ask for a pattern") {
 }
 
 TEST_CASE("a mask file and a mask folder restrict the score") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_run(folder);
   write_mask(folder / "mask.png", left_half());
   for (const char* view : {"2", "10"})
@@ -194,7 +187,7 @@ TEST_CASE("a mask file and a mask folder restrict the score") {
 }
 
 TEST_CASE("glass masks add the scores of their regions") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_run(folder);
   write_mask(folder / "glass.png", left_half());
   const Result result =
@@ -207,7 +200,7 @@ TEST_CASE("glass masks add the scores of their regions") {
 }
 
 TEST_CASE("bad masks are the reference's fault") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_run(folder);
   write_png(folder / "small.png", Image(3, 3, 1, 1.0f));
   write_mask(folder / "empty.png", MaskImage(kWidth, kHeight, 1));
@@ -219,14 +212,14 @@ TEST_CASE("bad masks are the reference's fault") {
 }
 
 TEST_CASE("identical images are counted") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_png(folder / "a.png", reference());
   const Result result = psnr_tool({folder / "a.png", folder / "a.png"});
   CHECK(result.out == "psnr-8bit 100.0000 dB\nnum_identical 1\n");
 }
 
 TEST_CASE("CSV has a row per image, unrounded, and the mean") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_run(folder);
   const Result result = psnr_tool({folder / "run", folder / "data", "--csv"});
   std::istringstream lines(result.out);
@@ -266,13 +259,13 @@ TEST_CASE("unknown options and values are usage errors") {
 }
 
 TEST_CASE("a file against a folder is a usage error") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_run(folder);
   CHECK(psnr_tool({folder / "run/renders/2/rgb.png", folder / "data"}).code == 1);
 }
 
 TEST_CASE("missing paths name the side at fault") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_png(folder / "a.png", reference());
   const Result prediction = psnr_tool({folder / "absent.png", folder / "a.png"});
   const Result truth = psnr_tool({folder / "a.png", folder / "absent.png"});
@@ -282,7 +275,7 @@ TEST_CASE("missing paths name the side at fault") {
 }
 
 TEST_CASE("empty folders name the side at fault") {
-  const Folder folder;
+  const test::TempFolder folder;
   fs::create_directories(folder / "empty");
   write_png(folder / "full/a.png", reference());
   CHECK(psnr_tool({folder / "empty", folder / "full"}).code == 2);
@@ -290,7 +283,7 @@ TEST_CASE("empty folders name the side at fault") {
 }
 
 TEST_CASE("damaged files name the side at fault") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_png(folder / "a.png", reference());
   const std::string bytes = read_file(folder / "a.png");
   write_text(folder / "cut.png", bytes.substr(0, bytes.size() / 2));
@@ -299,7 +292,7 @@ TEST_CASE("damaged files name the side at fault") {
 }
 
 TEST_CASE("images of another size are the prediction's fault") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_png(folder / "a.png", reference());
   write_png(folder / "b.png", Image(5, 4, 3, 0.5f));
   const Result result = psnr_tool({folder / "b.png", folder / "a.png"});
@@ -308,7 +301,7 @@ TEST_CASE("images of another size are the prediction's fault") {
 }
 
 TEST_CASE("a prediction that is not finite is refused with its file and pixel") {
-  const Folder folder;
+  const test::TempFolder folder;
   Image broken = rendered();
   broken.at(7, 3, 1) = std::numeric_limits<float>::quiet_NaN();
   write_exr(folder / "broken.exr", broken);
@@ -319,7 +312,7 @@ TEST_CASE("a prediction that is not finite is refused with its file and pixel") 
 }
 
 TEST_CASE("glint-ssim prints one variant or all") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_run(folder);
   const std::string pred = folder / "run/renders/2/rgb.exr",
                     ref = folder / "data/images/2/000000.png";
@@ -332,7 +325,7 @@ TEST_CASE("glint-ssim prints one variant or all") {
 }
 
 TEST_CASE("glint-depth aligns on request and names the alignment in the id") {
-  const Folder folder;
+  const test::TempFolder folder;
   const Image truth = golden::true_depth_map(kWidth, kHeight);
   write_exr(folder / "truth.exr", truth);
   write_exr(folder / "twice.exr", golden::make_image(kWidth, kHeight, 1, [&](int x, int y, int) {
@@ -350,7 +343,7 @@ TEST_CASE("glint-depth aligns on request and names the alignment in the id") {
 }
 
 TEST_CASE("glint-depth turns distances along rays into planar depth") {
-  const Folder folder;
+  const test::TempFolder folder;
   const Camera camera{kWidth, kHeight, 20, 21, 12.5, 7.5};
   write_exr(folder / "truth.exr", Image(kWidth, kHeight, 1, 3.0f));
   write_exr(folder / "rays.exr", golden::make_image(kWidth, kHeight, 1, [&](int x, int y, int) {
@@ -363,7 +356,7 @@ TEST_CASE("glint-depth turns distances along rays into planar depth") {
 }
 
 TEST_CASE("a PNG holds no metric depth") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_png(folder / "depth.png", golden::make_image(kWidth, kHeight, 1, [](int x, int, int) {
               return 0.2f + 0.02f * static_cast<float>(x);
             }));
@@ -374,14 +367,14 @@ TEST_CASE("a PNG holds no metric depth") {
 }
 
 TEST_CASE("a depth reference without any depth is the reference's fault") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_exr(folder / "none.exr", Image(kWidth, kHeight, 1));
   write_exr(folder / "depth.exr", Image(kWidth, kHeight, 1, 1.0f));
   CHECK(depth_tool({folder / "depth.exr", folder / "none.exr"}).code == 3);
 }
 
 TEST_CASE("glint-normal turns other axes into OpenCV's") {
-  const Folder folder;
+  const test::TempFolder folder;
   const Image truth = golden::make_image(kWidth, kHeight, 3, [](int x, int y, int c) {
     return static_cast<float>(golden::unit_normal(x, y, c));
   });
@@ -405,7 +398,7 @@ TEST_CASE("glint-normal turns other axes into OpenCV's") {
 }
 
 TEST_CASE("glint-normal decodes PNG maps, black being no normal") {
-  const Folder folder;
+  const test::TempFolder folder;
   const Image truth = golden::make_image(kWidth, kHeight, 3, [](int x, int y, int c) {
     return static_cast<float>(golden::unit_normal(x, y, c));
   });
@@ -420,7 +413,7 @@ TEST_CASE("glint-normal decodes PNG maps, black being no normal") {
 }
 
 TEST_CASE("a normal map needs three channels") {
-  const Folder folder;
+  const test::TempFolder folder;
   write_exr(folder / "grey.exr", Image(kWidth, kHeight, 1, 1.0f));
   write_exr(folder / "normal.exr", golden::true_normal_map(kWidth, kHeight), true);
   CHECK(normal_tool({folder / "grey.exr", folder / "normal.exr"}).code == 2);

@@ -96,7 +96,7 @@ TEST_CASE("A vector whose program fails or prints no such value has failed") {
 TEST_CASE("Damaged lists of vectors are refused") {
   const test::TempFolder folder;
   CHECK_THROWS_AS(read_vectors(folder.path()), Error);
-  write_file(folder.path() / "vectors.json", "[]");
+  write_file(folder.path() / "vectors.json", "{}");
   CHECK_THROWS_WITH(read_vectors(folder.path()), Catch::Contains("no list 'vectors'"));
   write_file(folder.path() / "vectors.json", R"({"vectors": [{"id": "x"}]})");
   CHECK_THROWS_WITH(read_vectors(folder.path()), Catch::Contains("'x'"));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// PNG by libpng, in place of OpenCV's codecs, whose libraries a lean build does without.
+// PNG by libpng: reading what image_files_plain_png.cpp leaves, and writing.
 #include <png.h>
 
 #include <csetjmp>
 #include <cstring>
+#include <optional>
 
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
@@ -59,12 +60,11 @@ void read_header(const Reader& reader) {
 
 template <class T>
 void copy_values(const unsigned char* bytes, int full_range, Image& picture) {
-  const float* value_of = detail::unit_values(full_range);
   for (float& value : picture.values()) {
     T stored;
     std::memcpy(&stored, bytes, sizeof(T));
     bytes += sizeof(T);
-    value = value_of[stored];
+    value = detail::unit_value(stored, full_range);
   }
 }
 
@@ -85,6 +85,7 @@ void flush_nothing(png_structp) {}
 }  // namespace
 
 Image detail::decode_png(const fs::path& path, const std::string& file) {
+  if (std::optional<Image> picture = decode_plain_png(file)) return *std::move(picture);
   Reader reader;
   Source source{file.data(), file.size()};
   png_set_read_fn(reader.png, &source, read_from_source);
@@ -107,16 +108,6 @@ Image detail::decode_png(const fs::path& path, const std::string& file) {
   else
     copy_values<unsigned char>(bytes.data(), 255, picture);
   return picture;
-}
-
-Image detail::decode_jpeg(const fs::path& path, const std::string&) {
-  throw Error(
-      ExitCode::kEnvironment,
-      fmt::format(
-          "{}: this lean build reads no JPEG; use the full build (cmake --preset release)",
-          path.string()
-      )
-  );
 }
 
 std::string detail::encode_png(MaskView image) {
@@ -144,20 +135,6 @@ std::string detail::encode_png(MaskView image) {
   });
   GLINT_CHECK(written, kEnvironment, "encoding a PNG failed: {}", writer.error);
   return file;
-}
-
-Image resize_image(ImageView image, ImageSize size) {
-  throw Error(
-      ExitCode::kEnvironment,
-      fmt::format(
-          "resizing {} x {} pixels to {} x {}: this lean build cannot; pack the scene at that size "
-          "with the full build (glint-bench dataset pack --max-pixels)",
-          image.width,
-          image.height,
-          size.width,
-          size.height
-      )
-  );
 }
 
 }  // namespace glint

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// JPEG by libjpeg-turbo.
+#include <turbojpeg.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "glint/core/error.h"
+#include "glint/scene/image_files_formats.h"
+
+namespace glint {
+namespace {
+
+struct Destroy {
+  void operator()(void* decoder) const { tjDestroy(decoder); }
+};
+
+// A warning is damage, too (missing data become grey), but for bytes between segments.
+void check(const fs::path& path, tjhandle decoder, int result) {
+  if (result == 0) return;
+  const std::string_view message = tjGetErrorStr2(decoder);
+  const bool harmless = tjGetErrorCode(decoder) == TJERR_WARNING &&
+                        message.find("extraneous bytes") != std::string_view::npos;
+  if (!harmless) detail::fail_incomplete(path, "JPEG", message);
+}
+
+}  // namespace
+
+Image detail::decode_jpeg(const fs::path& path, const std::string& file) {
+  const std::unique_ptr<void, Destroy> decoder(tjInitDecompress());
+  GLINT_CHECK(decoder != nullptr, kEnvironment, "{}: no memory for a decoder", path.string());
+  const auto* bytes = reinterpret_cast<const unsigned char*>(file.data());
+  int width = 0, height = 0, subsampling = 0, colors = 0;
+  check(
+      path,
+      decoder.get(),
+      tjDecompressHeader3(decoder.get(), bytes, file.size(), &width, &height, &subsampling, &colors)
+  );
+  GLINT_CHECK(
+      colors != TJCS_CMYK && colors != TJCS_YCCK,
+      kBadReference,
+      "{}: inks (CMYK) instead of colours; save it as RGB",
+      path.string()
+  );
+  const bool grey = colors == TJCS_GRAY;
+  MaskImage pixels(width, height, grey ? 1 : 3);
+  check(
+      path,
+      decoder.get(),
+      tjDecompress2(
+          decoder.get(),
+          bytes,
+          file.size(),
+          pixels.data(),
+          width,
+          0,
+          height,
+          grey ? TJPF_GRAY : TJPF_RGB,
+          0
+      )
+  );
+  Image picture(width, height, pixels.channels());
+  std::transform(
+      pixels.values().begin(),
+      pixels.values().end(),
+      picture.data(),
+      [&](unsigned char value) { return unit_value(value, 255); }
+  );
+  return picture;
+}
+
+}  // namespace glint

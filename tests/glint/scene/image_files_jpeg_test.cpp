@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include <turbojpeg.h>
+
+#include <catch2/catch.hpp>
+#include <memory>
+
+#include "glint/scene/image_files.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+using namespace glint::test;
+using Catch::Contains;
+
+namespace {
+
+struct Destroy {
+  void operator()(void* coder) const { tjDestroy(coder); }
+};
+
+// A JPEG of one colour, given as bytes by format (TJPF_RGB, TJPF_GRAY or TJPF_CMYK).
+std::string jpeg(int width, int height, TJPF format, const std::vector<unsigned char>& color) {
+  const std::unique_ptr<void, Destroy> coder(tjInitCompress());
+  std::vector<unsigned char> pixels;
+  for (int i = 0; i < width * height; ++i) pixels.insert(pixels.end(), color.begin(), color.end());
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  const int sampling = format == TJPF_GRAY ? TJSAMP_GRAY : TJSAMP_420;
+  REQUIRE(
+      tjCompress2(
+          coder.get(), pixels.data(), width, 0, height, format, &bytes, &size, sampling, 95, 0
+      ) == 0
+  );
+  std::string file(reinterpret_cast<const char*>(bytes), size);
+  tjFree(bytes);
+  return file;
+}
+
+}  // namespace
+
+TEST_CASE("colour JPEGs are read, and one that is cut off anywhere is an error") {
+  const TempFolder folder;
+  const std::string file = jpeg(24, 16, TJPF_RGB, {204, 102, 51});
+  write_file(folder / "x.jpg", file);
+  const Image image = read_image(folder / "x.jpg");
+  REQUIRE(image.size() == ImageSize{24, 16});
+  REQUIRE(image.channels() == 3);
+  for (int c = 0; c < 3; ++c)
+    CHECK(image.at(5, 5, c) == Approx(0.8f / static_cast<float>(1 << c)).margin(0.01));
+  CHECK(read_image_size(folder / "x.jpg") == ImageSize{24, 16});
+  for (std::size_t length = 0; length < file.size(); length += 7) {
+    write_file(folder / "cut.jpg", file.substr(0, length));
+    CHECK_THAT(bad_reference([&] { read_image(folder / "cut.jpg"); }), Contains("cut.jpg"));
+  }
+}
+
+TEST_CASE("grey JPEGs have one channel, inks are an error") {
+  const TempFolder folder;
+  write_file(folder / "grey.jpg", jpeg(9, 5, TJPF_GRAY, {51}));
+  const Image grey = read_image(folder / "grey.jpg");
+  REQUIRE(grey.channels() == 1);
+  CHECK(grey.at(8, 4) == Approx(0.2f).margin(0.01));
+  write_file(folder / "inks.jpg", jpeg(9, 5, TJPF_CMYK, {0, 0, 0, 0}));
+  CHECK_THAT(bad_reference([&] { read_image(folder / "inks.jpg"); }), Contains("save it as RGB"));
+}
+
+TEST_CASE("a JPEG whose data stop before its end marker is an error; bytes between segments are not"
+) {
+  const TempFolder folder;
+  const std::string file = jpeg(64, 64, TJPF_RGB, {204, 102, 51});
+  write_file(folder / "short.jpg", file.substr(0, file.size() - 12) + "\xff\xd9");
+  CHECK_THAT(bad_reference([&] { read_image(folder / "short.jpg"); }), Contains("JPEG"));
+  const std::string padded = file.substr(0, file.size() - 2) + "abc\xff\xd9";
+  write_file(folder / "padded.jpg", padded);
+  CHECK(read_image(folder / "padded.jpg").size() == ImageSize{64, 64});
+}
