@@ -68,6 +68,8 @@ void copy_values(const unsigned char* bytes, int full_range, Image& picture) {
   }
 }
 
+constexpr int kCompressionLevel = 1;  // a fifth of the time of zlib's default, 5 to 10 % more bytes
+
 struct Writer {
   std::string error;
   png_structp png =
@@ -128,6 +130,7 @@ std::string detail::encode_png(MaskView image) {
         PNG_COMPRESSION_TYPE_DEFAULT,
         PNG_FILTER_TYPE_DEFAULT
     );
+    png_set_compression_level(writer.png, kCompressionLevel);
     png_write_info(writer.png, writer.info);
     for (int y = 0; y < image.height; ++y)
       png_write_row(writer.png, image.data + static_cast<std::size_t>(y) * row_bytes);
