@@ -145,4 +145,14 @@ GLINT_HD Mat3<T> cast(const Mat3<S>& m) {
   return {{cast<T>(m.rows[0]), cast<T>(m.rows[1]), cast<T>(m.rows[2])}};
 }
 
+// Element i of an array of three floats each.
+GLINT_HD Vec3f get3(const float* array, std::size_t i) {
+  return {array[3 * i], array[3 * i + 1], array[3 * i + 2]};
+}
+GLINT_HD void put3(float* array, std::size_t i, Vec3f v) {
+  array[3 * i] = v.x;
+  array[3 * i + 1] = v.y;
+  array[3 * i + 2] = v.z;
+}
+
 }  // namespace glint

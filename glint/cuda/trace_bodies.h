@@ -124,12 +124,6 @@ struct DeviceHits {
   std::uint32_t *counts, *surfels;
 };
 
-GLINT_HD void put(float* p, std::size_t i, Vec3f v) {
-  p[3 * i] = v.x;
-  p[3 * i + 1] = v.y;
-  p[3 * i + 2] = v.z;
-}
-
 struct ForwardRays {
   Tree tree;
   DeviceTraceInput input;
@@ -150,8 +144,8 @@ struct ForwardRays {
     if (is_ray(origin, direction) && input.count > 0)
       hits = trace(origin, direction, saved.surfels + i * max_hits(), sums);
     saved.counts[i] = static_cast<std::uint32_t>(hits);
-    put(out.color, i, sums.color);
-    put(out.normal, i, sums.normal);
+    put3(out.color, i, sums.color);
+    put3(out.normal, i, sums.normal);
     out.depth_sum[i] = sums.depth;
     out.alpha[i] = 1 - abs_of(sums.transmittance);
   }
@@ -251,8 +245,8 @@ struct BackwardRays {
       sh_basis_vjp(input.sh_degree, unit, state.dL_dbasis, dL_dunit);
       state.dL_ddirection += normalize_vjp(unit, norm, dL_dunit);
     }
-    put(dL_dorigins, i, state.dL_dorigin);
-    put(dL_ddirections, i, state.dL_ddirection);
+    put3(dL_dorigins, i, state.dL_dorigin);
+    put3(dL_ddirections, i, state.dL_ddirection);
   }
 
  private:
@@ -367,9 +361,9 @@ struct DiscVjp {
     );
     const float rotations[4] = {g.w, g.x, g.y, g.z};
     for (std::size_t k = 0; k < 4; ++k) out.rotations[4 * i + k] = rotations[k];
-    put(out.means, i, at3(kTraceMean));
-    put(out.half_depths, i, at3(kTraceHalfDepth));
-    put(out.sh_dc, i, at3(kTraceShDc));
+    put3(out.means, i, at3(kTraceMean));
+    put3(out.half_depths, i, at3(kTraceHalfDepth));
+    put3(out.sh_dc, i, at3(kTraceShDc));
     for (std::size_t k = 0; k < 45; ++k) out.sh_rest[45 * i + k] = s[kTraceShRest + k];
     out.opacities[i] = s[kTraceOpacity];
     out.visibility[i] = s[kTraceWeight];

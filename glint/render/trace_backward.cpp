@@ -15,7 +15,9 @@ namespace {
 constexpr std::size_t kHitsPerSlice = std::size_t{1} << 17, kMinSlices = 4, kMaxSlices = 16;
 constexpr std::size_t kAhead = 16;  // hits that memory is asked for in advance
 
-Vec3f at3(const Image& image, std::size_t i) { return image.empty() ? Vec3f{} : pixel3(image, i); }
+Vec3f at3(const Image& image, std::size_t i) {
+  return image.empty() ? Vec3f{} : get3(image.data(), i);
+}
 float at1(const Image& image, std::size_t i) { return image.empty() ? 0.0f : image.data()[i]; }
 
 // dL/d(the ray's outputs), what of their sum lies behind the current hit, and what is summed over
@@ -297,8 +299,8 @@ void backward_block(
       dL_dorigin = -Vec3f{lane_sum(g.mean.x), lane_sum(g.mean.y), lane_sum(g.mean.z)};
       dL_ddirection = direction_gradient(call.input.sh_degree, ray.direction, g);
     }
-    put3(&out.rays.origins.data()[3 * i], dL_dorigin);
-    put3(&out.rays.directions.data()[3 * i], dL_ddirection);
+    put3(out.rays.origins.data(), i, dL_dorigin);
+    put3(out.rays.directions.data(), i, dL_ddirection);
     done += count;
   }
 }
@@ -359,7 +361,7 @@ void surfel_vjp(
 ) {
   const Mat3f r = rotation_matrix(rotation_at(input, i));
   const float su = input.scales[2 * i], sv = input.scales[2 * i + 1];
-  put3(&out.means[3 * i], g.mean);
+  put3(out.means.data(), i, g.mean);
   out.scales[2 * i] = dot(g.h0, column(r, 0));
   out.scales[2 * i + 1] = dot(g.h1, column(r, 1));
   out.opacities[i] = g.opacity;
@@ -371,7 +373,7 @@ void surfel_vjp(
   );
   const float q[4] = {dL_dq.w, dL_dq.x, dL_dq.y, dL_dq.z};
   std::copy_n(q, 4, &out.rotations[4 * i]);
-  put3(&out.half_depths[3 * i], g.half_depth);
+  put3(out.half_depths.data(), i, g.half_depth);
   out.visibility[i] = g.weight;
   g.sh.unpack(&out.sh_dc[3 * i], &out.sh_rest[45 * i]);
 }

@@ -62,9 +62,7 @@ GLINT_SIMD_INLINE BeamTest test(const Beam& beam, const EightSurfels& s) {
 float smallest(const float* eight) { return *std::min_element(eight, eight + kLanes); }
 
 Vec3f ray_vector(const Rays& rays, int k, std::size_t i) {
-  const float* p = (k == 0 ? rays.origins : rays.directions).data() + 3 * i;
-  const Vec3f v{p[0], p[1], p[2]};
-  return k == 0 ? v : normalize(v);
+  return k == 0 ? get3(rays.origins.data(), i) : normalize(get3(rays.directions.data(), i));
 }
 
 }  // namespace

@@ -194,8 +194,8 @@ void forward_ray(const ForwardCall& call, Search& search, std::size_t i, TraceSc
     trace_ray(call.settings, call.saved, search, ray, scratch.slots, sums);
   scratch.first_hit[i % kRaysPerTile] = before;
   call.saved.counts[i] = static_cast<std::uint32_t>(scratch.slots.size() - before);
-  put3(&call.output.color.data()[3 * i], lane_sum(sums.color));
-  put3(&call.output.normal.data()[3 * i], lane_sum(sums.normal));
+  put3(call.output.color.data(), i, lane_sum(sums.color));
+  put3(call.output.normal.data(), i, lane_sum(sums.normal));
   call.output.depth_sum.data()[i] = lane_sum(sums.depth);
   call.output.alpha.data()[i] = 1 - std::abs(ray.transmittance);
 }
@@ -315,7 +315,8 @@ void forward_tile(
   scratch.levels.resize(kMostSplits);
   scratch.rays.clear();
   for (std::size_t i = begin; i < end; ++i) {
-    const Vec3f origin = pixel3(call.rays.origins, i), direction = pixel3(call.rays.directions, i);
+    const Vec3f origin = get3(call.rays.origins.data(), i),
+                direction = get3(call.rays.directions.data(), i);
     if (fits_beam(origin, direction))
       scratch.rays.push_back(static_cast<std::uint32_t>(i));
     else
@@ -357,8 +358,8 @@ void prepare(
 // Coefficients above the degree in use count as zero.
 RayState ray_at(const Rays& rays, int sh_degree, std::size_t i) {
   RayState ray;
-  ray.origin = pixel3(rays.origins, i);
-  ray.direction = pixel3(rays.directions, i);
+  ray.origin = get3(rays.origins.data(), i);
+  ray.direction = get3(rays.directions.data(), i);
   const float norm = length(ray.direction);
   float basis[ShRow::kCoefficients] = {};
   if (norm > 0) sh_basis(sh_degree, (1 / norm) * ray.direction, basis);

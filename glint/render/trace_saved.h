@@ -88,16 +88,6 @@ struct RayState {
   float transmittance = 1;
 };
 
-inline Vec3f pixel3(const Image& image, std::size_t i) {
-  const float* p = image.data() + 3 * i;
-  return {p[0], p[1], p[2]};
-}
-inline void put3(float* p, Vec3f v) {
-  p[0] = v.x;
-  p[1] = v.y;
-  p[2] = v.z;
-}
-
 inline Vec4f rotation_at(const TraceInput& input, std::size_t surfel) {
   const float* q = &input.rotations[4 * surfel];
   return {q[0], q[1], q[2], q[3]};

@@ -19,14 +19,9 @@ struct GlassOptions {
   bool fresnel = true;          // off: k_s = s, for methods without it
 };
 
-GLINT_HD Vec3f get3(const float* image, std::size_t i) {
-  if (image == nullptr) return {};
-  return {image[3 * i], image[3 * i + 1], image[3 * i + 2]};
-}
-GLINT_HD void put3(float* image, std::size_t i, Vec3f v) {
-  image[3 * i] = v.x;
-  image[3 * i + 1] = v.y;
-  image[3 * i + 2] = v.z;
+// Zero where there is no such map.
+GLINT_HD Vec3f map3(const float* image, std::size_t i) {
+  return image == nullptr ? Vec3f{} : get3(image, i);
 }
 
 // The camera ray of a pixel: camera space with z = 1, and its length.
@@ -74,7 +69,7 @@ struct ReadInterface {
   GLINT_HD void operator()(std::size_t i) const {
     const float* feature = features + static_cast<std::size_t>(channels) * i;
     const float z = expected_depth(depth_sum[i], alpha[i]);
-    const Vec3f raw = get3(normal, i);
+    const Vec3f raw = map3(normal, i);
     const float norm = length(raw);
     const bool hit = z > 0 && norm > kLeastNormal;
     const Vec3f n = hit ? (1 / norm) * raw : Vec3f{};
@@ -99,9 +94,9 @@ struct GlassInputs {
   const float *transparency, *mirrored;                // [H][W][1]
   GLINT_HD GlassRadiance<float> at(std::size_t i) const {
     return {
-        get3(interface, i),
-        get3(transmission, i),
-        get3(reflection, i),
+        map3(interface, i),
+        map3(transmission, i),
+        map3(reflection, i),
         transparency[i],
         mirrored[i]};
   }
@@ -120,7 +115,7 @@ struct ComposeGlassVjp {
   float *dL_dinterface, *dL_dtransmission, *dL_dreflection, *dL_dtransparency, *dL_dmirrored;
 
   GLINT_HD void operator()(std::size_t i) const {
-    const GlassRadiance<float> g = outgoing_radiance_vjp(in.at(i), get3(dL_dimage, i));
+    const GlassRadiance<float> g = outgoing_radiance_vjp(in.at(i), map3(dL_dimage, i));
     put3(dL_dinterface, i, g.interface);
     put3(dL_dtransmission, i, g.transmission);
     put3(dL_dreflection, i, g.reflection);
@@ -146,7 +141,7 @@ struct ReadInterfaceVjp {
       feature[kTransparencyChannel] += dL_dt[i];
       if (dL_dmap_t != nullptr) feature[kTransparencyChannel] += dL_dmap_t[i];
     }
-    const Vec3f n = get3(normal, i);
+    const Vec3f n = map3(normal, i);
     if (!options.reflection || length2(n) == 0) return;
     const PixelRay ray = rays.at(i);
     float dL_dfresnel = 0;
@@ -156,15 +151,15 @@ struct ReadInterfaceVjp {
     dL_dfresnel = keep(options.fresnel, dL_dfresnel);
     Vec3f dL_dn = -schlick_vjp(options.f0, -dot(n, ray.unit()), dL_dfresnel) * ray.unit();
     if (dL_dorigins != nullptr) through_rays(i, ray, n, dL_dn);
-    const float norm = length(get3(raw_normal, i));
-    put3(dL_dnormal, i, get3(dL_dnormal, i) + normalize_vjp(n, norm, dL_dn));
+    const float norm = length(map3(raw_normal, i));
+    put3(dL_dnormal, i, map3(dL_dnormal, i) + normalize_vjp(n, norm, dL_dn));
   }
 
  private:
   GLINT_HD void through_rays(std::size_t i, const PixelRay& ray, Vec3f n, Vec3f& dL_dn) const {
-    mirrored_direction_vjp(ray.unit(), n, rays.rotation * get3(dL_ddirections, i), dL_dn);
+    mirrored_direction_vjp(ray.unit(), n, rays.rotation * map3(dL_ddirections, i), dL_dn);
     if (options.detach_origins) return;
-    const Vec3f dL_dx = rays.rotation * get3(dL_dorigins, i);
+    const Vec3f dL_dx = rays.rotation * map3(dL_dorigins, i);
     expected_depth_vjp(
         depth_sum[i], alpha[i], dot(dL_dx, ray.in_cam), dL_ddepth_sum[i], dL_dalpha[i]
     );

@@ -112,7 +112,7 @@ struct ViewingCosine {
   const float* normal;  // [H][W][3] composited, camera space
   float* cosine;
   GLINT_HD void operator()(std::size_t i) const {
-    cosine[i] = abs_of(dot(unit_normal(get3(normal, i)), rays.at(i).unit()));
+    cosine[i] = abs_of(dot(unit_normal(map3(normal, i)), rays.at(i).unit()));
   }
 };
 

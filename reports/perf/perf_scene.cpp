@@ -69,6 +69,8 @@ Scene perf_scene(const PerfOptions& options) {
   Scene scene;
   scene.name = "perf";
   scene.spatial_scale = 2.5f;
+  scene.bounds_min = -1.0f * kHalfRoom;
+  scene.bounds_max = kHalfRoom;
   View view;
   view.name = "0";
   view.camera =

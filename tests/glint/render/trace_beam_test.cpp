@@ -8,30 +8,17 @@
 
 #include "glint/core/parallel.h"
 #include "glint/render/trace_bvh.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/trace_arrays.h"
 
 using namespace glint;
 using namespace glint::test;
 
 namespace {
 
-struct BeamScene {
-  SurfelArrays surfels;
-  std::vector<float> sh_dc, sh_rest;
+struct BeamScene : TraceArrays {
   Rays rays{Image(48, 40, 3), Image(48, 40, 3)};
   TraceSettings settings;
 
-  TraceInput input() const {
-    TraceInput input;
-    input.count = surfels.count();
-    input.means = surfels.means;
-    input.scales = surfels.scales;
-    input.rotations = surfels.rotations;
-    input.opacities = surfels.opacities;
-    input.sh_dc = sh_dc;
-    input.sh_rest = sh_rest;
-    return input;
-  }
   void set_ray(std::size_t i, Vec3d origin, Vec3d direction) {
     for (int k = 0; k < 3; ++k) {
       const std::size_t at = 3 * i + static_cast<std::size_t>(k);
@@ -105,8 +92,8 @@ Traced trace(const BeamScene& scene, TraceSearch search, bool triangles = false)
       Image(48, 40, 3, 0.2f)};
   Tracer tracer;
   Traced traced;
-  tracer.forward(scene.input(), scene.rays, settings, traced.out);
-  tracer.backward(scene.input(), scene.rays, settings, traced.out, g, traced.gradient);
+  tracer.forward(scene.view(), scene.rays, settings, traced.out);
+  tracer.backward(scene.view(), scene.rays, settings, traced.out, g, traced.gradient);
   traced.hits = tracer.num_hits();
   return traced;
 }
@@ -221,7 +208,7 @@ TEST_CASE("beams give the same bytes for any number of threads") {
   TraceOutput out[2];
   for (const int i : {0, 1}) {
     set_num_threads(1 + 3 * i);
-    Tracer().forward(scene.input(), scene.rays, scene.settings, out[i]);
+    Tracer().forward(scene.view(), scene.rays, scene.settings, out[i]);
   }
   set_num_threads(0);
   CHECK(same_bytes(out[0].color, out[1].color));

@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "tests/support/gradcheck.h"
-#include "tests/support/random_scene.h"
 #include "tests/support/reference_trace.h"
+#include "tests/support/trace_arrays.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -17,24 +17,10 @@ namespace {
 constexpr double kTolerance = 1e-3;
 constexpr double kStepGuard = 1e-2;  // rays nearer to a jump get no weight
 
-struct Case {
-  SurfelArrays surfels;
-  std::vector<float> sh_dc, sh_rest;
+struct Case : TraceArrays {
   Rays rays;
   TraceSettings settings;
   TraceOutputGradient dL_doutput;
-
-  TraceInput input() const {
-    TraceInput input;
-    input.count = surfels.count();
-    input.means = surfels.means;
-    input.scales = surfels.scales;
-    input.rotations = surfels.rotations;
-    input.opacities = surfels.opacities;
-    input.sh_dc = sh_dc;
-    input.sh_rest = sh_rest;
-    return input;
-  }
 };
 
 Case random_case(std::uint64_t seed) {
@@ -55,7 +41,7 @@ Case random_case(std::uint64_t seed) {
   c.rays = {Image(8, 6, 3), Image(8, 6, 3)};
   for (float& value : c.rays.origins.values()) value = rng.uniform(-1, 1);
   for (float& value : c.rays.directions.values()) value = rng.uniform(-1, 1);
-  const ReferenceTraceInput reference = reference_trace_input(c.input(), c.rays);
+  const ReferenceTraceInput reference = reference_trace_input(c.view(), c.rays);
   c.dL_doutput = {Image(8, 6, 3), Image(8, 6, 1), Image(8, 6, 1), Image(8, 6, 3)};
   int clean = 0;
   for (std::size_t i = 0; i < 48; ++i) {
@@ -97,7 +83,7 @@ void check(
     std::vector<double> ReferenceTraceInput::*field,
     const char* name
 ) {
-  ReferenceTraceInput reference = reference_trace_input(c.input(), c.rays);
+  ReferenceTraceInput reference = reference_trace_input(c.view(), c.rays);
   const auto f = [&](const std::vector<double>& x) {
     reference.*field = x;
     return loss(c, reference);
@@ -117,8 +103,8 @@ TEST_CASE("every gradient of trace matches central differences") {
     Tracer tracer;
     TraceOutput out;
     TraceGradient g;
-    tracer.forward(c.input(), c.rays, c.settings, out);
-    tracer.backward(c.input(), c.rays, c.settings, out, c.dL_doutput, g);
+    tracer.forward(c.view(), c.rays, c.settings, out);
+    tracer.backward(c.view(), c.rays, c.settings, out, c.dL_doutput, g);
     INFO("seed " << seed);
     check(c, g.means, &ReferenceTraceInput::means, "means");
     check(c, g.scales, &ReferenceTraceInput::scales, "scales");
@@ -139,8 +125,8 @@ TEST_CASE("visibility sums to alpha, and the densification statistic is half the
   Tracer tracer;
   TraceOutput out;
   TraceGradient g;
-  tracer.forward(c.input(), c.rays, c.settings, out);
-  tracer.backward(c.input(), c.rays, c.settings, out, c.dL_doutput, g);
+  tracer.forward(c.view(), c.rays, c.settings, out);
+  tracer.backward(c.view(), c.rays, c.settings, out, c.dL_doutput, g);
   double visible = 0, alpha = 0;
   for (const float value : g.visibility) visible += static_cast<double>(value);
   for (const float value : out.alpha.values()) alpha += static_cast<double>(value);
@@ -154,8 +140,8 @@ TEST_CASE("visibility sums to alpha, and the densification statistic is half the
   one.rays = {Image(1, 1, 3), Image(1, 1, 3)};
   one.rays.directions.data()[2] = 1;
   one.dL_doutput.color = Image(1, 1, 3, 1.0f);
-  tracer.forward(one.input(), one.rays, {}, out);
-  tracer.backward(one.input(), one.rays, {}, out, one.dL_doutput, g);
+  tracer.forward(one.view(), one.rays, {}, out);
+  tracer.backward(one.view(), one.rays, {}, out, one.dL_doutput, g);
   CHECK(g.means[0] != 0.0f);
   for (int k = 0; k < 3; ++k) CHECK(g.half_depths[k] == Approx(g.means[k]).margin(1e-9));
 }
