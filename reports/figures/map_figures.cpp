@@ -110,11 +110,7 @@ Crop crop_of(const FigureScene& scene, const std::set<std::string>& methods) {
 }
 
 std::vector<LegendLine> legend_of(const std::vector<FigureScene>& scenes, bool depth) {
-  std::vector<LegendLine> legend;
-  std::string views;
-  for (const FigureScene& scene : scenes)
-    views += fmt::format("{}{} of {}", views.empty() ? "" : ", ", scene.view, scene.name);
-  legend.push_back({fmt::format("views: {} ({})", views, kViewRule)});
+  std::vector<LegendLine> legend{views_line(scenes)};
   if (!depth) return legend;
   for (const FigureScene& scene : scenes)
     legend.push_back(
