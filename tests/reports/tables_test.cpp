@@ -317,7 +317,7 @@ TEST_CASE("LaTeX gets no character that it cannot print") {
 
 TEST_CASE("pdflatex compiles all tables in one document") {
   if (std::system("command -v pdflatex >/dev/null 2>&1") != 0) {
-    WARN("skipped: no pdflatex (Debian: texlive-latex-recommended)");
+    WARN("skipped: no pdflatex; scripts/setup_extras.sh installs it");
     return;
   }
   const test::TempFolder folder;
