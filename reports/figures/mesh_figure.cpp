@@ -2,6 +2,7 @@
 #include "reports/figures/mesh_figure.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -46,7 +47,7 @@ constexpr int kFiner = 2;  // rays along a side of a pixel of the shaded picture
 struct SeenMesh {
   Image shaded;
   MeshRender whole, scored;
-  TriangleMesh kept;  // by the protocol
+  TriangleMesh kept;  // by the protocol; of the truth only: those of all runs would fill the memory
 };
 
 class MeshPainter {
@@ -57,16 +58,25 @@ class MeshPainter {
     camera_ = resized(camera_, {kMaxPanelWidth, height});
   }
 
-  // Nothing: no such file, or a damaged one (a warning).
-  std::optional<SeenMesh> see(const fs::path& path) const {
-    if (!fs::exists(path)) return std::nullopt;
+  // Null: no such file, or a damaged one (a warning). The same file is read once.
+  const SeenMesh* see(const fs::path& path, bool is_truth) {
+    const auto [it, added] = seen_.try_emplace(path);
+    if (added && fs::exists(path)) it->second = look_at(path);
+    if (it->second && !is_truth) it->second->kept = {};
+    return it->second ? &*it->second : nullptr;
+  }
+
+  // Empty without a true surface.
+  Image errors(const SeenMesh& mesh, const SeenMesh* truth) const {
+    if (truth == nullptr || truth->kept.faces.empty()) return {};
+    return distance_picture(distance_map(mesh.whole, mesh.scored, truth->kept, camera_));
+  }
+
+ private:
+  std::optional<SeenMesh> look_at(const fs::path& path) const {
     try {
       const TriangleMesh mesh = clean_mesh(read_mesh_ply(path, NonFinite::kKeep)).mesh;
-      SeenMesh seen{shade(mesh), render_mesh(mesh, camera_), {}, mesh};
-      if (protocol_.cull == MeshCulling::kCameras) {
-        const double tolerance = protocol_.cull_tolerance_m, edge = protocol_.cull_max_edge_m;
-        seen.kept = cull_unseen(mesh, scene_.train_cameras, tolerance, edge).mesh;
-      }
+      SeenMesh seen{shade(mesh), render_mesh(mesh, camera_), {}, kept(mesh)};
       seen.scored = render_mesh(seen.kept, camera_);
       return seen;
     } catch (const Error& error) {
@@ -75,13 +85,12 @@ class MeshPainter {
     }
   }
 
-  // Empty without a true surface.
-  Image errors(const SeenMesh& mesh, const std::optional<SeenMesh>& truth) const {
-    if (!truth || truth->kept.faces.empty()) return {};
-    return distance_picture(distance_map(mesh.whole, mesh.scored, truth->kept, camera_));
+  TriangleMesh kept(const TriangleMesh& mesh) const {
+    if (protocol_.cull == MeshCulling::kNone) return mesh;
+    const double tolerance = protocol_.cull_tolerance_m, edge = protocol_.cull_max_edge_m;
+    return cull_unseen(mesh, scene_.train_cameras, tolerance, edge).mesh;
   }
 
- private:
   Image shade(const TriangleMesh& mesh) const {
     const ImageSize size = camera_.size();
     const Camera finer = resized(camera_, {kFiner * size.width, kFiner * size.height});
@@ -91,6 +100,7 @@ class MeshPainter {
   const FigureScene& scene_;
   MeshProtocol protocol_;
   Camera camera_;
+  std::map<fs::path, std::optional<SeenMesh>> seen_;
 };
 
 // A run with one mesh was scored with it on either side of the glass.
@@ -112,20 +122,20 @@ void add_rows(
     PictureGrid& grid,
     const FigureScene& scene,
     const std::set<std::string>& methods,
-    const MeshKind& kind
+    const MeshKind& kind,
+    MeshPainter& painter
 ) {
-  const MeshPainter painter(scene);
-  const auto truth = painter.see(scene.data / kind.truth);
+  const SeenMesh* truth = painter.see(scene.data / kind.truth, true);
   std::vector<Image> shaded, errors;
-  const auto add = [&](const std::optional<SeenMesh>& mesh) {
-    shaded.push_back(mesh ? mesh->shaded : Image());
-    errors.push_back(mesh ? painter.errors(*mesh, truth) : Image());
+  const auto add = [&](const SeenMesh* mesh) {
+    shaded.push_back(mesh != nullptr ? mesh->shaded : Image());
+    errors.push_back(mesh != nullptr ? painter.errors(*mesh, truth) : Image());
   };
   add(truth);
-  for (const std::string& method : methods) add(painter.see(mesh_of(scene, method, kind)));
+  for (const std::string& method : methods) add(painter.see(mesh_of(scene, method, kind), false));
   grid.row_titles.push_back(fmt::format("{}\n{}", scene.name, kind.title));
   grid.rows.push_back(std::move(shaded));
-  if (!truth) return;
+  if (truth == nullptr) return;
   grid.row_titles.push_back(fmt::format("{}\n{}", scene.name, kind.error_title));
   grid.rows.push_back(std::move(errors));
 }
@@ -146,9 +156,11 @@ PictureGrid meshes_figure(const std::vector<FigureScene>& scenes) {
   for (const FigureScene& scene : scenes)
     for (const auto& [method, folder] : scene.runs)
       if (method.find('/') == std::string::npos) methods.insert(method);
-  for (const FigureScene& scene : scenes)
+  for (const FigureScene& scene : scenes) {
+    MeshPainter painter(scene);
     for (const MeshKind& kind : kKinds)
-      if (any_has(scene, methods, kind.mesh)) add_rows(grid, scene, methods, kind);
+      if (any_has(scene, methods, kind.mesh)) add_rows(grid, scene, methods, kind, painter);
+  }
   if (grid.rows.empty()) return grid;
   grid.titles.emplace_back("truth");
   grid.titles.insert(grid.titles.end(), methods.begin(), methods.end());

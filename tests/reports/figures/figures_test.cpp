@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "glint/scene/image_files.h"
+#include "glint/scene/ply.h"
 #include "reports/figures/map_crops.h"
 #include "reports/figures/map_figures.h"
 #include "tests/reports/fake_method.h"
@@ -84,6 +85,11 @@ TEST_CASE("figures have what the runs rendered and nothing else") {
           "curves",
           "f1"}
   );
+  write_mesh_ply(
+      run_folder(folder.path(), {"room_1", "glint", 0}) / "mesh.ply",
+      {{{-9, -9, 2}, {9, -9, 2}, {0, 9, 2}}, {{0, 1, 2}}, {}}
+  );
+  CHECK(names_of(write_figures({folder.path(), load_fake})).back() == "meshes");
   for (const auto& entry : fs::directory_iterator(folder / "figures"))
     CHECK(read_image(entry.path(), 3).width() > kMinPanelWidth);
 }
