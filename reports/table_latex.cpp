@@ -38,10 +38,17 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 21> kLatexFo
 bool is_ascii(char c) { return c >= ' ' && c <= '~'; }
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }
 
+// A sign or an operator, not a hyphen: behind a space or first, before a digit or a space.
+bool is_minus(std::string_view text, const std::string& before) {
+  return text.size() > 1 && text[0] == '-' && (before.empty() || before.back() == ' ') &&
+         (text[1] == ' ' || (text[1] >= '0' && text[1] <= '9'));
+}
+
 std::string latex_text(std::string_view text) {
   std::string result;
   while (!text.empty()) {
     std::string_view form = is_ascii(text[0]) ? text.substr(0, 1) : "?";
+    if (is_minus(text, result)) form = "$-$";
     std::size_t length = 1;
     while (!is_ascii(text[0]) && length < text.size() && is_continuation(text[length])) ++length;
     for (const auto& [plain, latex] : kLatexForms)
@@ -121,8 +128,10 @@ std::string table_latex(const Table& table) {
 
 std::string latex_document(const std::vector<Table>& tables) {
   std::string text =
-      "\\documentclass{article}\n\\usepackage[T1]{fontenc}\n\\usepackage[a4paper,landscape,margin="
-      "15mm]{geometry}\n\\usepackage{booktabs,graphicx}\n\\usepackage[table]{xcolor}\n"
+      "\\documentclass{article}\n\\usepackage[T1]{fontenc}\n"
+      "\\IfFileExists{lmodern.sty}{\\usepackage{lmodern}}{}\n"  // else letters are pixels in T1
+      "\\usepackage[a4paper,landscape,margin=15mm]{geometry}\n"
+      "\\usepackage{booktabs,graphicx}\n\\usepackage[table]{xcolor}\n"
       "\\newcommand{\\fitted}[1]{\\resizebox{\\ifdim\\width>"
       "\\linewidth\\linewidth\\else\\width\\fi}"
       "{!}{\\input{#1}}}\n\\setlength{\\parindent}{0pt}\n\\begin{document}\n";
@@ -137,7 +146,7 @@ std::string latex_document(const std::vector<Table>& tables) {
       );
     text += "\n\\medskip\n{\\footnotesize\n";
     for (const std::string& note : table_notes(table)) text += latex_text(note) + "\\par\n";
-    text += "}\\clearpage\n";
+    text += "}\\bigskip\\filbreak\n";  // a new page where the next table would not fit
   }
   return text + "\\end{document}\n";
 }

@@ -12,7 +12,7 @@ for table in table1_photometric table2_geometry table3_ablation tableB_cost regi
   done
 done
 [ -s "$out/tables/all.tex" ] || fail "$out/tables/all.tex is missing or empty"
-for figure in qualitative curves; do
+for figure in qualitative curves f1 meshes; do
   [ -s "$out/figures/$figure.png" ] || fail "$out/figures/$figure.png is missing or empty"
 done
 grep -q '^2DGS\|^2dgs' "$out/tables/table1_photometric.csv" || fail "no row for 2dgs in table1_photometric.csv"

@@ -45,6 +45,15 @@ bool visit_face(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
+RTCRay ray_of(Vec3f origin, Vec3f direction, float length) {
+  RTCRay ray{};
+  ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
+  ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+  ray.tfar = length;
+  ray.mask = 0xffffffff;  // Debian's Embree is built with ray masks: 0 would meet nothing
+  return ray;
+}
+
 template <class T>
 void copy_to_buffer(
     RTCGeometry geometry, RTCBufferType type, RTCFormat format, const std::vector<T>& values
@@ -113,15 +122,22 @@ Nearest TriangleTree::nearest(Vec3f point, double max_distance, std::int32_t gue
 }
 
 bool TriangleTree::is_blocked(Vec3f origin, Vec3f direction, float length) const {
-  RTCRay ray{};
-  ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
-  ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-  ray.tfar = length;
-  ray.mask = 0xffffffff;  // Debian's Embree is built with ray masks: 0 would meet nothing
+  RTCRay ray = ray_of(origin, direction, length);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(impl_->scene, &context, &ray);
   return ray.tfar < 0;  // Embree's sign for a hit
+}
+
+RayHit TriangleTree::first_hit(Vec3f origin, Vec3f direction) const {
+  RTCRayHit query{};
+  query.ray = ray_of(origin, direction, std::numeric_limits<float>::infinity());
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(impl_->scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return {query.ray.tfar, static_cast<std::int32_t>(query.hit.primID)};
 }
 
 }  // namespace glint

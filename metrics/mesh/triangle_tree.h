@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A mesh as a search structure (Embree): the nearest face of a point, and whether a ray meets any.
+// A mesh as a search structure (Embree): the nearest face of a point, the first on a ray.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,12 @@ namespace glint {
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();  // metres
   std::int32_t id = -1;                                       // of a face or point; -1: none
+};
+
+// Where a ray meets a surface first.
+struct RayHit {
+  float t = std::numeric_limits<float>::infinity();  // in lengths of the ray's direction
+  std::int32_t face = -1;                            // -1: nowhere
 };
 
 // All queries may run in parallel and do not depend on the number of threads.
@@ -36,6 +42,9 @@ class TriangleTree {
 
   // Whether a face is met from `origin` along the unit vector `direction` before `length` metres.
   bool is_blocked(Vec3f origin, Vec3f direction, float length) const;
+
+  // The first face met along origin + t direction, t > 0, from either side.
+  RayHit first_hit(Vec3f origin, Vec3f direction) const;
 
  private:
   struct Impl;

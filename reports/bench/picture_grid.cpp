@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kGap = 4;         // pixels between panels
 constexpr int kMaxLetter = 16;  // pixels
+constexpr int kStripes = 8;     // pixels from one to the next
 
 // Sizes of a grid in pixels.
 struct Layout {
@@ -70,7 +71,16 @@ void paste(const Image& panel, int left, int top, Image& picture) {
     std::copy_n(panel.pixel(0, y), panel.width() * panel.channels(), picture.pixel(left, top + y));
 }
 
+Image plain_bar(LegendBar bar, int width, int height) {
+  Image picture(width, height, 3, kNothingGrey);
+  if (bar == LegendBar::kHatch)
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) std::copy_n(hatch_color(x, y).data(), 3, picture.pixel(x, y));
+  return picture;
+}
+
 Image color_bar(LegendBar bar, int width, int height) {
+  if (bar == LegendBar::kHatch || bar == LegendBar::kGrey) return plain_bar(bar, width, height);
   Image ramp(width, height, 1);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) ramp.at(x, y) = static_cast<float>(x + 1);
@@ -104,7 +114,9 @@ void draw_row(
 ) {
   for (std::size_t i = 0; i < row.size(); ++i) {
     const int left = left_of(i, layout);
-    paste(row[i].empty() ? Image(layout.column, height, 3, 0.5f) : row[i], left, top, picture);
+    paste(
+        row[i].empty() ? Image(layout.column, height, 3, kNothingGrey) : row[i], left, top, picture
+    );
     if (row[i].empty())
       draw_text(picture, "missing", left + 2 * kGap, top + layout.line, layout.letter);
   }
@@ -118,6 +130,11 @@ void draw_row_title(const std::string& title, int top, const Layout& layout, Ima
 }
 
 }  // namespace
+
+std::array<float, 3> hatch_color(int x, int y) {
+  if ((x + y) % kStripes < 3) return {0.35f, 0.6f, 0.85f};
+  return {0.75f, 0.88f, 0.97f};
+}
 
 Image fit_panel(const Image& panel) {
   if (panel.width() > kMaxPanelWidth) {

@@ -2,6 +2,7 @@
 // Pictures in rows and columns with titles above and a legend below, to look at.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,13 @@ namespace glint {
 // Panels are enlarged to at least the first, by whole numbers, and shrunk to at most the second.
 inline constexpr int kMinPanelWidth = 200, kMaxPanelWidth = 480;  // pixels
 
-// The colours of a map from low to high, as layer_picture() and the strips show it.
-enum class LegendBar { kNone, kDepth, kShare, kError };
+// The colours of a map from low to high, as layer_picture() and the strips show it; or what stands
+// for a pixel without a value.
+enum class LegendBar { kNone, kDepth, kShare, kError, kHatch, kGrey };
+
+// Of a pixel that is there but does not count: pale blue stripes, which no map of errors has.
+std::array<float, 3> hatch_color(int x, int y);
+inline constexpr float kNothingGrey = 0.5f;  // of what is not there, "missing" panels included
 
 struct LegendLine {
   std::string text;

@@ -19,11 +19,11 @@ constexpr std::size_t kCurvePoints = 100;
 
 using RecordPointers = std::vector<const Record*>;
 using MethodRecords = std::vector<std::pair<std::string, RecordPointers>>;
+using SceneRecords = std::vector<std::pair<std::string, MethodRecords>>;
 
 // Finished records of each scene and method, in the order of the records.
-std::vector<std::pair<std::string, MethodRecords>> finished_runs(const std::vector<Record>& records
-) {
-  std::vector<std::pair<std::string, MethodRecords>> scenes;
+SceneRecords finished_runs(const std::vector<Record>& records) {
+  SceneRecords scenes;
   const auto entry = [](auto& list, const std::string& name) -> auto& {
     const auto it = std::find_if(list.begin(), list.end(), [&](const auto& candidate) {
       return candidate.first == name;
@@ -37,6 +37,21 @@ std::vector<std::pair<std::string, MethodRecords>> finished_runs(const std::vect
   return scenes;
 }
 
+// The methods of a figure: one has the same colour and pattern in all charts.
+class Names {
+ public:
+  std::size_t index_of(const std::string& name) {
+    const auto it = std::find(names_.begin(), names_.end(), name);
+    const auto index = static_cast<std::size_t>(it - names_.begin());
+    if (it == names_.end()) names_.push_back(name);
+    return index;
+  }
+  const std::vector<std::string>& list() const { return names_; }
+
+ private:
+  std::vector<std::string> names_;
+};
+
 double metric_of(const Record& record, const std::string& id) {
   const auto it = record.metrics.find(id);
   return it == record.metrics.end() ? std::nan("") : it->second;
@@ -49,12 +64,12 @@ std::vector<double> numbers_of(const Json& array) {
   return numbers;
 }
 
-Chart training_chart(const MethodRecords& methods, const fs::path& folder) {
+Chart training_chart(const MethodRecords& methods, const fs::path& folder, Names& names) {
   Chart chart{"iteration", "PSNR of training views (dB)", {}};
   for (const auto& [method, runs] : methods) {
     const fs::path log = run_folder(folder, runs.front()->cell) / "log.jsonl";
     const Json curve = training_curve(log, kCurvePoints);
-    chart.series.push_back({method, {}, {}});
+    chart.series.push_back({names.index_of(method), {}, {}});
     if (!curve.is_object()) continue;
     chart.series.back().x = numbers_of(curve.at("iteration"));
     chart.series.back().y = numbers_of(curve.at("psnr"));
@@ -63,11 +78,14 @@ Chart training_chart(const MethodRecords& methods, const fs::path& folder) {
 }
 
 Chart scatter_chart(
-    const MethodRecords& methods, const std::string& x_metric, const std::string& x_label
+    const MethodRecords& methods,
+    const std::string& x_metric,
+    const std::string& x_label,
+    Names& names
 ) {
   Chart chart{x_label, "PSNR of test views (dB)", {}};
   for (const auto& [method, runs] : methods) {
-    ChartSeries series{method, {}, {}, true};
+    ChartSeries series{names.index_of(method), {}, {}, true};
     for (const Record* record : runs) {
       series.x.push_back(metric_of(*record, x_metric));
       series.y.push_back(metric_of(*record, "psnr"));
@@ -77,9 +95,9 @@ Chart scatter_chart(
   return chart;
 }
 
-// Of a method; no points where fewer than two distances were measured.
-ChartSeries f1_series(const std::string& method, const RecordPointers& runs, const char* prefix) {
-  ChartSeries series{method, {}, {}};
+// Fewer than two distances may have been measured.
+ChartSeries f1_series(const RecordPointers& runs, const char* prefix) {
+  ChartSeries series;
   for (const double threshold : default_thresholds_m()) {
     const std::string id = prefix + mesh_metric_id("f1@" + threshold_name(threshold), {});
     std::vector<double> values;
@@ -90,15 +108,16 @@ ChartSeries f1_series(const std::string& method, const RecordPointers& runs, con
     series.x.push_back(100 * threshold);
     series.y.push_back(mean_of(values));
   }
-  if (series.x.size() < 2) return {method, {}, {}};
   return series;
 }
 
-Chart f1_chart(const MethodRecords& methods, const char* prefix) {
+Chart f1_chart(const MethodRecords& methods, const char* prefix, Names& names) {
   Chart chart{"distance (cm)", "F1", {}};
   for (const auto& [method, runs] : methods)
-    if (ChartSeries series = f1_series(method, runs, prefix); !series.x.empty())
+    if (ChartSeries series = f1_series(runs, prefix); series.x.size() >= 2) {
+      series.index = names.index_of(method);
       chart.series.push_back(std::move(series));
+    }
   return chart;
 }
 
@@ -112,25 +131,35 @@ void add_charts(PictureGrid& grid, const std::string& scene, const std::vector<C
   grid.row_titles.push_back(scene);
 }
 
+void add_legend(PictureGrid& grid, const Names& names) {
+  if (grid.rows.empty()) return;
+  grid.rows.push_back(draw_chart_legend(names.list(), grid.titles.size()));
+  grid.row_titles.emplace_back();
+}
+
 }  // namespace
 
 PictureGrid curves_figure(const std::vector<Record>& records, const fs::path& folder) {
   PictureGrid grid{{"training", "quality and time", "quality and size"}, {}, {}};
+  Names names;
   for (const auto& [scene, methods] : finished_runs(records))
     add_charts(
         grid,
         scene,
-        {training_chart(methods, folder),
-         scatter_chart(methods, "train-minutes", "training (min)"),
-         scatter_chart(methods, "num-surfels", "surfels")}
+        {training_chart(methods, folder, names),
+         scatter_chart(methods, "train-minutes", "training (min)", names),
+         scatter_chart(methods, "num-surfels", "surfels", names)}
     );
+  add_legend(grid, names);
   return grid;
 }
 
 PictureGrid f1_figure(const std::vector<Record>& records) {
   PictureGrid grid{{"mesh", "mesh behind glass"}, {}, {}};
+  Names names;
   for (const auto& [scene, methods] : finished_runs(records))
-    add_charts(grid, scene, {f1_chart(methods, ""), f1_chart(methods, kBehindMesh)});
+    add_charts(grid, scene, {f1_chart(methods, "", names), f1_chart(methods, kBehindMesh, names)});
+  add_legend(grid, names);
   return grid;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/bench/picture_grid.h"
 #include "reports/figures/figures.h"
 #include "reports/page/layers.h"
 
@@ -17,12 +18,19 @@ struct FigureScene {
   MaskImage glass;                           // empty: the data have none
   LayerMaps truth;                           // ids of page_layers()
   std::map<std::string, LayerMaps> methods;  // the first finished seed of each
+  std::map<std::string, fs::path> runs;      // run folder of each
+  fs::path data;                             // the scene's folder
+  Camera camera;                             // of the view
+  std::vector<Camera> train_cameras;
 };
 
 inline constexpr const char* kViewRule = "the test view with the largest share of glass";
 
 // The view after kViewRule, the first of equals; without glass the middle one.
 std::size_t figure_view(const std::vector<View>& views);
+
+// "views: 0002 of room_1, ...", and the rule.
+LegendLine views_line(const std::vector<FigureScene>& scenes);
 
 // Scenes whose data can be loaded, in the order of the records; others with a warning.
 std::vector<FigureScene> figure_scenes(

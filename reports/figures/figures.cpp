@@ -4,6 +4,7 @@
 #include "glint/scene/image_files.h"
 #include "reports/figures/curve_figures.h"
 #include "reports/figures/map_figures.h"
+#include "reports/figures/mesh_figure.h"
 
 namespace glint {
 
@@ -34,6 +35,7 @@ std::vector<fs::path> write_figures(const FigureOptions& options) {
   keep(folder / "ablation.png", ablation_figure(scenes), written);
   keep(folder / "curves.png", curves_figure(records, options.folder), written);
   keep(folder / "f1.png", f1_figure(records), written);
+  keep(folder / "meshes.png", meshes_figure(scenes), written);
   return written;
 }
 

@@ -16,10 +16,10 @@ struct FigureOptions {
   std::function<Scene(const RunSpec&)> load;  // the data that a run was scored against
 };
 
-// FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves,
-// f1}.png; returns the paths of those that have something to show. What is absent inside a figure
-// says "missing"; scenes without data are left out of figures with maps, with a warning. The lean
-// build has none. Errors: those of read_records(), kEnvironment (disk).
+// FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves, f1,
+// meshes}.png; returns the paths of those that have something to show. What is absent inside a
+// figure says "missing"; scenes without data are left out of figures with maps, with a warning. The
+// lean build has none. Errors: those of read_records(), kEnvironment (disk).
 std::vector<fs::path> write_figures(const FigureOptions& options);
 
 }  // namespace glint

@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <set>
 
-#include "glint/scene/image_files.h"
+#include "reports/figures/map_crops.h"
 #include "reports/tables.h"
 
 namespace glint {
 
 namespace {
 
-constexpr int kCropParts = 3;   // a crop is this part of the picture's width and height
-constexpr int kCropSteps = 12;  // places tried along each side
-constexpr float kBoxColor[] = {1.0f, 0.75f, 0.0f};
+constexpr float kMirroredGain = 4;  // mirrored light is faint
 
 const LayerMaps* maps_of(const FigureScene& scene, const std::string& method) {
   const auto it = scene.methods.find(method);
@@ -45,38 +43,6 @@ Image mask_panel(const MaskImage& mask) {
   return fit_panel(picture);
 }
 
-Image cropped(const Image& picture, const Crop& crop) {
-  if (picture.empty()) return {};
-  Image part(crop.width, crop.height, picture.channels());
-  for (int y = 0; y < crop.height; ++y)
-    std::copy_n(
-        picture.pixel(crop.left, crop.top + y), crop.width * picture.channels(), part.pixel(0, y)
-    );
-  return part;
-}
-
-// Enlarged with the box, so that its line has one width in all panels.
-Image boxed(const Image& picture, const Crop& crop) {
-  if (picture.empty()) return {};
-  Image panel = fit_panel(picture);
-  const auto scaled = [&](int value) { return value * panel.width() / picture.width(); };
-  const int left = scaled(crop.left), right = scaled(crop.left + crop.width) - 1;
-  const int top = scaled(crop.top), bottom = scaled(crop.top + crop.height) - 1;
-  const auto near_edge = [](int at, int low, int high) { return at < low + 2 || at > high - 2; };
-  for (int y = top; y <= std::min(bottom, panel.height() - 1); ++y)
-    for (int x = left; x <= right; ++x)
-      if (near_edge(x, left, right) || near_edge(y, top, bottom))
-        std::copy_n(kBoxColor, 3, panel.pixel(x, y));
-  return panel;
-}
-
-// As large as a panel of the whole picture.
-Image crop_panel(const Image& picture, const Crop& crop) {
-  if (picture.empty()) return {};
-  const ImageSize size = fit_panel(picture).size();
-  return resize_image(cropped(picture, crop), size);
-}
-
 std::set<std::string> methods_with(
     const std::vector<FigureScene>& scenes, const std::string& layer, bool variants
 ) {
@@ -88,33 +54,16 @@ std::set<std::string> methods_with(
   return methods;
 }
 
-double window_error(const Image& error, const Crop& crop) {
-  double sum = 0;
-  for (int y = 0; y < crop.height; ++y)
-    for (int x = 0; x < crop.width; ++x)
-      sum += static_cast<double>(error.at(crop.left + x, crop.top + y));
-  return sum;
-}
-
-Crop crop_of(const FigureScene& scene, const std::set<std::string>& methods) {
+std::vector<Crop> crops_of(const FigureScene& scene, const std::set<std::string>& methods) {
   std::vector<const Image*> errors;
   for (const std::string& method : methods)
     if (const LayerMaps* maps = maps_of(scene, method); has(maps, "error"))
       errors.push_back(&maps->at("error"));
-  if (errors.empty()) {
-    const Image& truth = scene.truth.at("render");
-    return {
-        0, 0, std::max(1, truth.width() / kCropParts), std::max(1, truth.height() / kCropParts)};
-  }
-  return crop_of_errors(errors);
+  return choose_crops(errors, scene.glass);
 }
 
 std::vector<LegendLine> legend_of(const std::vector<FigureScene>& scenes, bool depth) {
-  std::vector<LegendLine> legend;
-  std::string views;
-  for (const FigureScene& scene : scenes)
-    views += fmt::format("{}{} of {}", views.empty() ? "" : ", ", scene.view, scene.name);
-  legend.push_back({fmt::format("views: {} ({})", views, kViewRule)});
+  std::vector<LegendLine> legend{views_line(scenes)};
   if (!depth) return legend;
   for (const FigureScene& scene : scenes)
     legend.push_back(
@@ -155,28 +104,34 @@ void add_row(PictureGrid& grid, const std::string& title, std::vector<Image> row
 void add_qualitative_rows(
     PictureGrid& grid, const FigureScene& scene, const std::set<std::string>& methods
 ) {
-  const Crop crop = crop_of(scene, methods);
+  const std::vector<Crop> crops = crops_of(scene, methods);
   std::vector<const LayerMaps*> columns{&scene.truth};
   for (const std::string& method : methods) columns.push_back(maps_of(scene, method));
   const std::pair<const char*, const char*> layers[] = {
       {"render", "image"}, {"depth", "depth"}, {"normal", "normal"}};
   for (const auto& [layer, title] : layers) {
-    std::vector<Image> whole, crops;
+    std::vector<Image> whole, parts;
     for (const LayerMaps* maps : columns) {
       const Image picture = picture_of(maps, layer, scene.scale);
-      whole.push_back(boxed(picture, crop));
-      crops.push_back(crop_panel(picture, crop));
+      whole.push_back(outlined(picture, crops));
+      parts.push_back(crop_panel(picture, crops));
     }
     add_row(grid, fmt::format("{}\n{}", scene.name, title), std::move(whole));
-    add_row(grid, fmt::format("{}\n{}, crop", scene.name, title), std::move(crops));
+    add_row(grid, fmt::format("{}\n{}, crops", scene.name, title), std::move(parts));
   }
 }
 
 struct FigureColumn {
-  const char* title;
+  std::string title;
   const char* layer;
   bool truth = false;
+  float gain = 1;
 };
+
+Image brightened(Image picture, float gain) {
+  for (float& value : picture.values()) value = std::min(gain * value, 1.0f);
+  return picture;
+}
 
 // A row for every scene and method that has `needed`.
 PictureGrid method_rows(
@@ -185,13 +140,16 @@ PictureGrid method_rows(
     const std::string& needed
 ) {
   PictureGrid grid;
-  for (const FigureColumn& column : columns) grid.titles.emplace_back(column.title);
+  for (const FigureColumn& column : columns) grid.titles.push_back(column.title);
   for (const FigureScene& scene : scenes)
     for (const std::string& method : methods_with({scene}, needed, false)) {
       std::vector<Image> row;
       for (const FigureColumn& column : columns)
-        row.push_back(panel_of(
-            column.truth ? &scene.truth : maps_of(scene, method), column.layer, scene.scale
+        row.push_back(brightened(
+            panel_of(
+                column.truth ? &scene.truth : maps_of(scene, method), column.layer, scene.scale
+            ),
+            column.gain
         ));
       add_row(grid, fmt::format("{}\n{}", scene.name, method), std::move(row));
     }
@@ -214,22 +172,6 @@ std::vector<std::pair<std::string, std::string>> ablation_methods(
 
 }  // namespace
 
-Crop crop_of_errors(const std::vector<const Image*>& errors) {
-  const int width = errors[0]->width(), height = errors[0]->height();
-  Crop crop{0, 0, std::max(1, width / kCropParts), std::max(1, height / kCropParts)}, best = crop;
-  double most = -1;
-  for (int j = 0; j <= kCropSteps; ++j)
-    for (int i = 0; i <= kCropSteps; ++i) {
-      crop.left = (width - crop.width) * i / kCropSteps;
-      crop.top = (height - crop.height) * j / kCropSteps;
-      double error = 0;
-      for (const Image* map : errors) error += window_error(*map, crop);
-      if (error > most) best = crop;
-      most = std::max(most, error);
-    }
-  return best;
-}
-
 PictureGrid qualitative_figure(const std::vector<FigureScene>& scenes) {
   PictureGrid grid;
   const auto methods = methods_with(scenes, "render", false);
@@ -238,7 +180,9 @@ PictureGrid qualitative_figure(const std::vector<FigureScene>& scenes) {
   grid.titles.insert(grid.titles.end(), methods.begin(), methods.end());
   for (const FigureScene& scene : scenes) add_qualitative_rows(grid, scene, methods);
   grid.legend = legend_of(scenes, true);
-  grid.legend.push_back({"crop: the window in which the methods together have the largest error"});
+  grid.legend.push_back(
+      {"crops: where the methods together err most, on glass (orange) and off it (blue)"}
+  );
   return grid;
 }
 
@@ -275,6 +219,7 @@ PictureGrid transparency_figure(const std::vector<FigureScene>& scenes) {
 }
 
 PictureGrid radiance_figure(const std::vector<FigureScene>& scenes) {
+  const std::string times = fmt::format(", x{:g}", kMirroredGain);
   PictureGrid grid = method_rows(
       scenes,
       {{"truth", "render", true},
@@ -284,8 +229,8 @@ PictureGrid radiance_figure(const std::vector<FigureScene>& scenes) {
        {"reflection", "reflection"},
        {"seen through glass", "through"},
        {"seen through, truth", "through", true},
-       {"mirrored by glass", "mirrored"},
-       {"mirrored, truth", "mirrored", true}},
+       {"mirrored" + times, "mirrored", false, kMirroredGain},
+       {"mirrored, truth" + times, "mirrored", true, kMirroredGain}},
       "through"
   );
   grid.legend = legend_of(scenes, false);

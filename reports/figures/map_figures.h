@@ -10,8 +10,8 @@
 
 namespace glint {
 
-// Methods (no variants) beside the truth: image, the same crop of all, depth, normal. The crop is
-// the window of a third of the picture where the methods together err most.
+// Methods (no variants) beside the truth: image, depth, normal, each with the same crops of all
+// (map_crops.h).
 PictureGrid qualitative_figure(const std::vector<FigureScene>& scenes);
 // Of methods with two depths: image, depth of the interface and behind it, each with its truth.
 PictureGrid depth_figure(const std::vector<FigureScene>& scenes);
@@ -21,11 +21,5 @@ PictureGrid transparency_figure(const std::vector<FigureScene>& scenes);
 PictureGrid radiance_figure(const std::vector<FigureScene>& scenes);
 // The rows of the ablation table as columns: image, error, depth, normal.
 PictureGrid ablation_figure(const std::vector<FigureScene>& scenes);
-
-struct Crop {
-  int left = 0, top = 0, width = 0, height = 0;
-};
-// `errors`: [H][W][1] of each method, all of one size; at least one.
-Crop crop_of_errors(const std::vector<const Image*>& errors);
 
 }  // namespace glint

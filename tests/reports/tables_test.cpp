@@ -318,9 +318,15 @@ TEST_CASE("LaTeX gets no character that it cannot print") {
   );
 }
 
+TEST_CASE("LaTeX gets a minus for signs and differences, hyphens stay") {
+  Table table = golden_table("table1_photometric");
+  table.rows[0].title = "-1.5, a - b, x-y 3D-F -z";
+  CHECK(table_latex(table).find("$-$1.5, a $-$ b, x-y 3D-F -z &") != std::string::npos);
+}
+
 TEST_CASE("pdflatex compiles all tables in one document") {
   if (std::system("command -v pdflatex >/dev/null 2>&1") != 0) {
-    WARN("skipped: no pdflatex (Debian: texlive-latex-recommended)");
+    WARN("skipped: no pdflatex; scripts/setup_extras.sh installs it");
     return;
   }
   const test::TempFolder folder;

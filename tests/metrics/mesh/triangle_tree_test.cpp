@@ -107,3 +107,16 @@ TEST_CASE("a ray is blocked by what stands before its end, from either side") {
   CHECK_FALSE(tree.is_blocked({0.3f, 0.4f, 1}, {0, 0, -1}, 0.5f));
   CHECK_FALSE(tree.is_blocked({1.3f, 0.4f, 1}, {0, 0, -1}, 1.5f));
 }
+
+TEST_CASE("the first face of a ray is met in lengths of its direction") {
+  TriangleMesh mesh = unit_square(0);
+  append(mesh, unit_square(-1));
+  const TriangleTree tree(mesh);
+  const RayHit above = tree.first_hit({0.3f, 0.4f, 1}, {0, 0, -2});
+  CHECK(above.t == Approx(0.5f));
+  CHECK(above.face == 1);
+  CHECK(tree.first_hit({0.4f, 0.3f, -3}, {0, 0, 1}).t == Approx(2));
+  CHECK(tree.first_hit({0.4f, 0.3f, -3}, {0, 0, 1}).face == 2);
+  CHECK(tree.first_hit({0.3f, 0.4f, 1}, {0, 0, 1}).face == -1);
+  CHECK(tree.first_hit({1.3f, 0.4f, 1}, {0, 0, -1}).face == -1);
+}

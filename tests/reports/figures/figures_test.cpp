@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "glint/scene/image_files.h"
+#include "glint/scene/ply.h"
+#include "reports/figures/map_crops.h"
 #include "reports/figures/map_figures.h"
 #include "tests/reports/fake_method.h"
 #include "tests/support/temp_folder.h"
@@ -83,6 +85,11 @@ TEST_CASE("figures have what the runs rendered and nothing else") {
           "curves",
           "f1"}
   );
+  write_mesh_ply(
+      run_folder(folder.path(), {"room_1", "glint", 0}) / "mesh.ply",
+      {{{-9, -9, 2}, {9, -9, 2}, {0, 9, 2}}, {{0, 1, 2}}, {}}
+  );
+  CHECK(names_of(write_figures({folder.path(), load_fake})).back() == "meshes");
   for (const auto& entry : fs::directory_iterator(folder / "figures"))
     CHECK(read_image(entry.path(), 3).width() > kMinPanelWidth);
 }
@@ -126,22 +133,49 @@ TEST_CASE("the view with the most glass is shown, without glass the middle one")
   CHECK(figure_view(views) == 0);
 }
 
-TEST_CASE("the crop is where the methods together err most") {
-  Image first(36, 24, 1), second(36, 24, 1);
-  first.at(30, 20) = 1;
-  second.at(1, 1) = 0.4f;
-  const Crop crop = crop_of_errors({&first, &second});
-  CHECK(crop.width == 12);
-  CHECK(crop.height == 8);
-  CHECK((crop.left <= 30 && 30 < crop.left + crop.width));
-  CHECK((crop.top <= 20 && 20 < crop.top + crop.height));
-  second.at(1, 1) = 1.5f;
-  CHECK(crop_of_errors({&first, &second}).left <= 1);
+TEST_CASE("crops are where the methods together err most, on glass and off it") {
+  Image first(48, 32, 1), second(48, 32, 1);
+  MaskImage glass(48, 32, 1, 0);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 20; ++x) glass.at(x, y) = 255;
+  first.at(40, 30) = 1;  // off glass
+  first.at(1, 1) = 0.4f, second.at(18, 20) = 0.3f, second.at(17, 21) = 0.3f;
+  const auto holds = [](const std::optional<Crop>& crop, int x, int y) {
+    return crop && crop->left <= x && x < crop->left + 12 && crop->top <= y && y < crop->top + 8;
+  };
+  const auto on = crop_of_errors({&first, &second}, glass, true);
+  CHECK(holds(on, 18, 20));
+  CHECK(on->width == 12);
+  CHECK(on->height == 8);
+  CHECK(holds(crop_of_errors({&first, &second}, glass, false), 40, 30));
+  CHECK(holds(crop_of_errors({&first}, glass, true), 1, 1));
+  CHECK_FALSE(crop_of_errors({&first}, MaskImage(), true));
+  CHECK(choose_crops({&first}, MaskImage()).size() == 1);
+  CHECK(choose_crops({}, glass).empty());
+}
+
+TEST_CASE("each crop has its colour around the window and around the enlarged part") {
+  const Image picture(480, 320, 3, 0.5f);
+  std::vector<Crop> crops{{10, 20, 120, 80, {1, 0, 0}}, {300, 200, 120, 80, {0, 0, 1}}};
+  const Image panel = outlined(picture, crops);
+  CHECK(panel.at(10, 50, 0) == 1);
+  CHECK(panel.at(10, 50, 2) == 0);
+  CHECK(panel.at(9, 50, 0) == 0);  // black beside it
+  CHECK(panel.at(350, 200, 2) == 1);
+  CHECK(panel.at(70, 60, 0) == 0.5f);
+  const Image parts = crop_panel(picture, crops);
+  CHECK(parts.width() == panel.width());
+  CHECK(parts.at(0, 0, 0) == 1);
+  CHECK(parts.at(0, 0, 2) == 0);
+  CHECK(parts.at(parts.width() - 1, parts.height() - 1, 2) == 1);
+  CHECK(crop_panel(picture, {}).empty());
 }
 
 TEST_CASE("columns of a figure are the truth and every method, empty where one has no map") {
   const LayerMaps with_depth = {
-      {"render", Image(kWidth, kHeight, 3)}, {"depth", Image(kWidth, kHeight, 1, 1.0f)}};
+      {"render", Image(kWidth, kHeight, 3)},
+      {"error", Image(kWidth, kHeight, 1, 0.1f)},
+      {"depth", Image(kWidth, kHeight, 1, 1.0f)}};
   const LayerMaps without = {{"render", Image(kWidth, kHeight, 3)}};
   const PictureGrid grid =
       qualitative_figure({scene_of({{"a", with_depth}, {"a/variant", without}, {"b", without}})});

@@ -5,7 +5,7 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 
 skip() {
-  echo "skipped: $1; scripts/setup_browser.sh installs it"
+  echo "skipped: $1; scripts/setup_extras.sh installs it"
   exit 77
 }
 command -v node >/dev/null || skip "no node"
