@@ -11,30 +11,28 @@
 #include "glint/scene/ply.h"
 #include "metrics/mesh/clean.h"
 #include "metrics/mesh/cull.h"
-#include "metrics/mesh/mesh_protocol.h"
 #include "reports/figures/mesh_render.h"
+#include "reports/mesh/mesh_stage.h"
 
 namespace glint {
 
 namespace {
 
 struct MeshKind {
-  const char* mesh;  // in a run folder
-  const char* truth;
+  MeshLayer layer;
   const char* title;
   const char* error_title;
 };
 constexpr MeshKind kKinds[] = {
-    {"mesh.ply", "gt/mesh.ply", "mesh", "error"},
-    {"mesh_transmission.ply", "gt/mesh_behind.ply", "mesh behind", "behind, error"}};
+    {kMeshLayers[0], "mesh", "error"}, {kMeshLayers[1], "mesh behind", "behind, error"}};
 
 // With which the runs were scored: their metrics.json say so; of several the first.
 MeshProtocol protocol_of(const FigureScene& scene) {
   for (const auto& [method, folder] : scene.runs) {
     const fs::path path = folder / "metrics.json";
     if (!fs::exists(path)) continue;
-    const Json json = Json::parse(read_file(path), nullptr, false);
-    if (!json.is_object() || !json.contains("meshes")) continue;
+    const Json json = read_json_object(path, ExitCode::kBadPrediction);
+    if (!json.contains("meshes")) continue;
     MeshProtocol protocol;
     config_from_json(protocol, json["meshes"].value("protocol", Json::object()), path.string());
     return protocol;
@@ -103,14 +101,6 @@ class MeshPainter {
   std::map<fs::path, std::optional<SeenMesh>> seen_;
 };
 
-// A run with one mesh was scored with it on either side of the glass.
-fs::path mesh_of(const FigureScene& scene, const std::string& method, const MeshKind& kind) {
-  const auto run = scene.runs.find(method);
-  if (run == scene.runs.end()) return {};
-  const fs::path path = run->second / kind.mesh;
-  return fs::exists(path) ? path : run->second / kKinds[0].mesh;
-}
-
 bool any_has(const FigureScene& scene, const std::set<std::string>& methods, const char* mesh) {
   return std::any_of(methods.begin(), methods.end(), [&](const std::string& method) {
     const auto run = scene.runs.find(method);
@@ -125,14 +115,17 @@ void add_rows(
     const MeshKind& kind,
     MeshPainter& painter
 ) {
-  const SeenMesh* truth = painter.see(scene.data / kind.truth, true);
+  const SeenMesh* truth = painter.see(scene.data / kind.layer.truth, true);
   std::vector<Image> shaded, errors;
   const auto add = [&](const SeenMesh* mesh) {
     shaded.push_back(mesh != nullptr ? mesh->shaded : Image());
     errors.push_back(mesh != nullptr ? painter.errors(*mesh, truth) : Image());
   };
   add(truth);
-  for (const std::string& method : methods) add(painter.see(mesh_of(scene, method, kind), false));
+  for (const std::string& method : methods) {
+    const auto run = scene.runs.find(method);
+    add(run != scene.runs.end() ? painter.see(mesh_of(run->second, kind.layer), false) : nullptr);
+  }
   grid.row_titles.push_back(fmt::format("{}\n{}", scene.name, kind.title));
   grid.rows.push_back(std::move(shaded));
   if (truth == nullptr) return;
@@ -159,7 +152,7 @@ PictureGrid meshes_figure(const std::vector<FigureScene>& scenes) {
   for (const FigureScene& scene : scenes) {
     MeshPainter painter(scene);
     for (const MeshKind& kind : kKinds)
-      if (any_has(scene, methods, kind.mesh)) add_rows(grid, scene, methods, kind, painter);
+      if (any_has(scene, methods, kind.layer.mesh)) add_rows(grid, scene, methods, kind, painter);
   }
   if (grid.rows.empty()) return grid;
   grid.titles.emplace_back("truth");

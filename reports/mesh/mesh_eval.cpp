@@ -3,6 +3,7 @@
 
 #include "metrics/mesh/mesh_scores.h"
 #include "metrics/tools/mesh_inputs.h"
+#include "reports/mesh/mesh_stage.h"
 
 namespace glint {
 namespace {
@@ -32,21 +33,6 @@ Surface prepared(
   return std::move(input.surface);
 }
 
-struct Layer {
-  std::string prefix;
-  fs::path mesh, truth;
-};
-
-std::vector<Layer> layers_of(const RunSpec& spec) {
-  const fs::path first = spec.folder / "mesh.ply";
-  const fs::path behind = spec.folder / "mesh_transmission.ply";
-  return {
-      {"", first, spec.dataset_folder / "gt" / "mesh.ply"},
-      {kBehindMesh,
-       fs::exists(behind) ? behind : first,
-       spec.dataset_folder / "gt" / "mesh_behind.ply"}};
-}
-
 }  // namespace
 
 std::map<std::string, double> score_meshes(
@@ -55,13 +41,15 @@ std::map<std::string, double> score_meshes(
   const std::vector<Camera> cameras = train_cameras(scene);
   std::map<std::string, double> values;
   recipe["protocol"] = config_to_json(protocol);
-  for (const Layer& layer : layers_of(spec)) {
-    if (!fs::exists(layer.mesh) || !fs::exists(layer.truth)) continue;
+  for (const MeshLayer& layer : kMeshLayers) {
+    const fs::path predicted = mesh_of(spec.folder, layer);
+    const fs::path true_mesh = spec.dataset_folder / layer.truth;
+    if (!fs::exists(predicted) || !fs::exists(true_mesh)) continue;
     Json done = Json::object();
     const Surface mesh =
-        prepared(layer.mesh, ExitCode::kBadPrediction, cameras, protocol, done["prediction"]);
+        prepared(predicted, ExitCode::kBadPrediction, cameras, protocol, done["prediction"]);
     const Surface truth =
-        prepared(layer.truth, ExitCode::kBadReference, cameras, protocol, done["reference"]);
+        prepared(true_mesh, ExitCode::kBadReference, cameras, protocol, done["reference"]);
     for (const auto distance :
          {SurfaceDistance::kPointToTriangle, SurfaceDistance::kPointToPoint}) {
       MeshProtocol each = protocol;
@@ -69,7 +57,7 @@ std::map<std::string, double> score_meshes(
       for (const auto& [id, value] : mesh_values(mesh_scores(mesh, truth, each), each))
         values[layer.prefix + id] = value;
     }
-    recipe[layer.prefix + "mesh"] = done;
+    recipe[std::string(layer.prefix) + "mesh"] = done;
   }
   return values;
 }

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scores of a run's meshes against the dataset's: the first surface (mesh.ply, gt/mesh.ply:
-// "mesh-cd",
-// ...) and what lies behind glass (mesh_transmission.ply, gt/mesh_behind.ply: "behind-mesh-cd",
-// ...).
+// Scores of a run's meshes against the dataset's.
 #pragma once
 
 #include <map>
@@ -15,9 +12,8 @@
 namespace glint {
 
 // Both distances, to triangles and to samples. `recipe` gets the protocol and what was done to
-// either mesh, to stand beside the values. A run without a mesh of
-// the layer behind is scored with mesh.ply there: a single layer may lie behind the glass. Empty:
-// no mesh, or no true one. Errors: kBadPrediction and kBadReference for damaged meshes.
+// either mesh, to stand beside the values. Empty: no mesh, or no true one. Errors: kBadPrediction
+// and kBadReference for damaged meshes.
 std::map<std::string, double> score_meshes(
     const RunSpec& spec, const Scene& scene, const MeshProtocol& protocol, Json& recipe
 );

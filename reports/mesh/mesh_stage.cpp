@@ -52,10 +52,9 @@ Image depth_through_glass(const RenderOutput& output) {
 
 }  // namespace
 
-const std::vector<MeshLayer>& mesh_layers() {
-  static const std::vector<MeshLayer> layers = {
-      {"depth", "mesh.ply"}, {"behind_depth", "mesh_transmission.ply"}};
-  return layers;
+fs::path mesh_of(const fs::path& run, const MeshLayer& layer) {
+  const fs::path path = run / layer.mesh;
+  return fs::exists(path) ? path : run / kMeshLayers[0].mesh;
 }
 
 void render_train_stage(const RunSpec& spec, const Scene& scene, const Method& method) {
@@ -77,7 +76,7 @@ Json fuse_stage(const RunSpec& spec, const Scene& scene, TsdfOptions options) {
   set_bounds(options, scene);
   Json result = {{"options", config_to_json(options)}, {"views", "training"}};
   result["meshes"] = Json::object();
-  for (const MeshLayer& layer : mesh_layers()) {
+  for (const MeshLayer& layer : kMeshLayers) {
     std::error_code code;
     fs::remove(spec.folder / layer.mesh, code);
     if (!has_map(spec.folder, scene, layer.map)) continue;

@@ -4,16 +4,26 @@
 // through glass, mesh_transmission.ply (what lies behind it).
 #pragma once
 
+#include "metrics/mesh/mesh_protocol.h"
 #include "reports/bench/run_folder.h"
 #include "reports/mesh/tsdf.h"
 
 namespace glint {
 
-// The layers of a run that become meshes: map in renders_train/<view>/, mesh file.
+// A surface that becomes a mesh and is scored.
 struct MeshLayer {
-  std::string map, mesh;
+  const char* map;     // in renders_train/<view>/
+  const char* mesh;    // in a run folder
+  const char* truth;   // in a dataset folder
+  const char* prefix;  // of its metrics' ids
 };
-const std::vector<MeshLayer>& mesh_layers();
+inline constexpr MeshLayer kMeshLayers[] = {
+    {"depth", "mesh.ply", "gt/mesh.ply", ""},
+    {"behind_depth", "mesh_transmission.ply", "gt/mesh_behind.ply", kBehindMesh}};
+
+// The run's mesh of that layer. A run without one behind glass has its mesh.ply there: a single
+// layer may lie behind the glass.
+fs::path mesh_of(const fs::path& run, const MeshLayer& layer);
 
 // rgb.png, depth.exr and, of methods that look behind glass, behind_depth.exr (of the first surface
 // where t is at most a half) of every training view.
