@@ -28,6 +28,7 @@ void visit_fields(R& record, V&& v) {
   v("num_surfels", record.num_surfels);
   v("warnings", record.warnings);
   v("not_measured", record.not_measured);
+  v("not_applicable", record.not_applicable);
   v("timings", record.timings);
   v("environment", record.environment);
 }

@@ -40,7 +40,8 @@ struct Record {
   std::optional<Failure> failure;         // set: the cell failed, `metrics` is empty
   std::map<std::string, double> metrics;  // id -> mean over test views; "psnr@glass" for a region
   std::map<std::string, std::string> not_measured;  // id -> what the machine lacked: "no weights"
-  std::string resolution;                           // of the test views, "160x90"
+  std::vector<std::string> not_applicable;  // ids that neither the method nor the data allow
+  std::string resolution;                   // of the test views, "160x90"
   std::string imported;  // where another program's renders lay; empty: trained here
   std::string config_hash, dataset_hash;  // equal hashes: nothing to do again
   std::size_t num_surfels = 0;

@@ -124,6 +124,15 @@ std::string reason_of_absence(const RecordPointers& records, const std::string& 
   return {};
 }
 
+// Did the run say that there is no such value? Of a region: also where there is the value of whole
+// pictures, but the data have no such region.
+bool says_not_applicable(const Record& record, const std::string& metric) {
+  const std::string whole = metric.substr(0, metric.find('@'));
+  const auto& ids = record.not_applicable;
+  return std::find(ids.begin(), ids.end(), whole) != ids.end() ||
+         (whole != metric && record.metrics.contains(whole) && !record.metrics.contains(metric));
+}
+
 // Failed only where every run did: a finished one without the value says that it is not measured.
 TableCell cell_without_values(const RecordPointers& records, const TableColumn& column) {
   TableCell cell;
@@ -135,9 +144,15 @@ TableCell cell_without_values(const RecordPointers& records, const TableColumn& 
   const bool finished = std::any_of(records.begin(), records.end(), [](const Record* record) {
     return record->ok();
   });
+  const bool applicable = std::none_of(records.begin(), records.end(), [&](const Record* record) {
+    return record->ok() && says_not_applicable(*record, column.metric);
+  });
   if (!records.empty() && !finished) {
     cell.status = CellStatus::kFailed;
     cell.note = failure_note(*records.front());
+  } else if (!applicable) {
+    cell.status = CellStatus::kNotApplicable;
+    cell.note = "the method has no such map, or the data no truth for it";
   } else {
     cell.note = finished ? "not measured" : "not built or not run";
   }

@@ -55,7 +55,7 @@ enum class CellStatus {
   kMissing,        // not built or not run
   kFailed,         // every run failed
   kUnavailable,    // run where the metric's files were missing; `text` says which
-  kNotApplicable,  // the paper has no such number
+  kNotApplicable,  // the paper has no such number, the method no such map, or the data no truth
 };
 
 struct TableCell {

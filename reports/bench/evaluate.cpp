@@ -66,6 +66,16 @@ Scores score_view(const fs::path& folder, const View& view) {
 
 Json score_protocols() { return metric_protocols(); }
 
+std::vector<std::string> not_applicable(
+    const Scores& means, const std::map<std::string, std::string>& not_measured
+) {
+  std::vector<std::string> ids;
+  for (const MetricFamily& family : metric_families())
+    for (const Metric& metric : family.metrics)
+      if (!means.contains(metric.id) && !not_measured.contains(metric.id)) ids.push_back(metric.id);
+  return ids;
+}
+
 Scores mean_scores(const std::vector<Scores>& views) {
   std::map<std::string, std::pair<double, int>> sums;
   for (const Scores& view : views)

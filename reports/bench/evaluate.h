@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "glint/core/config.h"
 #include "glint/core/files.h"
@@ -19,6 +20,12 @@ Scores score_view(const fs::path& folder, const View& view);
 
 // The protocols behind the ids, for metrics.json.
 Json score_protocols();
+
+// Metrics of views that neither have a mean nor a reason to be missing: the method renders no such
+// map, or the data have no truth for it. Regions are left out.
+std::vector<std::string> not_applicable(
+    const Scores& means, const std::map<std::string, std::string>& not_measured
+);
 
 // Mean of each metric over the views that have it.
 Scores mean_scores(const std::vector<Scores>& views);

@@ -7,6 +7,7 @@
 
 #include "glint/core/progress.h"
 #include "metrics/metric.h"
+#include "reports/bench/evaluate.h"
 #include "reports/bench/interrupt.h"
 #include "reports/bench/machine.h"
 #include "reports/mesh/mesh_stage.h"
@@ -87,6 +88,7 @@ void run_stages(
   RunScores scores = render_and_score(spec, loaded.scene, *method, options.profile);
   record.metrics = std::move(scores.means);
   record.not_measured = std::move(scores.not_measured);
+  record.not_applicable = std::move(scores.not_applicable);
   record.num_surfels = method->num_surfels();
   for (const std::string& warning : method->warnings()) record.warnings.push_back(warning);
   const Camera& camera = loaded.scene.test.front().camera;
@@ -243,6 +245,7 @@ RunScores render_and_score(
       !why.empty())
     for (const Metric& metric : mesh_metric_list()) scores.not_measured[metric.id] = why;
   scores.means = eval_stage(spec, scene, costs, profile.mesh_protocol());
+  scores.not_applicable = not_applicable(scores.means, scores.not_measured);
   return scores;
 }
 

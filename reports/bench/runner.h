@@ -33,6 +33,7 @@ RunSummary run_profile(const RunnerOptions& options);
 struct RunScores {
   std::map<std::string, double> means;              // by id
   std::map<std::string, std::string> not_measured;  // id -> why
+  std::vector<std::string> not_applicable;          // see not_applicable()
 };
 // Everything behind training: renders, strip, FPS, meshes, metrics.
 RunScores render_and_score(

@@ -3,6 +3,7 @@
 
 #include "datasets/dataset.h"
 #include "glint/core/progress.h"
+#include "reports/bench/evaluate.h"
 #include "reports/bench/machine.h"
 #include "reports/import/import_predictions.h"
 #include "reports/mesh/tsdf.h"
@@ -128,6 +129,7 @@ int eval_predictions(const CommonOptions& common, const PredictionArguments& arg
   record.warnings = import_predictions(arguments.predictions, scene, spec, options);
   for (const std::string& note : record.warnings) log::info(note);
   record.metrics = eval_stage(spec, scene, {}, profile.mesh_protocol());
+  record.not_applicable = not_applicable(record.metrics, record.not_measured);
   const Camera& camera = scene.test.front().camera;
   record.resolution = fmt::format("{}x{}", camera.width, camera.height);
   append_record(common.records_file(profile), record);

@@ -9,6 +9,11 @@ void add_perf_verb(CommandLine& line) {
   CommonOptions& common = line.common;
   CLI::App* verb =
       line.add_verb(line.app, "perf", "time every op and whole training steps", [options, &common] {
+        GLINT_CHECK(
+            common.only.empty() && common.skip.empty(),
+            kUsage,
+            "perf has ops, not cells: choose them with --op GLOB in place of --only and --skip"
+        );
         const std::vector<PerfRow> rows = run_perf(*options);
         if (common.json)
           print_json(perf_to_json(*options, rows));

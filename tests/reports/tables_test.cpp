@@ -93,6 +93,24 @@ TEST_CASE("a metric that the machine had no weights for says so in every format"
   CHECK_FALSE(cell.contains("value"));
 }
 
+TEST_CASE("what neither a method nor the data allow is not applicable, not missing") {
+  Record record;
+  record.dataset = "glassroom";
+  record.cell = {"room_1", "2dgs", 0};
+  record.metrics["psnr"] = 30;
+  record.metrics["psnr@opaque"] = 31;
+  record.not_applicable = {"transparency-iou"};
+  const Table decomposition = build_table(definition_of("decomposition"), {record});
+  const TableCell& cell = cell_of(decomposition, "2dgs", "transparency-iou");
+  CHECK(cell.status == CellStatus::kNotApplicable);
+  CHECK_FALSE(cell.note.empty());
+  CHECK(cell_of(decomposition, "2dgs", "behind-absrel").status == CellStatus::kMissing);
+  const Table regions = build_table(definition_of("regions"), {record});
+  CHECK(cell_of(regions, "2dgs", "psnr@opaque").status == CellStatus::kOk);
+  CHECK(cell_of(regions, "2dgs", "psnr@glass").status == CellStatus::kNotApplicable);
+  CHECK(cell_of(regions, "envgs", "psnr@glass").status == CellStatus::kMissing);
+}
+
 TEST_CASE("a method that failed everywhere says why") {
   const TableCell cell = cell_of(golden_table("table1_photometric"), "tsgs", "psnr");
   CHECK(cell.status == CellStatus::kFailed);

@@ -2,6 +2,7 @@
 // From a method's maps to the files of a render, and from those to scores.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "glint/scene/image_files.h"
@@ -82,6 +83,12 @@ TEST_CASE("scores of layers that were not rendered are absent") {
   CHECK(scores.count("psnr") == 1);
   for (const char* id : {"trans-psnr", "refl-psnr", "behind-absrel", "transparency-iou"})
     CHECK(scores.count(id) == 0);
+  const auto ids = not_applicable(scores, {{"trans-psnr", "no reason"}});
+  const auto says = [&](const char* id) { return std::count(ids.begin(), ids.end(), id); };
+  CHECK(says("transparency-iou") == 1);
+  CHECK(says("refl-psnr") == 1);
+  CHECK(says("psnr") == 0);
+  CHECK(says("trans-psnr") == 0);  // has a reason of its own
 }
 
 TEST_CASE("a layer of another size or with two channels is refused by name") {

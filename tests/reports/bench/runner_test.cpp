@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "glint/core/progress.h"
@@ -48,6 +49,9 @@ TEST_CASE("every cell of a profile is trained, rendered, scored and recorded") {
   CHECK(records[0].metrics.at("num-surfels") == 7);
   CHECK(records[0].metrics.at("fps") > 0);
   CHECK(records[0].resolution == "16x12");
+  const auto& absent = records[0].not_applicable;
+  CHECK(std::count(absent.begin(), absent.end(), "transparency-iou") == 1);
+  CHECK(std::count(absent.begin(), absent.end(), "psnr") == 0);
   CHECK(records[0].environment.at("device") == "cpu");
 }
 

@@ -45,6 +45,7 @@ TEST_CASE("wrong command lines exit with 1") {
   CHECK(run({"train", "--dataset", "nowhere", "--method", "no-such-method"}) == 1);
   CHECK(run({"dataset"}) == 1);
   CHECK(run({"dataset", "make", "glasshouse"}) == 1);
+  CHECK(run({"perf", "--only", "glint"}) == 1);
 }
 
 TEST_CASE("a predicted run that is none exits with 2, a dataset that is none with 3") {
