@@ -26,6 +26,13 @@ Image decode_jpeg(const fs::path& path, const std::string& file);
 // The same as decode_png, faster, for some files; of others none, whether they are good or not.
 std::optional<Image> decode_plain_png(std::string_view file);
 
+// Of PNG and JPEG headers; at most four bytes.
+inline std::uint32_t big_endian(std::string_view bytes) {
+  std::uint32_t value = 0;
+  for (const char c : bytes) value = value << 8 | static_cast<unsigned char>(c);
+  return value;
+}
+
 // What the integers 0 ... full_range of a file stand for.
 inline float unit_value(int n, int full_range) {
   return static_cast<float>(n) / static_cast<float>(full_range);

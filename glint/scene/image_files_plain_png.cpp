@@ -15,17 +15,12 @@
 namespace glint {
 namespace {
 
+using detail::big_endian;
 using Byte = unsigned char;
 
 struct FreeDecompressor {
   void operator()(libdeflate_decompressor* d) const { libdeflate_free_decompressor(d); }
 };
-
-std::uint32_t big_endian(std::string_view bytes) {
-  std::uint32_t value = 0;
-  for (const char c : bytes.substr(0, 4)) value = value << 8 | static_cast<Byte>(c);
-  return value;
-}
 
 struct PlainPng {
   int width = 0, height = 0, channels = 0;
@@ -55,10 +50,11 @@ int plain_channels(std::string_view header) {
 // One chunk; false: not plain.
 bool take_chunk(std::string_view type, std::string_view data, PlainPng& png) {
   if (type == "IHDR") {
-    png.width = static_cast<int>(big_endian(data));
-    png.height = static_cast<int>(big_endian(data.substr(4)));
     png.channels = plain_channels(data);
-    return png.channels > 0;
+    if (png.channels == 0) return false;
+    png.width = static_cast<int>(big_endian(data.substr(0, 4)));
+    png.height = static_cast<int>(big_endian(data.substr(4, 4)));
+    return true;
   }
   if (type == "IDAT") png.deflated += data;
   return type != "tRNS" && type != "PLTE";
@@ -68,11 +64,11 @@ bool take_chunk(std::string_view type, std::string_view data, PlainPng& png) {
 std::optional<PlainPng> plain_parts(std::string_view file) {
   PlainPng png;
   for (std::size_t at = 8; at + 12 <= file.size();) {
-    const std::size_t length = big_endian(file.substr(at));
+    const std::size_t length = big_endian(file.substr(at, 4));
     const std::string_view type = file.substr(at + 4, 4), data = file.substr(at + 8, length);
     const std::uint32_t checksum = libdeflate_crc32(0, type.data(), 4 + length);
     const bool first = at == 8;
-    if (checksum != big_endian(file.substr(at + 8 + length)) || first != (type == "IHDR") ||
+    if (checksum != big_endian(file.substr(at + 8 + length, 4)) || first != (type == "IHDR") ||
         !take_chunk(type, data, png))
       return std::nullopt;
     if (type == "IEND") return png;

@@ -13,16 +13,11 @@ namespace glint {
 namespace {
 
 using namespace std::string_view_literals;
+using detail::big_endian;
 using detail::ClaimedSize;
 
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
 constexpr std::string_view kJpegSignature = "\xff\xd8\xff"sv;
-
-std::uint32_t big_endian(std::string_view bytes) {
-  std::uint32_t value = 0;
-  for (const char c : bytes) value = value << 8 | static_cast<unsigned char>(c);
-  return value;
-}
 
 struct PictureHeader {
   ClaimedSize size;

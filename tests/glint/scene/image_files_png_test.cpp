@@ -193,6 +193,14 @@ TEST_CASE("every filter is undone, by the fast reader and by libpng") {
   }
 }
 
+TEST_CASE("a header that is too short is no plain PNG") {
+  for (const std::size_t length : {0, 1, 3, 5, 12, 14}) {
+    const std::string file = "\x89PNG\r\n\x1a\n" + chunk("IHDR", std::string(length, '\1')) +
+                             chunk("IDAT", stored("\0\1\2\3"s)) + chunk("IEND", "");
+    CHECK_FALSE(detail::decode_plain_png(file));
+  }
+}
+
 TEST_CASE("the fast reader leaves to libpng what it does not know") {
   const std::string row = "\0\1\2\3"s;
   CHECK(detail::decode_plain_png(png(1, 1, 8, 2, "", row)));
