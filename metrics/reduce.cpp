@@ -47,15 +47,21 @@ void check_maps(ImageView prediction, ImageView reference, MaskView mask, int ch
   );
 }
 
-void check_finite(ImageView image, ExitCode code, std::string_view what) {
-  const std::size_t count = image.num_pixels() * static_cast<std::size_t>(image.channels);
+bool all_finite(std::span<const float> values) {
   // Counting vectorises, searching does not, and almost always there is nothing to find.
   std::size_t num_bad = 0;
-  for (std::size_t i = 0; i < count; ++i) num_bad += !std::isfinite(image.data[i]);
-  if (num_bad == 0) return;
-  const float* bad =
-      std::find_if_not(image.data, image.data + count, [](float v) { return std::isfinite(v); });
-  const std::size_t pixel = static_cast<std::size_t>(bad - image.data) / image.channels;
+  for (const float value : values) num_bad += !std::isfinite(value);
+  return num_bad == 0;
+}
+
+void check_finite(ImageView image, ExitCode code, std::string_view what) {
+  const std::span<const float> values(
+      image.data, image.num_pixels() * static_cast<std::size_t>(image.channels)
+  );
+  if (all_finite(values)) return;
+  const auto bad =
+      std::find_if_not(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+  const std::size_t pixel = static_cast<std::size_t>(bad - values.begin()) / image.channels;
   throw Error(
       code,
       fmt::format(

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +23,7 @@ namespace glint {
 void check_same_shape(ImageView prediction, ImageView reference, MaskView mask);
 // The same for maps that must have `channels` channels.
 void check_maps(ImageView prediction, ImageView reference, MaskView mask, int channels);
+bool all_finite(std::span<const float> values);
 // Throws `code` naming the first pixel that is not finite; `what` opens the message.
 void check_finite(ImageView image, ExitCode code, std::string_view what);
 

@@ -2,6 +2,7 @@
 #include "glint/core/device.h"
 
 #include <algorithm>
+#include <memory>
 #include <new>
 
 #include "glint/core/error.h"
@@ -16,6 +17,7 @@ constexpr std::size_t kAlignment = 64;  // bytes: a cache line, two vectors
 // Before each array: who made it.
 struct alignas(kAlignment) ArrayHeader {
   const DeviceBackend* backend;  // null: the host
+  void* block;                   // as allocated
 };
 
 const DeviceBackend* current = nullptr;
@@ -42,21 +44,24 @@ void fill(float* to, std::size_t count, float value) {
     std::fill_n(to, count, value);
 }
 
+// Aligned by hand on the host: a block that glibc aligned is too small for its next request of that
+// size, so that nothing would be used again.
 void* allocate_array(std::size_t bytes) {
   const std::size_t total = bytes + sizeof(ArrayHeader);
-  void* block = current != nullptr ? current->allocate(total)
-                                   : ::operator new (total, std::align_val_t{kAlignment});
-  auto* header = new (block) ArrayHeader{current};
-  return header + 1;
+  std::size_t room = total + kAlignment;
+  void* block = current != nullptr ? current->allocate(total) : ::operator new(room);
+  void* start = block;
+  if (current == nullptr) std::align(kAlignment, total, start, room);
+  return new (start) ArrayHeader{current, block} + 1;
 }
 
 void free_array(void* array) noexcept {
   if (array == nullptr) return;
   ArrayHeader* header = static_cast<ArrayHeader*>(array) - 1;
   if (header->backend != nullptr)
-    header->backend->free(header);
+    header->backend->free(header->block);
   else
-    ::operator delete (header, std::align_val_t{kAlignment});
+    ::operator delete(header->block);
 }
 
 namespace detail {

@@ -74,6 +74,9 @@ class BasicImage {
                 static_cast<std::size_t>(channels),
             value
         ) {}
+  // Takes width * height * channels values.
+  BasicImage(int width, int height, int channels, Array<T> values)
+      : width_(width), height_(height), channels_(channels), data_(std::move(values)) {}
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "glint/scene/image_files_formats.h"
 
@@ -63,6 +64,7 @@ bool take_chunk(std::string_view type, std::string_view data, PlainPng& png) {
 // The chunks of a file whose lengths were checked.
 std::optional<PlainPng> plain_parts(std::string_view file) {
   PlainPng png;
+  png.deflated.reserve(file.size());
   for (std::size_t at = 8; at + 12 <= file.size();) {
     const std::size_t length = big_endian(file.substr(at, 4));
     const std::string_view type = file.substr(at + 4, 4), data = file.substr(at + 8, length);
@@ -79,33 +81,42 @@ std::optional<PlainPng> plain_parts(std::string_view file) {
 
 // The bytes of a pixel side by side, so that its channels are predicted together.
 using Lanes [[gnu::vector_size(16)]] = std::int32_t;
-using Bytes4 [[gnu::vector_size(4)]] = Byte;
 using Bytes16 [[gnu::vector_size(16)]] = Byte;
 
 // Four bytes, whose last are no part of a pixel of fewer channels: buffers have as many more.
 constexpr std::size_t kPadding = 3;
 
 Lanes load_pixel(const Byte* from) {
-  Bytes4 bytes;
-  std::memcpy(&bytes, from, sizeof bytes);
-  return __builtin_convertvector(bytes, Lanes);
+  std::int32_t packed;
+  std::memcpy(&packed, from, sizeof packed);
+  // One byte a lane; byte 15 of what is shuffled is zero.
+  constexpr Lanes kWidened = {0x0f0f0f00, 0x0f0f0f01, 0x0f0f0f02, 0x0f0f0f03};
+  return (Lanes)__builtin_shuffle((Bytes16)Lanes{packed}, (Bytes16)kWidened);
 }
 
 template <int N>
 void store_pixel(Byte* to, Lanes values) {
-  Bytes16 bytes;
-  std::memcpy(&bytes, &values, sizeof bytes);
-  const Bytes16 low = __builtin_shuffle(bytes, Bytes16{0, 4, 8, 12});
-  std::memcpy(to, &low, N);
+  const auto packed = (Lanes)__builtin_shuffle((Bytes16)values, Bytes16{0, 4, 8, 12});
+  const auto pixel = static_cast<std::uint32_t>(packed[0]);
+  if constexpr (N == 3) {  // copying three bytes would take them through memory
+    const auto low = static_cast<std::uint16_t>(pixel);
+    std::memcpy(to, &low, sizeof low);
+    to[2] = static_cast<Byte>(pixel >> 16);
+  } else {
+    std::memcpy(to, &pixel, N);
+  }
 }
 
 Lanes magnitude(Lanes v) { return v < 0 ? -v : v; }
 
-// Predicts from left (a), above (b) and above left (c): whichever is nearest to a + b - c.
+// Predicts from left (a), above (b) and above left (c): whichever is nearest to a + b - c. Pixels
+// wait for the one on their left, so little stands between `a` and the result.
 Lanes paeth(Lanes a, Lanes b, Lanes c) {
-  const Lanes to_a = magnitude(b - c), to_b = magnitude(a - c), to_c = magnitude(a + b - 2 * c);
+  const Lanes up = b - c, along = a - c;
+  const Lanes to_a = magnitude(up), to_b = magnitude(along), to_c = magnitude(along + up);
   const Lanes b_or_c = to_b <= to_c ? b : c;
-  return ((to_a <= to_b) & (to_a <= to_c)) ? a : b_or_c;
+  const Lanes nearer = to_b < to_c ? to_b : to_c;
+  return to_a <= nearer ? a : b_or_c;
 }
 
 // Adds predict(left, above, above left) to every byte. What is left of a row is zero.
@@ -144,31 +155,33 @@ bool undo_filter(int filter, Byte* row, const Byte* above, std::size_t bytes) {
   }
 }
 
-// Rows of a filter byte and pixels, then kPadding; false: an unknown filter.
+// The values of rows of a filter byte and pixels, then kPadding; none: an unknown filter.
 template <int N>
-bool unfilter_into(Byte* rows, Image& picture) {
-  const std::size_t bytes = static_cast<std::size_t>(picture.width()) * N;
+std::optional<Array<float>> unfilter_pixels(Byte* rows, std::size_t bytes, int height) {
   const std::string zeros(bytes + kPadding, '\0');
   const auto* above = reinterpret_cast<const Byte*>(zeros.data());
-  for (int y = 0; y < picture.height(); ++y, rows += bytes + 1) {
-    if (!undo_filter<N>(rows[0], rows + 1, above, bytes)) return false;
+  Array<float> values;
+  values.reserve(bytes * static_cast<std::size_t>(height));
+  std::vector<float> row(bytes);
+  for (int y = 0; y < height; ++y, rows += bytes + 1) {
+    if (!undo_filter<N>(rows[0], rows + 1, above, bytes)) return std::nullopt;
     above = rows + 1;
-    float* to = &picture.at(0, y);
-    for (std::size_t i = 0; i < bytes; ++i) to[i] = detail::unit_value(above[i], 255);
+    for (std::size_t i = 0; i < bytes; ++i) row[i] = detail::unit_value(above[i], 255);
+    values.insert(values.end(), row.begin(), row.end());
   }
-  return true;
+  return values;
 }
 
-bool unfilter(Byte* rows, Image& picture) {
-  switch (picture.channels()) {
+std::optional<Array<float>> unfilter(const PlainPng& png, Byte* rows, std::size_t bytes) {
+  switch (png.channels) {
     case 1:
-      return unfilter_into<1>(rows, picture);
+      return unfilter_pixels<1>(rows, bytes, png.height);
     case 2:
-      return unfilter_into<2>(rows, picture);
+      return unfilter_pixels<2>(rows, bytes, png.height);
     case 3:
-      return unfilter_into<3>(rows, picture);
+      return unfilter_pixels<3>(rows, bytes, png.height);
     default:
-      return unfilter_into<4>(rows, picture);
+      return unfilter_pixels<4>(rows, bytes, png.height);
   }
 }
 
@@ -177,8 +190,8 @@ bool unfilter(Byte* rows, Image& picture) {
 std::optional<Image> detail::decode_plain_png(std::string_view file) {
   const std::optional<PlainPng> png = plain_parts(file);
   if (!png) return std::nullopt;
-  const auto row_bytes = static_cast<std::size_t>(png->width) * png->channels + 1;
-  const std::size_t num_bytes = row_bytes * static_cast<std::size_t>(png->height);
+  const auto row_bytes = static_cast<std::size_t>(png->width) * png->channels;
+  const std::size_t num_bytes = (row_bytes + 1) * static_cast<std::size_t>(png->height);
   const auto rows = std::make_unique_for_overwrite<Byte[]>(num_bytes + kPadding);
   std::fill_n(&rows[num_bytes], kPadding, Byte{0});
   const std::unique_ptr<libdeflate_decompressor, FreeDecompressor> decompressor(
@@ -194,9 +207,9 @@ std::optional<Image> detail::decode_plain_png(std::string_view file) {
       nullptr  // exactly as many bytes
   );
   if (result != LIBDEFLATE_SUCCESS) return std::nullopt;
-  Image picture(png->width, png->height, png->channels);
-  if (!unfilter(rows.get(), picture)) return std::nullopt;
-  return picture;
+  std::optional<Array<float>> values = unfilter(*png, rows.get(), row_bytes);
+  if (!values) return std::nullopt;
+  return Image(png->width, png->height, png->channels, std::move(*values));
 }
 
 }  // namespace glint

@@ -71,6 +71,8 @@ class LpipsTool final : public MetricTool {
     return scores;
   }
 
+  bool one_at_a_time() const override { return true; }  // the network has one set of buffers
+
   Json protocol(const std::string&) const override {
     Json protocol = config_to_json(protocol_);
     protocol.update(lpips_provenance(lpips_->weights()));

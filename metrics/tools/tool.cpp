@@ -123,21 +123,52 @@ ImageScores score_pair(const MetricTool& tool, const LoadedPair& pair) {
   return image;
 }
 
-// Decoded side by side, as many as there are threads; errors come in the order of the files.
-std::vector<LoadedPair> load_pairs(const MetricTool& tool, std::span<const FilePair> files) {
-  std::vector<LoadedPair> pairs(files.size());
+// work(file) of every file side by side; errors come in the order of the files.
+template <class F>
+auto side_by_side(std::span<const FilePair> files, F&& work) {
+  std::vector<decltype(work(files[0]))> results(files.size());
   std::vector<std::exception_ptr> errors(files.size());
   parallel_for(files.size(), 1, [&](std::size_t i) {
     try {
-      pairs[i] = load_pair(tool, files[i]);
+      results[i] = work(files[i]);
     } catch (...) {
       errors[i] = std::current_exception();
     }
   });
   for (const std::exception_ptr& error : errors)
     if (error) std::rethrow_exception(error);
-  return pairs;
+  return results;
 }
+
+// Of few enough pairs that an error is told soon, and of enough that no thread waits for long.
+class Batches {
+ public:
+  Batches(const MetricTool& tool, Progress* progress) : tool_(tool), progress_(progress) {}
+
+  std::size_t size() const {
+    const auto threads = static_cast<std::size_t>(std::max(1, num_threads()));
+    return tool_.one_at_a_time() ? threads : 8 * threads;
+  }
+
+  std::vector<ImageScores> score(std::span<const FilePair> files) const {
+    const auto load = [&](const FilePair& pair) { return load_pair(tool_, pair); };
+    if (!tool_.one_at_a_time())
+      return side_by_side(files, [&](const FilePair& pair) { return scored(load(pair)); });
+    std::vector<ImageScores> scores;
+    for (const LoadedPair& pair : side_by_side(files, load)) scores.push_back(scored(pair));
+    return scores;
+  }
+
+ private:
+  ImageScores scored(const LoadedPair& pair) const {
+    ImageScores scores = score_pair(tool_, pair);
+    if (progress_ != nullptr) progress_->advance(1, pair.files.name);
+    return scores;
+  }
+
+  const MetricTool& tool_;
+  Progress* progress_;
+};
 
 ToolReport score_all(const MetricTool& tool, const PairingOptions& options) {
   const Pairing pairing = pair_files(options);
@@ -149,13 +180,11 @@ ToolReport score_all(const MetricTool& tool, const PairingOptions& options) {
   if (pairing.pairs.size() > 1)
     progress = std::make_unique<Progress>(tool.name(), pairing.pairs.size());
   const std::span<const FilePair> files = pairing.pairs;
-  const auto at_once = static_cast<std::size_t>(std::max(1, num_threads()));
-  for (std::size_t begin = 0; begin < files.size(); begin += at_once)
-    for (const LoadedPair& pair :
-         load_pairs(tool, files.subspan(begin, std::min(at_once, files.size() - begin)))) {
-      report.images.push_back(score_pair(tool, pair));
-      if (progress) progress->advance(1, pair.files.name);
-    }
+  const Batches batches(tool, progress.get());
+  for (std::size_t begin = 0; begin < files.size(); begin += batches.size())
+    for (ImageScores& image :
+         batches.score(files.subspan(begin, std::min(batches.size(), files.size() - begin))))
+      report.images.push_back(std::move(image));
   return report;
 }
 

@@ -53,9 +53,11 @@ class MetricTool {
   // (kBadReference): see image_files.h.
   virtual Image load_prediction(const fs::path& path) const = 0;
   virtual Image load_reference(const fs::path& path) const = 0;
-  // One entry per region; an empty one where nothing can be scored. Sizes agree already.
+  // One entry per region; an empty one where nothing can be scored. Sizes agree already. Called by
+  // several threads, but for a tool whose score() is one_at_a_time().
   virtual std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
       const = 0;
+  virtual bool one_at_a_time() const { return false; }
   virtual Json protocol(const std::string& metric_id) const = 0;
   // Further results over all images, printed below the means.
   virtual Json summary(std::span<const ImageScores>) const { return Json::object(); }
