@@ -77,6 +77,22 @@ glint_find_library(minizip minizip/unzip.h minizip)
 glint_find_library(onednn oneapi/dnnl/dnnl.hpp dnnl)
 set(GLINT_NETWORKS onednn $<LINK_ONLY:OpenMP::OpenMP_CXX> minizip)
 
+# cuDNN runs the networks on a GPU, where it is installed.
+set(GLINT_HAS_CUDNN OFF)
+if(GLINT_HAS_CUDA)
+  find_path(GLINT_cudnn_INCLUDE cudnn.h HINTS ${CMAKE_CUDA_TOOLKIT_INCLUDE_DIRECTORIES})
+  find_library(GLINT_cudnn cudnn HINTS ${CMAKE_CUDA_IMPLICIT_LINK_DIRECTORIES})
+  if(GLINT_cudnn_INCLUDE AND GLINT_cudnn)
+    set(GLINT_HAS_CUDNN ON)
+    glint_find_library(cudnn cudnn.h cudnn)
+    target_include_directories(
+      cudnn SYSTEM INTERFACE ${CMAKE_CUDA_TOOLKIT_INCLUDE_DIRECTORIES}  # what its header includes
+    )
+    list(APPEND GLINT_NETWORKS cudnn)
+  endif()
+endif()
+message(STATUS "cuDNN: ${GLINT_HAS_CUDNN}")
+
 # Meshes; its config forgets to look for Eigen where another package has.
 find_package(Eigen3 3.4 QUIET CONFIG)
 find_package(Open3D QUIET CONFIG)

@@ -22,6 +22,8 @@ if(GLINT_CCACHE)
   set(CMAKE_CUDA_COMPILER_LAUNCHER ${GLINT_CCACHE})
 endif()
 
+add_link_options(-Wl,--as-needed)  # programs start with the libraries that they call
+
 if(GLINT_SANITIZE)
   # A report ends the program: a test cannot pass after one.
   add_compile_options(-fsanitize=${GLINT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)

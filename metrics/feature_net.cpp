@@ -1,29 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "metrics/feature_net.h"
 
-#include <omp.h>
-
 #include <algorithm>
-#include <oneapi/dnnl/dnnl.hpp>
-#include <unordered_map>
 
+#include "glint/core/device.h"
 #include "glint/core/error.h"
-#include "glint/core/parallel.h"
+#include "glint/core/progress.h"
+#include "metrics/feature_net_backends.h"
 
 namespace glint {
 namespace {
-
-using dnnl::memory;
-using Tag = memory::format_tag;
-using Dims = memory::dims;
-
-memory::desc plain(const Dims& dims, Tag tag) { return {dims, memory::data_type::f32, tag}; }
-memory::desc any_order(const Dims& dims) { return plain(dims, Tag::any); }
-
-Dims feature_dims(ImageSize size, int channels) { return {1, channels, size.height, size.width}; }
-memory::desc features(ImageSize size, int channels) {
-  return plain(feature_dims(size, channels), Tag::nhwc);
-}
 
 int out_extent(int extent, const FeatureStep& step) {
   const int room = extent + 2 * step.padding - step.kernel;
@@ -31,11 +17,17 @@ int out_extent(int extent, const FeatureStep& step) {
   return (room + (step.round_up ? step.stride - 1 : 0)) / step.stride + 1;
 }
 
-ImageSize out_size(ImageSize size, const FeatureStep& step) {
+int reach_beyond(int in, int out, const FeatureStep& step) {
+  return std::max(0, (out - 1) * step.stride + step.kernel - step.padding - in);
+}
+
+}  // namespace
+
+ImageSize detail::out_size(ImageSize size, const FeatureStep& step) {
   return {out_extent(size.width, step), out_extent(size.height, step)};
 }
 
-ImageSize checked_out_size(ImageSize size, const FeatureStep& step) {
+ImageSize detail::checked_out_size(ImageSize size, const FeatureStep& step) {
   const ImageSize out = out_size(size, step);
   GLINT_CHECK(
       out.width > 0 && out.height > 0,
@@ -49,245 +41,35 @@ ImageSize checked_out_size(ImageSize size, const FeatureStep& step) {
   return out;
 }
 
-// How far windows reach beyond the end of the image.
-Dims end_padding(ImageSize in, ImageSize out, const FeatureStep& step) {
-  const auto reach = [&](int in_extent, int extent) {
-    return std::max(0, (extent - 1) * step.stride + step.kernel - step.padding - in_extent);
-  };
-  return {reach(in.height, out.height), reach(in.width, out.width)};
+ImageSize detail::end_padding(ImageSize in, ImageSize out, const FeatureStep& step) {
+  return {reach_beyond(in.width, out.width, step), reach_beyond(in.height, out.height, step)};
 }
 
-using Arguments = std::unordered_map<int, memory>;
-
-// What a step reads, writes and was compiled to.
-struct Stage {
-  ImageSize in, out;
-  int in_channels, out_channels;
-  bool pools, tap;
-  memory dst;
-  dnnl::primitive forward, backward;
-  Arguments forward_arguments, backward_arguments;  // without those that all stages have
-};
-
-class Compiler {
- public:
-  Compiler(const dnnl::engine& engine, dnnl::stream& stream) : engine_(engine), stream_(stream) {}
-
-  Stage compile(const FeatureStep& step, ImageSize in) {
-    Stage stage{
-        in, checked_out_size(in, step), step.in_channels, step.out_channels, step.pools, step.tap};
-    if (step.pools)
-      compile_pooling(step, stage);
-    else
-      compile_convolution(step, stage);
-    return stage;
-  }
-
- private:
-  void compile_pooling(const FeatureStep& step, Stage& stage) {
-    using Forward = dnnl::pooling_forward;
-    using Backward = dnnl::pooling_backward;
-    const memory::desc src = features(stage.in, stage.in_channels);
-    const memory::desc dst = features(stage.out, stage.out_channels);
-    const Dims strides{step.stride, step.stride}, kernel{step.kernel, step.kernel};
-    const Dims begin{step.padding, step.padding}, end = end_padding(stage.in, stage.out, step);
-    const auto algorithm = dnnl::algorithm::pooling_max;
-    const Forward::primitive_desc forward(
-        {dnnl::prop_kind::forward_training, algorithm, src, dst, strides, kernel, begin, end},
-        engine_
-    );
-    const Backward::primitive_desc backward(
-        {algorithm, src, dst, strides, kernel, begin, end}, engine_, forward
-    );
-    const memory workspace(forward.workspace_desc(), engine_);  // where each maximum was
-    stage.dst = memory(dst, engine_);
-    stage.forward = Forward(forward);
-    stage.backward = Backward(backward);
-    stage.forward_arguments = {{DNNL_ARG_WORKSPACE, workspace}};
-    stage.backward_arguments = {{DNNL_ARG_WORKSPACE, workspace}};
-  }
-
-  void compile_convolution(const FeatureStep& step, Stage& stage) {
-    using Forward = dnnl::convolution_forward;
-    using Backward = dnnl::convolution_backward_data;
-    const memory::desc src = features(stage.in, stage.in_channels);
-    const memory::desc dst = features(stage.out, stage.out_channels);
-    const Dims weight_dims{step.out_channels, step.in_channels, step.kernel, step.kernel};
-    const memory::desc bias = plain({step.out_channels}, Tag::x);
-    const Dims strides{step.stride, step.stride};
-    const Dims begin{step.padding, step.padding}, end = end_padding(stage.in, stage.out, step);
-    const auto algorithm = dnnl::algorithm::convolution_direct;
-
-    dnnl::post_ops relu;
-    relu.append_eltwise(1.0f, dnnl::algorithm::eltwise_relu, 0.0f, 0.0f);
-    dnnl::primitive_attr with_relu;
-    with_relu.set_post_ops(relu);
-    const memory::desc weight = any_order(weight_dims);
-    const Forward::primitive_desc forward(
-        {dnnl::prop_kind::forward_inference,
-         algorithm,
-         src,
-         weight,
-         bias,
-         dst,
-         strides,
-         begin,
-         end},
-        with_relu,
-        engine_
-    );
-    // What backward asks for as a hint has no ReLU: that one's gradient is applied before.
-    const Forward::primitive_desc hint(
-        {dnnl::prop_kind::forward_training, algorithm, src, weight, bias, dst, strides, begin, end},
-        engine_
-    );
-    const Backward::primitive_desc backward(
-        {algorithm, src, weight, dst, strides, begin, end}, engine_, hint
-    );
-    stage.dst = memory(dst, engine_);
-    stage.forward = Forward(forward);
-    stage.backward = Backward(backward);
-    stage.forward_arguments = {
-        {DNNL_ARG_WEIGHTS, reordered(step.weight, weight_dims, forward.weights_desc())},
-        {DNNL_ARG_BIAS, copied(step.bias, bias)}};
-    stage.backward_arguments = {
-        {DNNL_ARG_WEIGHTS, reordered(step.weight, weight_dims, backward.weights_desc())}};
-  }
-
-  memory copied(const std::vector<float>& values, const memory::desc& desc) {
-    const memory result(desc, engine_);
-    std::copy(values.begin(), values.end(), static_cast<float*>(result.get_data_handle()));
-    return result;
-  }
-
-  memory reordered(const std::vector<float>& values, const Dims& dims, const memory::desc& wanted) {
-    memory from(
-        plain(dims, Tag::oihw), engine_, const_cast<float*>(values.data())  // only read
-    );
-    memory to(wanted, engine_);
-    dnnl::reorder(from, to).execute(stream_, from, to);
-    stream_.wait();
-    return to;
-  }
-
-  const dnnl::engine& engine_;
-  dnnl::stream& stream_;
-};
-
-// ReLU's gradient, from its output.
-void apply_relu_vjp(ImageView output, float* gradient) {
-  const std::size_t count = output.num_pixels() * static_cast<std::size_t>(output.channels);
-  parallel_for_blocks(count, 1 << 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (!(output.data[i] > 0)) gradient[i] = 0;
-  });
-}
-
-}  // namespace
-
-class FeatureNet::Impl {
- public:
-  Impl(const std::vector<FeatureStep>& steps, ImageSize size)
-      : size_(size),
-        engine_(dnnl::engine::kind::cpu, 0),
-        stream_(engine_),
-        input_(features(size, 3), engine_) {
-    Compiler compiler(engine_, stream_);
-    std::size_t largest = 3 * size.num_pixels();
-    for (const FeatureStep& step : steps) {
-      stages_.push_back(compiler.compile(step, stages_.empty() ? size : stages_.back().out));
-      if (step.tap) taps_.push_back(stages_.size() - 1);
-      largest = std::max(
-          largest, stages_.back().out.num_pixels() * static_cast<std::size_t>(step.out_channels)
-      );
-    }
-    largest_ = largest;
-  }
-
-  ImageSize size() const { return size_; }
-  ImageRef input() { return {data_of(input_), size_.width, size_.height, 3}; }
-  std::size_t num_taps() const { return taps_.size(); }
-  ImageView tap(std::size_t index) const { return output(stages_[taps_[index]]); }
-
-  void forward() {
-    const memory* src = &input_;
-    for (Stage& stage : stages_) {
-      Arguments arguments = stage.forward_arguments;
-      arguments.insert({{DNNL_ARG_SRC, *src}, {DNNL_ARG_DST, stage.dst}});
-      execute(stage.forward, arguments);
-      src = &stage.dst;
-    }
-  }
-
-  ImageView backward(const std::function<void(std::size_t, ImageRef)>& add_tap_gradient) {
-    for (auto& gradient : gradients_) gradient.resize(largest_);
-    float *current = gradients_[0].data(), *next = gradients_[1].data();
-    std::fill_n(current, largest_, 0.0f);
-    std::size_t tap = taps_.size();
-    for (auto stage = stages_.rbegin(); stage != stages_.rend(); ++stage) {
-      if (stage->tap)
-        add_tap_gradient(
-            --tap, {current, stage->out.width, stage->out.height, stage->out_channels}
-        );
-      if (!stage->pools) apply_relu_vjp(output(*stage), current);
-      backward(*stage, current, next);
-      std::swap(current, next);
-    }
-    return {current, size_.width, size_.height, 3};
-  }
-
- private:
-  static float* data_of(const memory& block) {
-    return static_cast<float*>(block.get_data_handle());
-  }
-  static ImageView output(const Stage& stage) {
-    return {data_of(stage.dst), stage.out.width, stage.out.height, stage.out_channels};
-  }
-
-  void backward(Stage& stage, float* dL_dout, float* dL_din) {
-    Arguments arguments = stage.backward_arguments;
-    arguments.insert(
-        {{DNNL_ARG_DIFF_DST, memory(features(stage.out, stage.out_channels), engine_, dL_dout)},
-         {DNNL_ARG_DIFF_SRC, memory(features(stage.in, stage.in_channels), engine_, dL_din)}}
-    );
-    execute(stage.backward, arguments);
-  }
-
-  void execute(dnnl::primitive& primitive, const Arguments& arguments) {
-    omp_set_num_threads(num_threads());  // oneDNN's threads; of this thread's loops only
-    primitive.execute(stream_, arguments);
-    stream_.wait();
-  }
-
-  ImageSize size_;
-  dnnl::engine engine_;
-  dnnl::stream stream_;
-  memory input_;
-  std::vector<Stage> stages_;
-  std::vector<std::size_t> taps_;  // stages
-  std::size_t largest_ = 0;        // values of a stage's output
-  std::vector<float> gradients_[2];
-};
-
-bool FeatureNet::accepts(const std::vector<FeatureStep>& steps, ImageSize size) {
+bool feature_net_accepts(const std::vector<FeatureStep>& steps, ImageSize size) {
   for (const FeatureStep& step : steps) {
-    size = out_size(size, step);
+    size = detail::out_size(size, step);
     if (size.width < 1 || size.height < 1) return false;
   }
   return true;
 }
 
-FeatureNet::FeatureNet(const std::vector<FeatureStep>& steps, ImageSize size)
-    : impl_(std::make_unique<Impl>(steps, size)) {}
-FeatureNet::~FeatureNet() = default;
+std::unique_ptr<FeatureNet> make_feature_net(
+    const std::vector<FeatureStep>& steps, ImageSize size
+) {
+  try {
+    if (on_gpu())
+      if (auto net = detail::make_cudnn_net(steps, size)) return net;
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::kEnvironment) throw;
+    log::warn(std::string(error.what()) + "; its networks run on the host");
+  }
+  return detail::make_onednn_net(steps, size);
+}
 
-ImageSize FeatureNet::size() const { return impl_->size(); }
-ImageRef FeatureNet::input() { return impl_->input(); }
-void FeatureNet::forward() { impl_->forward(); }
-std::size_t FeatureNet::num_taps() const { return impl_->num_taps(); }
-ImageView FeatureNet::tap(std::size_t index) const { return impl_->tap(index); }
-ImageView FeatureNet::backward(const std::function<void(std::size_t, ImageRef)>& add_tap_gradient) {
-  return impl_->backward(add_tap_gradient);
+std::string feature_net_libraries() {
+  const std::string cudnn = detail::cudnn_version();
+  return "oneDNN " + detail::onednn_version() +
+         (cudnn.empty() ? std::string() : ", cuDNN " + cudnn + " on a GPU");
 }
 
 }  // namespace glint

@@ -54,7 +54,7 @@ class Lpips::Impl {
     check_finite(prediction, ExitCode::kBadPrediction, "prediction");
     check_finite(reference, ExitCode::kBadReference, "reference");
     if (net_ == nullptr || net_->size() != reference.size())
-      net_ = std::make_unique<FeatureNet>(weights_->steps, reference.size());
+      net_ = make_feature_net(weights_->steps, reference.size());
     feed(reference, false);
     keep_reference_taps();
     feed(prediction, clamp);
@@ -167,7 +167,7 @@ double Lpips::evaluate(ImageView rendered, ImageView target, float weight, Image
   return mean;
 }
 
-bool Lpips::accepts(ImageSize size) const { return FeatureNet::accepts(weights().steps, size); }
+bool Lpips::accepts(ImageSize size) const { return feature_net_accepts(weights().steps, size); }
 const LpipsWeights& Lpips::weights() const { return impl_->weights(); }
 LpipsRange Lpips::range() const { return impl_->range(); }
 

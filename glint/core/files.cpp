@@ -27,11 +27,14 @@ std::string read_file(const fs::path& path) {
   GLINT_CHECK(
       in.good(), kBadReference, "{}: cannot be opened ({})", path.string(), std::strerror(errno)
   );
+  // The size it claims may be wrong; where it is right, one read ends the file.
+  constexpr std::uintmax_t kSmallest = 1 << 16, kLargest = 1 << 26;
+  const std::uintmax_t claimed = fs::file_size(path, code);
+  const std::size_t block = std::clamp(code ? kSmallest : claimed + 1, kSmallest, kLargest);
   std::string content;
-  for (std::size_t size = 0; in.good(); content.resize(size)) {  // the size it claims may be wrong
-    constexpr std::size_t kBlock = std::size_t{1} << 20;
-    content.resize(size + kBlock);
-    in.read(&content[size], kBlock);
+  for (std::size_t size = 0; in.good(); content.resize(size)) {
+    content.resize(size + block);
+    in.read(&content[size], static_cast<std::streamsize>(block));
     size += static_cast<std::size_t>(in.gcount());
   }
   GLINT_CHECK(!in.bad(), kBadReference, "{}: reading failed", path.string());

@@ -131,6 +131,28 @@ void add_prediction(Byte* row, const Byte* above, std::size_t bytes, F&& predict
   }
 }
 
+constexpr int kPaeth = 4;
+
+// Two rows at once, the lower a pixel behind the upper, so that neither only waits for its left.
+template <int N>
+void add_paeth_to_both(Byte* upper, const Byte* above, Byte* lower, std::size_t bytes) {
+  Lanes left{}, above_left{}, lower_left{}, upper_left{};
+  const auto finish_lower = [&](std::size_t i) {  // `left` is what stands above it
+    lower_left = (load_pixel(lower + i) + paeth(lower_left, left, upper_left)) & 0xff;
+    upper_left = left;
+    store_pixel<N>(lower + i, lower_left);
+  };
+  for (std::size_t i = 0; i < bytes; i += N) {
+    const Lanes up = load_pixel(above + i);
+    const Lanes pixel = (load_pixel(upper + i) + paeth(left, up, above_left)) & 0xff;
+    if (i > 0) finish_lower(i - N);
+    store_pixel<N>(upper + i, pixel);
+    above_left = up;
+    left = pixel;
+  }
+  finish_lower(bytes - N);
+}
+
 template <int N>
 bool undo_filter(int filter, Byte* row, const Byte* above, std::size_t bytes) {
   switch (filter) {
@@ -147,7 +169,7 @@ bool undo_filter(int filter, Byte* row, const Byte* above, std::size_t bytes) {
         return (left + up) >> 1;
       });
       return true;
-    case 4:
+    case kPaeth:
       add_prediction<N>(row, above, bytes, paeth);
       return true;
     default:
@@ -164,7 +186,13 @@ std::optional<Array<float>> unfilter_pixels(Byte* rows, std::size_t bytes, int h
   values.reserve(bytes * static_cast<std::size_t>(height));
   std::vector<float> row(bytes);
   for (int y = 0; y < height; ++y, rows += bytes + 1) {
-    if (!undo_filter<N>(rows[0], rows + 1, above, bytes)) return std::nullopt;
+    Byte* next = rows + bytes + 1;
+    if (y + 1 < height && rows[0] == kPaeth && next[0] == kPaeth) {
+      add_paeth_to_both<N>(rows + 1, above, next + 1, bytes);
+      next[0] = 0;  // nothing left to undo
+    } else if (!undo_filter<N>(rows[0], rows + 1, above, bytes)) {
+      return std::nullopt;
+    }
     above = rows + 1;
     for (std::size_t i = 0; i < bytes; ++i) row[i] = detail::unit_value(above[i], 255);
     values.insert(values.end(), row.begin(), row.end());

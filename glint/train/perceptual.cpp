@@ -14,8 +14,8 @@ class LpipsLoss final : public PerceptualLoss {
 
   bool accepts(ImageSize size) const override { return lpips_.accepts(size); }
 
-  // The network runs on the host on either device: it waits for what ops still write, and adds to
-  // the gradient before the next op begins.
+  // Pictures are fed and gradients added on the host on either device: it waits for what ops still
+  // write, and is done before the next op begins. The network may run on the GPU (feature_net.h).
   double evaluate(const Image& rendered, const Image& target, float weight, Image& dL_drendered)
       override {
     synchronize();

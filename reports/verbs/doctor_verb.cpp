@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/ranges.h>
+
+#include "glint/core/error.h"
 #include "glint/core/parallel.h"
 #include "glint/cuda/backend.h"
+#include "metrics/feature_net.h"
+#include "metrics/lpips_weights.h"
 #include "reports/bench/machine.h"
 #include "reports/revision.h"
 #include "reports/verbs/verb.h"
@@ -31,6 +36,20 @@ std::string cuda_text() {
   );
 }
 
+// Which networks LPIPS has weights of.
+Examined lpips_weights() {
+  const fs::path place = lpips_weights_place();
+  std::vector<std::string> found;
+  try {
+    for (const LpipsNetwork& network : lpips_networks())
+      if (lpips_weights_at(place, network.name) != nullptr) found.push_back(network.name);
+  } catch (const Error& error) {
+    return {"lpips", error.what(), false, "mend or remove the file"};
+  }
+  if (!found.empty()) return {"lpips", fmt::format("{}", fmt::join(found, ", ")), true, ""};
+  return {"lpips", "no weights at " + place.string() + ": its columns will say so", true, ""};
+}
+
 std::vector<Examined> examine(const CommonOptions& common) {
   const Machine machine = this_machine();
   const std::uint64_t disk = free_disk_bytes(common.out);
@@ -50,6 +69,8 @@ std::vector<Examined> examine(const CommonOptions& common) {
        disk >= kNeededDisk,
        "2 GiB are needed; free some or choose another --out"},
       {"cuda", cuda_text(), true, ""},
+      {"networks", feature_net_libraries(), true, ""},
+      lpips_weights(),
       {"revision", git_revision(), true, ""}};
 }
 

@@ -2,6 +2,7 @@
 // glint-bench as a program: exit codes of wrong and right command lines.
 #include <catch2/catch.hpp>
 
+#include <cstdlib>
 #include <initializer_list>
 #include <vector>
 
@@ -54,6 +55,16 @@ TEST_CASE("a predicted run that is none exits with 2, a dataset that is none wit
   CHECK(run({"train", "--dataset", "does/not/exist"}) == 3);
   CHECK(run({"dataset", "info", "does/not/exist"}) == 3);
   CHECK(run({"dataset", "check", "does/not/exist"}) == 3);
+}
+
+TEST_CASE("doctor exits with 6 where weights of LPIPS cannot be used") {
+  const test::TempFolder folder;
+  write_file(folder / "lpips_alex_v0.1.npz", "not an archive");
+  ::setenv("GLINT_LPIPS_WEIGHTS", (folder / "lpips_alex_v0.1.npz").c_str(), 1);
+  CHECK(run({"doctor"}) == 6);
+  ::setenv("GLINT_LPIPS_WEIGHTS", (folder / "nothing_there").c_str(), 1);
+  CHECK(run({"doctor"}) == 0);
+  ::unsetenv("GLINT_LPIPS_WEIGHTS");
 }
 
 TEST_CASE("a GPU is used where there is one; asking for it elsewhere exits with 6") {
