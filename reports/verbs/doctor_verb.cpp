@@ -39,6 +39,7 @@ std::string cuda_text() {
 // Which networks LPIPS has weights of.
 Examined lpips_weights() {
   const fs::path place = lpips_weights_place();
+  if (place.empty()) return {"lpips", "off: its columns will say 'no weights'", true, ""};
   std::vector<std::string> found;
   try {
     for (const LpipsNetwork& network : lpips_networks())
@@ -47,7 +48,8 @@ Examined lpips_weights() {
     return {"lpips", error.what(), false, "mend or remove the file"};
   }
   if (!found.empty()) return {"lpips", fmt::format("{}", fmt::join(found, ", ")), true, ""};
-  return {"lpips", "no weights at " + place.string() + ": its columns will say so", true, ""};
+  return {
+      "lpips", fmt::format("no weights at {}: its columns will say so", place.string()), true, ""};
 }
 
 std::vector<Examined> examine(const CommonOptions& common) {

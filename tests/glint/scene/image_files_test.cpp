@@ -279,16 +279,6 @@ TEST_CASE("masks count from half of the range, and one that never gets there is 
   CHECK(read_mask(folder / "empty.png").at(1, 0) == 0);
 }
 
-TEST_CASE("shrinking averages areas, growing keeps constants") {
-  Image image(4, 2, 1);
-  for (int i = 0; i < 8; ++i) image.data()[i] = static_cast<float>(i);
-  const Image half = resize_image(image, {2, 1});
-  CHECK(half.at(0, 0) == Approx((0 + 1 + 4 + 5) / 4.0));
-  CHECK(half.at(1, 0) == Approx((2 + 3 + 6 + 7) / 4.0));
-  const Image grown = resize_image(Image(2, 2, 3, 0.25f), {5, 7});
-  for (const float value : grown.values()) CHECK(value == Approx(0.25f));
-}
-
 TEST_CASE("sRGB encoding follows IEC 61966-2-1 and decodes back") {
   CHECK(srgb_encode(0.0f) == 0.0f);
   CHECK(srgb_encode(1.0f) == Approx(1.0f));
@@ -331,31 +321,4 @@ TEST_CASE("colours of scalar maps get lighter with the value, and grey where the
     CHECK(colors.at(10, 0, 0) == 0.5f);
     CHECK(colorize_scalar(Image(1, 1, 1, 99.0f), 2, 3, map).at(0, 0, 1) == colors.at(9, 0, 1));
   }
-}
-
-TEST_CASE("letters are black, as tall as asked for, and end where their width says") {
-  Image picture(200, 60, 3, 1.0f);
-  draw_text(picture, "HI", 20, 40, 20);
-  int left = 200, right = 0, top = 60, bottom = 0;
-  for (int y = 0; y < 60; ++y)
-    for (int x = 0; x < 200; ++x)
-      if (picture.at(x, y, 1) < 0.5f) {
-        left = std::min(left, x), right = std::max(right, x);
-        top = std::min(top, y), bottom = std::max(bottom, y);
-      }
-  CHECK(left >= 20);
-  CHECK(right < 20 + text_width("HI", 20));
-  CHECK(std::abs(bottom - 40) <= 1);
-  CHECK(std::abs(bottom - top + 1 - 20) <= 2);
-  CHECK(text_width("HIHI", 20) > text_width("HI", 20));
-}
-
-TEST_CASE("letters outside of the picture are cut off") {
-  Image picture(10, 6, 3, 1.0f);
-  draw_text(picture, "far too long and too tall", -5, 20, 30);
-  CHECK(picture.size() == ImageSize{10, 6});
-  const Image white(10, 6, 3, 1.0f);
-  Image untouched = white;
-  draw_text(untouched, "elsewhere", 50, 50, 8);
-  CHECK(same(untouched, white));
 }
