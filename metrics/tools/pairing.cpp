@@ -2,7 +2,6 @@
 #include "metrics/tools/pairing.h"
 
 #include <algorithm>
-#include <map>
 
 #include "glint/core/error.h"
 
@@ -10,11 +9,6 @@ namespace glint {
 namespace {
 
 const std::vector<std::string> kExtensions = {".png", ".jpg", ".jpeg", ".exr", ".npy"};
-
-struct NaturalLess {
-  bool operator()(const std::string& a, const std::string& b) const { return natural_less(a, b); }
-};
-using FilesByName = std::map<std::string, fs::path, NaturalLess>;
 
 fs::path enter_layout(const fs::path& folder, const FolderLayout& layout) {
   for (const std::string& name : layout.subfolders)
@@ -86,18 +80,9 @@ std::string joined(const std::vector<std::string>& names) {
   return names.size() > kShown ? text + ", ..." : text;
 }
 
-// The file itself, or the entry of that name in the folder.
-fs::path mask_for(const std::string& name, const fs::path& mask, const FilesByName& masks) {
-  if (mask.empty() || masks.empty()) return mask;
-  const auto found = masks.find(name);
-  GLINT_CHECK(found != masks.end(), kBadReference, "{}: no mask named '{}'", mask.string(), name);
-  return found->second;
-}
-
 // The files of a glob by the part of their names that '*' and '?' stand for, so that
 // "frame1_rgb.png" and "frame1_gt.png" are a pair: common beginnings and ends are cut off.
-FilesByName list_glob(const fs::path& glob, const FolderLayout& layout) {
-  if (!is_glob(glob)) return list_by_name(glob, layout, {});
+FilesByName list_glob(const fs::path& glob) {
   const std::string pattern = glob.filename().string();
   const std::size_t head = pattern.find_first_of("*?[");
   const std::size_t tail = pattern.size() - 1 - pattern.find_last_of("*?]");
@@ -111,10 +96,16 @@ FilesByName list_glob(const fs::path& glob, const FolderLayout& layout) {
   return files;
 }
 
-FilesByName list_masks(const fs::path& mask, const FolderLayout& layout) {
-  if (mask.empty()) return {};
-  check_exists(mask, ExitCode::kBadReference, "mask");
-  return fs::is_directory(mask) ? list_by_name(mask, layout, {}) : FilesByName{};
+FilesByName list_either(
+    const fs::path& path, const FolderLayout& layout, const std::string& pattern
+) {
+  return is_glob(path) ? list_glob(path) : list_by_name(path, layout, pattern);
+}
+
+std::vector<NamedFile> in_order(const FilesByName& files) {
+  std::vector<NamedFile> images;
+  for (const auto& [name, path] : files) images.push_back({name, path});
+  return images;
 }
 
 void check_missing(const Pairing& pairing, const PairingOptions& options) {
@@ -149,21 +140,21 @@ Pairing match_by_name(const FilesByName& predictions, const FilesByName& referen
 }
 
 void add_masks(const PairingOptions& options, Pairing& pairing) {
-  const FilesByName masks = list_masks(options.mask, options.mask_layout);
-  const FilesByName glass = list_masks(options.glass, options.mask_layout);
+  const MaskFiles masks(options.mask, options.mask_layout);
+  const MaskFiles glass(options.glass, options.mask_layout);
   for (FilePair& pair : pairing.pairs) {
-    pair.mask = mask_for(pair.name, options.mask, masks);
-    pair.glass = mask_for(pair.name, options.glass, glass);
+    pair.mask = masks.of(pair.name);
+    pair.glass = glass.of(pair.name);
   }
 }
 
 // A glob against a glob or a folder.
 Pairing pair_globs(const PairingOptions& options) {
   const FilesByName predictions = with_exit_code(ExitCode::kBadPrediction, [&] {
-    return list_glob(options.prediction, options.prediction_layout);
+    return list_either(options.prediction, options.prediction_layout, {});
   });
   Pairing pairing =
-      match_by_name(predictions, list_glob(options.reference, options.reference_layout));
+      match_by_name(predictions, list_either(options.reference, options.reference_layout, {}));
   check_missing(pairing, options);
   add_masks(options, pairing);
   return pairing;
@@ -199,9 +190,28 @@ std::vector<NamedFile> list_images(
       pattern.empty() ? "" : " matching ",
       pattern
   );
-  std::vector<NamedFile> images;
-  for (const auto& [name, path] : files) images.push_back({name, path});
-  return images;
+  return in_order(files);
+}
+
+std::vector<NamedFile> list_inputs(
+    const fs::path& path, const FolderLayout& layout, const std::string& pattern
+) {
+  return is_glob(path) ? in_order(list_glob(path)) : list_images(path, layout, pattern);
+}
+
+MaskFiles::MaskFiles(const fs::path& mask, const FolderLayout& layout) : mask_(mask) {
+  if (mask.empty()) return;
+  check_exists(mask, ExitCode::kBadReference, "mask");
+  if (fs::is_directory(mask)) by_name_ = list_by_name(mask, layout, {});
+}
+
+fs::path MaskFiles::of(const std::string& name) const {
+  if (by_name_.empty()) return mask_;
+  const auto found = by_name_.find(name);
+  GLINT_CHECK(
+      found != by_name_.end(), kBadReference, "{}: no mask named '{}'", mask_.string(), name
+  );
+  return found->second;
 }
 
 Pairing pair_files(const PairingOptions& options) {

@@ -2,6 +2,7 @@
 // Which prediction is compared with which reference: two files, or two folders matched by name.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,30 @@ struct FolderLayout {
 std::vector<NamedFile> list_images(
     const fs::path& folder, const FolderLayout& layout, const std::string& pattern = {}
 );
+
+// The same of a glob in a file's name ("maps/*_depth.exr") too: names are what its wildcards stand
+// for.
+std::vector<NamedFile> list_inputs(
+    const fs::path& path, const FolderLayout& layout, const std::string& pattern = {}
+);
+
+struct NaturalLess {
+  bool operator()(const std::string& a, const std::string& b) const { return natural_less(a, b); }
+};
+using FilesByName = std::map<std::string, fs::path, NaturalLess>;
+
+// A mask file, which serves every name, or a folder with one per name; or none.
+class MaskFiles {
+ public:
+  // Errors (kBadReference): no such path; those of list_images.
+  MaskFiles(const fs::path& mask, const FolderLayout& layout);
+  // Empty: no mask. Errors (kBadReference): the folder has none of that name.
+  fs::path of(const std::string& name) const;
+
+ private:
+  fs::path mask_;
+  FilesByName by_name_;
+};
 
 struct FilePair {
   std::string name;

@@ -43,26 +43,10 @@ void add_common_options(CLI::App& app, ToolOptions& options) {
   app.add_flag("--quiet", options.quiet, "no progress on standard error");
 }
 
-MaskImage load_mask(const fs::path& path, const Image& reference) {
-  if (path.empty()) return {};
-  MaskImage mask = with_exit_code(ExitCode::kBadReference, [&] { return read_mask(path); });
-  GLINT_CHECK(
-      mask.size() == reference.size(),
-      kBadReference,
-      "{}: mask of {} x {} pixels for a reference of {} x {}",
-      path.string(),
-      mask.width(),
-      mask.height(),
-      reference.width(),
-      reference.height()
-  );
-  return mask;
-}
-
 // The whole image (or the mask), and the glass regions inside it.
 std::vector<Region> load_regions(const LoadedPair& pair) {
-  const MaskImage mask = load_mask(pair.files.mask, pair.reference);
-  const MaskImage glass = load_mask(pair.files.glass, pair.reference);
+  const MaskImage mask = load_mask(pair.files.mask, pair.reference.size());
+  const MaskImage glass = load_mask(pair.files.glass, pair.reference.size());
   std::vector<Region> regions = evaluation_regions(glass.empty() ? MaskView{} : MaskView(glass));
   if (mask.empty()) return regions;
   for (Region& region : regions) {
@@ -194,7 +178,7 @@ void run(MetricTool& tool, ToolOptions& options, std::ostream& out) {
   if (options.threads > 0) set_num_threads(options.threads);
   options.pairing.prediction_layout = tool.prediction_layout();
   options.pairing.reference_layout = tool.reference_layout();
-  options.pairing.mask_layout = {{"gt/glass", "masks"}, {}};
+  options.pairing.mask_layout = mask_layout();
   const ToolReport report = score_all(tool, options.pairing);
   if (options.json)
     print_json(tool, report, out);
@@ -249,6 +233,27 @@ int run_tool(std::unique_ptr<MetricTool> tool, int argc, char** argv) {
   ::mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the largest that it takes
   ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
   return run_tool(*tool, std::vector<std::string>(argv + 1, argv + argc), std::cout, std::cerr);
+}
+
+MaskImage load_mask(const fs::path& path, ImageSize size) {
+  if (path.empty()) return {};
+  MaskImage mask = with_exit_code(ExitCode::kBadReference, [&] { return read_mask(path); });
+  GLINT_CHECK(
+      mask.size() == size,
+      kBadReference,
+      "{}: mask of {} x {} pixels for an image of {} x {}",
+      path.string(),
+      mask.width(),
+      mask.height(),
+      size.width,
+      size.height
+  );
+  return mask;
+}
+
+const FolderLayout& mask_layout() {
+  static const FolderLayout layout{{"gt/glass", "masks"}, {}};
+  return layout;
 }
 
 bool is_integer_format(const fs::path& path) {

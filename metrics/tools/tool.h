@@ -86,6 +86,12 @@ std::unique_ptr<MetricTool> make_depth_tool();
 std::unique_ptr<MetricTool> make_normal_tool();
 std::unique_ptr<MetricTool> make_lpips_tool();
 
+// The mask of an image of that size; an empty path gives an empty mask. Errors (kBadReference):
+// those of read_mask(), another size.
+MaskImage load_mask(const fs::path& path, ImageSize size);
+// Where a dataset folder has its masks.
+const FolderLayout& mask_layout();
+
 // ".png", ".jpg", ".jpeg": integers, so that values are multiples of a step.
 bool is_integer_format(const fs::path& path);
 

@@ -14,6 +14,7 @@
 #include "glint/scene/ply.h"
 #include "metrics/tools/pairing.h"
 #include "metrics/tools/tool.h"
+#include "metrics/tools/tool_output.h"
 #include "reports/bench/run_folder.h"
 #include "reports/mesh/tsdf.h"
 
@@ -21,20 +22,23 @@ namespace glint {
 namespace {
 
 struct TsdfArguments {
-  std::string depth, dataset, out = "mesh.ply", map = "depth.exr", pattern;
+  std::string depth, dataset, out = "mesh.ply", map = "depth.exr", pattern, mask;
   TsdfOptions options;
   std::vector<double> bounds;
-  bool ray = false, json = false, quiet = false;
+  bool ray = false, json = false, csv = false, quiet = false;
   int threads = 0;
 };
 
 void add_options(CLI::App& app, TsdfArguments& a) {
-  app.add_option("DEPTH", a.depth, "folder with a depth map per view: planar z, EXR or NPY")
+  app.add_option(
+         "DEPTH", a.depth, "folder with a depth map per view, or glob: planar z, EXR or NPY"
+  )
       ->required();
   app.add_option("DATASET", a.dataset, "dataset folder: cameras of the views by name")->required();
   app.add_option("--out,-o", a.out, "mesh to write")->capture_default_str();
   app.add_option("--map", a.map, "file in a view's folder")->capture_default_str();
   app.add_option("--pattern", a.pattern, "which files of a folder, e.g. '*_depth.exr'");
+  app.add_option("--mask", a.mask, "depths that count: image, or folder with one per name");
   TsdfOptions& o = a.options;
   app.add_option("--voxel", o.voxel, "metres")->capture_default_str();
   app.add_option("--truncation", o.truncation_voxels, "in voxels")->capture_default_str();
@@ -43,7 +47,8 @@ void add_options(CLI::App& app, TsdfArguments& a) {
   app.add_option("--min-cluster", o.min_cluster, "triangles")->capture_default_str();
   app.add_option("--max-memory", o.max_memory_mb, "MB; 0: half of the machine's");
   app.add_flag("--ray", a.ray, "the maps hold distances along rays");
-  app.add_flag("--json", a.json, "one JSON document");
+  auto* json = app.add_flag("--json", a.json, "one JSON document");
+  app.add_flag("--csv", a.csv, "one row")->excludes(json);
   app.add_option("--threads", a.threads, "0: all cores")->check(CLI::NonNegativeNumber);
   app.add_flag("--quiet", a.quiet, "no progress on standard error");
   app.footer("Example:\n  glint-tsdf renders/ data/room_1 --voxel 0.02 --out mesh.ply\n");
@@ -51,7 +56,7 @@ void add_options(CLI::App& app, TsdfArguments& a) {
 
 // A depth map, the camera of its name, and the picture beside it where there is one.
 struct Source {
-  fs::path depth, rgb;
+  fs::path depth, rgb, mask;
   Camera camera;
 };
 
@@ -70,9 +75,10 @@ fs::path picture_beside(const fs::path& depth) {
 
 std::vector<Source> find_sources(const TsdfArguments& a, const Scene& scene) {
   const auto cameras = cameras_by_name(scene);
+  const MaskFiles masks(a.mask, mask_layout());
   std::vector<Source> sources;
   const auto files = with_exit_code(ExitCode::kBadPrediction, [&] {
-    return list_images(a.depth, {{"renders_train", "renders"}, {a.map}}, a.pattern);
+    return list_inputs(a.depth, {{"renders_train", "renders"}, {a.map}}, a.pattern);
   });
   for (const NamedFile& file : files) {
     const auto camera = cameras.find(file.name);
@@ -85,31 +91,45 @@ std::vector<Source> find_sources(const TsdfArguments& a, const Scene& scene) {
         file.name,
         cameras.begin()->first
     );
-    sources.push_back({file.path, picture_beside(file.path), camera->second});
+    sources.push_back({file.path, picture_beside(file.path), masks.of(file.name), camera->second});
   }
   return sources;
 }
 
 // Maps of another size than the dataset's images bring their own resolution.
 FusionView load_source(const Source& source, bool ray) {
-  return with_exit_code(ExitCode::kBadPrediction, [&] {
-    FusionView view{read_image(source.depth, 1), {}, source.camera};
-    view.camera = resized(source.camera, view.depth.size());
-    if (ray) make_planar(view.depth, view.camera);
-    if (!source.rgb.empty()) view.rgb = read_image(source.rgb, 3);
-    return view;
+  FusionView view = with_exit_code(ExitCode::kBadPrediction, [&] {
+    FusionView read{read_image(source.depth, 1), {}, source.camera};
+    read.camera = resized(source.camera, read.depth.size());
+    if (ray) make_planar(read.depth, read.camera);
+    if (!source.rgb.empty()) read.rgb = read_image(source.rgb, 3);
+    return read;
   });
+  const MaskImage mask = load_mask(source.mask, view.depth.size());
+  for (std::size_t i = 0; i < mask.num_pixels(); ++i)
+    if (mask.data()[i] == 0) view.depth.data()[i] = 0;
+  return view;
+}
+
+void print_csv(const std::string& mesh, const Json& report, std::ostream& out) {
+  out << "mesh";
+  for (const auto& [name, value] : report.items()) out << "," << name;
+  out << "\n" << csv_field(mesh);
+  for (const auto& [name, value] : report.items()) out << "," << value.dump();
+  out << "\n";
 }
 
 void print_report(const TsdfArguments& a, const TsdfReport& report, std::ostream& out) {
   if (a.json) {
     Json json = {{"tool", "glint-tsdf"}, {"depth", a.depth}, {"dataset", a.dataset}};
+    if (!a.mask.empty()) json["mask"] = a.mask;
     json["mesh"] = a.out;
     json["options"] = config_to_json(a.options);
     json["report"] = config_to_json(report);
     out << json.dump(2) << "\n";
     return;
   }
+  if (a.csv) return print_csv(a.out, config_to_json(report), out);
   out << fmt::format(
       "{}: {} triangles from {} views, voxel {} m, truncation {} voxels, {} of {} pieces dropped, "
       "{:.0f} MB of voxels\n",

@@ -9,9 +9,9 @@
 
 namespace glint::test {
 
-inline const Scene& small_room() {
+inline const fs::path& small_room_folder() {
   static const TempFolder folder;
-  static const Scene scene = [] {
+  static const fs::path room = [] {
     set_quiet(true);
     GlassRoomOptions options;
     options.width = 64;
@@ -19,8 +19,13 @@ inline const Scene& small_room() {
     options.views = 16;
     options.spp = 8;
     make_glassroom(options, folder.path() / "room_1");
-    return load_scene(folder.path() / "room_1", {});
+    return folder.path() / "room_1";
   }();
+  return room;
+}
+
+inline const Scene& small_room() {
+  static const Scene scene = load_scene(small_room_folder(), {});
   return scene;
 }
 
