@@ -80,7 +80,8 @@ set(GLINT_NETWORKS onednn $<LINK_ONLY:OpenMP::OpenMP_CXX> minizip)
 # cuDNN runs the networks on a GPU, where it is installed.
 set(GLINT_HAS_CUDNN OFF)
 if(GLINT_HAS_CUDA)
-  find_path(GLINT_cudnn_INCLUDE cudnn.h HINTS ${CMAKE_CUDA_TOOLKIT_INCLUDE_DIRECTORIES})
+  # A header that came with version 8: older ones are left alone.
+  find_path(GLINT_cudnn_INCLUDE cudnn_version.h HINTS ${CMAKE_CUDA_TOOLKIT_INCLUDE_DIRECTORIES})
   find_library(GLINT_cudnn cudnn HINTS ${CMAKE_CUDA_IMPLICIT_LINK_DIRECTORIES})
   if(GLINT_cudnn_INCLUDE AND GLINT_cudnn)
     set(GLINT_HAS_CUDNN ON)

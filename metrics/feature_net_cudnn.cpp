@@ -133,7 +133,6 @@ class Layer {
   virtual void backward(const Handle& cudnn, float* dL_doutput, float* dL_dinput) = 0;
 
   ImageSize size() const { return out_; }
-  int channels() const { return channels_; }
   const Layout& layout() const { return out_layout_; }
   const float* output() const { return output_.data(); }
 

@@ -65,10 +65,10 @@ void check_exists(const fs::path& path, ExitCode exit_code, const char* what) {
 }
 
 FilesByName list_by_name(
-    const fs::path& folder, const FolderLayout& layout, const std::string& pattern
+    const fs::path& path, const FolderLayout& layout, const std::string& pattern
 ) {
   FilesByName files;
-  for (const NamedFile& file : list_images(folder, layout, pattern)) files[file.name] = file.path;
+  for (const NamedFile& file : list_inputs(path, layout, pattern)) files[file.name] = file.path;
   return files;
 }
 
@@ -94,12 +94,6 @@ FilesByName list_glob(const fs::path& glob) {
   }
   GLINT_CHECK(!files.empty(), kBadReference, "{}: matches no image", glob.string());
   return files;
-}
-
-FilesByName list_either(
-    const fs::path& path, const FolderLayout& layout, const std::string& pattern
-) {
-  return is_glob(path) ? list_glob(path) : list_by_name(path, layout, pattern);
 }
 
 std::vector<NamedFile> in_order(const FilesByName& files) {
@@ -148,16 +142,32 @@ void add_masks(const PairingOptions& options, Pairing& pairing) {
   }
 }
 
-// A glob against a glob or a folder.
-Pairing pair_globs(const PairingOptions& options) {
+// Folders or globs, their names matched.
+Pairing pair_by_name(const PairingOptions& options) {
   const FilesByName predictions = with_exit_code(ExitCode::kBadPrediction, [&] {
-    return list_either(options.prediction, options.prediction_layout, {});
+    return list_by_name(options.prediction, options.prediction_layout, options.pattern);
   });
   Pairing pairing =
-      match_by_name(predictions, list_either(options.reference, options.reference_layout, {}));
+      match_by_name(predictions, list_by_name(options.reference, options.reference_layout, {}));
   check_missing(pairing, options);
-  add_masks(options, pairing);
   return pairing;
+}
+
+Pairing pair_paths(const PairingOptions& options) {
+  if (is_glob(options.prediction) || is_glob(options.reference)) return pair_by_name(options);
+  check_exists(options.prediction, ExitCode::kBadPrediction, "prediction");
+  check_exists(options.reference, ExitCode::kBadReference, "reference");
+  const bool folders = fs::is_directory(options.reference);
+  GLINT_CHECK(
+      fs::is_directory(options.prediction) == folders,
+      kUsage,
+      "{} and {}: one is a folder, the other a file; give two files or two folders",
+      options.prediction.string(),
+      options.reference.string()
+  );
+  if (folders) return pair_by_name(options);
+  const std::string name = options.prediction.stem().string();
+  return {{{name, options.prediction, options.reference, {}, {}}}, {}};
 }
 
 }  // namespace
@@ -215,29 +225,7 @@ fs::path MaskFiles::of(const std::string& name) const {
 }
 
 Pairing pair_files(const PairingOptions& options) {
-  if (is_glob(options.prediction) || is_glob(options.reference)) return pair_globs(options);
-  check_exists(options.prediction, ExitCode::kBadPrediction, "prediction");
-  check_exists(options.reference, ExitCode::kBadReference, "reference");
-  const bool folders = fs::is_directory(options.reference);
-  GLINT_CHECK(
-      fs::is_directory(options.prediction) == folders,
-      kUsage,
-      "{} and {}: one is a folder, the other a file; give two files or two folders",
-      options.prediction.string(),
-      options.reference.string()
-  );
-  Pairing pairing;
-  if (folders) {
-    const FilesByName predictions = with_exit_code(ExitCode::kBadPrediction, [&] {
-      return list_by_name(options.prediction, options.prediction_layout, options.pattern);
-    });
-    pairing =
-        match_by_name(predictions, list_by_name(options.reference, options.reference_layout, {}));
-    check_missing(pairing, options);
-  } else {
-    const std::string name = options.prediction.stem().string();
-    pairing.pairs.push_back({name, options.prediction, options.reference, {}, {}});
-  }
+  Pairing pairing = pair_paths(options);
   add_masks(options, pairing);
   return pairing;
 }
