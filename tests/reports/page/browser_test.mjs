@@ -48,6 +48,7 @@ async function testSummary(page) {
   const table = page.locator("#table-table1_photometric");
   assert.equal(await table.locator("tbody .word").first().isVisible(), true, "missing is a word");
   assert.ok((await table.locator("td.published").count()) > 0, "published numbers are there");
+  assert.doesNotMatch(await textOf(page, "main"), /undefined|NaN|null/, "every cell has a word");
   const column = table.locator("thead button", { hasText: "PSNR" }).first();
   await column.click();
   const head = table.locator("thead th[aria-sort]");

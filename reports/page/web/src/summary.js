@@ -9,8 +9,12 @@ let withPublished = true;
 const kArrows = { higher: " ↑", lower: " ↓", none: "" };
 const kRankWords = ["", "best", "second", "third"];
 
+// What stands in place of a value; of a metric that needs what is not there ("no weights"), why.
+const wordOf = ({ status, note }) =>
+  ({ missing: "missing", failed: "failed", unavailable: note, "not applicable": "n/a" })[status];
+
 function cellNode(cell, column) {
-  const word = { missing: "missing", failed: "failed", "not applicable": "n/a" }[cell.status];
+  const word = wordOf(cell);
   const ranked = cell.rank ? kRankWords[cell.rank] : "";
   const classes = [
     "number",
@@ -51,7 +55,7 @@ const isMeasured = (table) =>
   table.rows.some((row) =>
     table.columns.some(({ id, published }) => {
       const { status } = row.cells[id];
-      return !published && status !== "missing" && status !== "not applicable";
+      return !published && !["missing", "unavailable", "not applicable"].includes(status);
     }),
   );
 
