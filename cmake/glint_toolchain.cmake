@@ -16,10 +16,15 @@ endif()
 add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off> $<$<COMPILE_LANGUAGE:CXX>:-fno-math-errno>
                     $<$<COMPILE_LANGUAGE:CXX>:-fno-trapping-math>)
 
+# Objects are found again from other folders too (base_dir), and with precompiled headers (sloppiness).
 find_program(GLINT_CCACHE ccache)
 if(GLINT_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${GLINT_CCACHE})
-  set(CMAKE_CUDA_COMPILER_LAUNCHER ${GLINT_CCACHE})
+  set(launcher ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_NOHASHDIR=1
+               CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} ${GLINT_CCACHE}
+  )
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
+  set(CMAKE_CUDA_COMPILER_LAUNCHER ${launcher})
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
 endif()
 
 add_link_options(-Wl,--as-needed)  # programs start with the libraries that they call

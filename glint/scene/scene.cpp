@@ -54,6 +54,11 @@ void bounds_from_cameras(Scene& scene) {
 
 }  // namespace
 
+std::string flat_view_name(std::string view_name) {
+  std::replace(view_name.begin(), view_name.end(), '/', '_');
+  return view_name;
+}
+
 float camera_extent(const std::vector<View>& views) {
   const std::vector<Vec3d> centers = camera_centers(views);
   if (centers.empty()) return 0;

@@ -52,6 +52,9 @@ struct Scene {
   std::string spec_hash;             // identifies the data; part of every record
 };
 
+// The name of a view as file names have it: '_' for '/'.
+std::string flat_view_name(std::string view_name);
+
 // 1.1 x the largest distance of a camera centre to the mean of the centres.
 float camera_extent(const std::vector<View>& views);
 

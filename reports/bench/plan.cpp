@@ -5,7 +5,7 @@
 
 #include "glint/method.h"
 #include "metrics/metric.h"
-#include "reports/revision.h"
+#include "reports/records/revision.h"
 
 namespace glint {
 

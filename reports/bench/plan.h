@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "reports/bench/profile.h"
-#include "reports/records.h"
+#include "reports/records/profile.h"
+#include "reports/records/records.h"
 
 namespace glint {
 

@@ -5,13 +5,13 @@
 #include <new>
 #include <optional>
 
+#include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
+#include "metrics/fusion/tsdf_volume.h"
 #include "metrics/metric.h"
 #include "reports/bench/evaluate.h"
-#include "reports/bench/interrupt.h"
-#include "reports/bench/machine.h"
-#include "reports/mesh/mesh_stage.h"
-#include "reports/mesh/tsdf_volume.h"
+#include "reports/bench/mesh_stage.h"
+#include "reports/records/environment.h"
 
 namespace glint {
 

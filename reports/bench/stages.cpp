@@ -3,11 +3,11 @@
 
 #include <chrono>
 
+#include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "reports/bench/evaluate.h"
-#include "reports/bench/interrupt.h"
-#include "reports/bench/strip.h"
-#include "reports/mesh/mesh_eval.h"
+#include "reports/bench/mesh_eval.h"
+#include "reports/pictures/strip.h"
 
 namespace glint {
 

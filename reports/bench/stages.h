@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "metrics/mesh/mesh_protocol.h"
-#include "reports/bench/run_folder.h"
+#include "reports/records/run_folder.h"
 
 namespace glint {
 

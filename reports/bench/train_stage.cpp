@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "glint/core/interrupt.h"
+#include "glint/core/machine.h"
 #include "glint/train/trainer.h"
-#include "reports/bench/interrupt.h"
-#include "reports/bench/machine.h"
 #include "reports/bench/stages.h"
 
 namespace glint {

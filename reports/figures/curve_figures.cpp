@@ -6,10 +6,10 @@
 #include <map>
 
 #include "metrics/mesh/mesh_protocol.h"
-#include "reports/bench/run_folder.h"
 #include "reports/figures/chart.h"
-#include "reports/page/training_curve.h"
-#include "reports/statistics.h"
+#include "reports/pictures/training_curve.h"
+#include "reports/records/run_folder.h"
+#include "reports/tables/statistics.h"
 
 namespace glint {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "reports/bench/picture_grid.h"
-#include "reports/records.h"
+#include "reports/pictures/picture_grid.h"
+#include "reports/records/records.h"
 
 namespace glint {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "glint/core/files.h"
-#include "reports/bench/run_folder.h"
+#include "reports/records/run_folder.h"
 
 namespace glint {
 

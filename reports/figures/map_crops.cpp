@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "glint/scene/image_files.h"
-#include "reports/bench/picture_grid.h"
+#include "reports/pictures/picture_grid.h"
 
 namespace glint {
 

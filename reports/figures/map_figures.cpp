@@ -5,7 +5,7 @@
 #include <set>
 
 #include "reports/figures/map_crops.h"
-#include "reports/tables.h"
+#include "reports/tables/tables.h"
 
 namespace glint {
 

@@ -11,8 +11,8 @@
 #include "glint/scene/ply.h"
 #include "metrics/mesh/clean.h"
 #include "metrics/mesh/cull.h"
+#include "reports/bench/mesh_stage.h"
 #include "reports/figures/mesh_render.h"
-#include "reports/mesh/mesh_stage.h"
 
 namespace glint {
 

@@ -10,7 +10,7 @@
 #include "glint/scene/image_files.h"
 #include "metrics/mesh/mesh_scores.h"
 #include "metrics/mesh/triangle_tree.h"
-#include "reports/bench/picture_grid.h"
+#include "reports/pictures/picture_grid.h"
 
 namespace glint {
 

@@ -6,7 +6,7 @@
 #include "glint/scene/image_files.h"
 #include "metrics/depth.h"
 #include "metrics/normal.h"
-#include "reports/bench/strip.h"
+#include "reports/pictures/strip.h"
 
 namespace glint {
 namespace {

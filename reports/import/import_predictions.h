@@ -3,8 +3,8 @@
 // strips and the report treat them alike.
 #pragma once
 
-#include "reports/bench/run_folder.h"
 #include "reports/import/prediction_files.h"
+#include "reports/records/run_folder.h"
 
 namespace glint {
 

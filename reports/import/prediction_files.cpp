@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "glint/core/error.h"
-#include "reports/bench/run_folder.h"
+#include "reports/records/run_folder.h"
 
 namespace glint {
 namespace {

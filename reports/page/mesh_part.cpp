@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "reports/page/script_text.h"
+#include "reports/records/script_text.h"
 
 namespace glint {
 

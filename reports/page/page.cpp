@@ -2,10 +2,10 @@
 #include "reports/page/page.h"
 
 #include "glint/core/progress.h"
-#include "reports/embedded.h"
 #include "reports/page/page_scenes.h"
 #include "reports/page/page_summary.h"
-#include "reports/page/script_text.h"
+#include "reports/records/embedded.h"
+#include "reports/records/script_text.h"
 
 namespace glint {
 

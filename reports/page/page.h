@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "reports/bench/run_folder.h"
-#include "reports/tables.h"
+#include "reports/records/run_folder.h"
+#include "reports/tables/tables.h"
 
 namespace glint {
 

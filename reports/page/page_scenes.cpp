@@ -8,11 +8,11 @@
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
-#include "reports/page/layers.h"
 #include "reports/page/mesh_part.h"
 #include "reports/page/probe_values.h"
-#include "reports/page/script_text.h"
-#include "reports/page/training_curve.h"
+#include "reports/pictures/layers.h"
+#include "reports/pictures/training_curve.h"
+#include "reports/records/script_text.h"
 
 namespace glint {
 

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "metrics/metric.h"
-#include "reports/page/script_text.h"
-#include "reports/revision.h"
-#include "reports/table_writers.h"
+#include "reports/records/revision.h"
+#include "reports/records/script_text.h"
+#include "reports/tables/table_writers.h"
 
 namespace glint {
 

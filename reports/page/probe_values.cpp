@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/page/script_text.h"
+#include "reports/records/script_text.h"
 
 namespace glint {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "glint/core/config.h"
-#include "reports/page/layers.h"
+#include "reports/pictures/layers.h"
 
 namespace glint {
 

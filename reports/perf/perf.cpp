@@ -7,10 +7,11 @@
 
 #include "glint/core/device.h"
 #include "glint/core/files.h"
+#include "glint/core/machine.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "glint/cuda/backend.h"
-#include "reports/bench/machine.h"
+#include "reports/records/environment.h"
 
 namespace glint {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
+#include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
-#include "reports/bench/interrupt.h"
 #include "reports/bench/runner.h"
 #include "reports/figures/figures.h"
 #include "reports/verbs/report_verb.h"

@@ -6,8 +6,8 @@
 
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
-#include "reports/bench/machine.h"
-#include "reports/revision.h"
+#include "reports/records/environment.h"
+#include "reports/records/revision.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

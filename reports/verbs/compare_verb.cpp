@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
-#include "reports/compare.h"
+#include "reports/tables/compare.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

@@ -2,12 +2,13 @@
 #include <fmt/ranges.h>
 
 #include "glint/core/error.h"
+#include "glint/core/machine.h"
 #include "glint/core/parallel.h"
 #include "glint/cuda/backend.h"
 #include "metrics/feature_net.h"
 #include "metrics/lpips_weights.h"
-#include "reports/bench/machine.h"
-#include "reports/revision.h"
+#include "reports/records/environment.h"
+#include "reports/records/revision.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

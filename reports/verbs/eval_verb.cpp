@@ -3,10 +3,10 @@
 
 #include "datasets/dataset.h"
 #include "glint/core/progress.h"
+#include "metrics/fusion/tsdf.h"
 #include "reports/bench/evaluate.h"
-#include "reports/bench/machine.h"
 #include "reports/import/import_predictions.h"
-#include "reports/mesh/tsdf.h"
+#include "reports/records/environment.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {

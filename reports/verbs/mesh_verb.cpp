@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
-#include "reports/bench/interrupt.h"
-#include "reports/mesh/mesh_stage.h"
+#include "glint/core/interrupt.h"
+#include "reports/bench/mesh_stage.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {

@@ -2,7 +2,7 @@
 #include "reports/verbs/single_run.h"
 
 #include "datasets/dataset.h"
-#include "reports/revision.h"
+#include "reports/records/revision.h"
 
 namespace glint {
 

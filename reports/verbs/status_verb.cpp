@@ -2,7 +2,7 @@
 #include <map>
 
 #include "glint/core/progress.h"
-#include "reports/bench/run_folder.h"
+#include "reports/records/run_folder.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

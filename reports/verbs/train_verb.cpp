@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
+#include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
-#include "reports/bench/interrupt.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "reports/bench/plan.h"
-#include "reports/bench/scene_source.h"
-#include "reports/table_writers.h"
+#include "reports/records/scene_source.h"
+#include "reports/tables/table_writers.h"
 
 namespace glint {
 

@@ -8,7 +8,7 @@
 
 #include "glint/core/error.h"
 #include "glint/method.h"
-#include "reports/bench/scene_source.h"
+#include "reports/records/scene_source.h"
 
 namespace glint {
 

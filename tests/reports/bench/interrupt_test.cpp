@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A program of its own: an interrupt stays seen until the program ends.
-#include "reports/bench/interrupt.h"
+#include "glint/core/interrupt.h"
 
 #include <catch2/catch.hpp>
 

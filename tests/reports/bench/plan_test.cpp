@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "reports/embedded.h"
+#include "reports/records/embedded.h"
 #include "tests/reports/fake_method.h"
 #include "tests/support/temp_folder.h"
 

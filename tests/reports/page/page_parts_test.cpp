@@ -7,8 +7,8 @@
 
 #include "reports/page/mesh_part.h"
 #include "reports/page/probe_values.h"
-#include "reports/page/script_text.h"
-#include "reports/page/training_curve.h"
+#include "reports/pictures/training_curve.h"
+#include "reports/records/script_text.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "glint/core/interrupt.h"
+
+#include <unistd.h>
+
+#include <csignal>
+
+namespace glint {
+
+namespace {
+volatile std::sig_atomic_t interrupt_seen = 0;
+
+void note_interrupt(int) {
+  interrupt_seen = 1;
+  // Only write() may be called in a handler; nothing can be done about a failure.
+  static constexpr char kMessage[] = "\nstopping after this step; once more to stop at once\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
+}
+}  // namespace
+
+void install_interrupt_handler() {
+  struct sigaction action {};
+  action.sa_handler = note_interrupt;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool is_interrupted() { return interrupt_seen != 0; }
+
+void throw_if_interrupted() {
+  if (is_interrupted()) throw Interrupted();
+}
+
+}  // namespace glint

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The machine that a program runs on, and the memory it takes there.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "glint/core/files.h"
+
+namespace glint {
+
+struct Machine {
+  std::string cpu;        // model name
+  int cores = 1;          // logical
+  bool has_avx2 = false;  // and FMA: the tile kernels need both
+  std::uint64_t memory_bytes = 0;
+};
+Machine this_machine();
+
+// Free bytes of the disk that holds `folder` (or its nearest existing parent); 0: unknown.
+std::uint64_t free_disk_bytes(const fs::path& folder);
+
+// Highest resident memory of this process since the last reset, in megabytes (10^6 bytes).
+void reset_peak_memory();
+double peak_memory_mb();
+
+}  // namespace glint

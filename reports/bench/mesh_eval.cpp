@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "reports/bench/mesh_eval.h"
+
+#include "metrics/mesh/mesh_scores.h"
+#include "metrics/tools/mesh_inputs.h"
+#include "reports/bench/mesh_stage.h"
+
+namespace glint {
+namespace {
+
+std::vector<Camera> train_cameras(const Scene& scene) {
+  std::vector<Camera> cameras;
+  for (const View& view : scene.train) cameras.push_back(view.camera);
+  return cameras;
+}
+
+// Read, cleaned and culled; `recipe` gets what was done.
+Surface prepared(
+    const fs::path& path,
+    ExitCode code,
+    const std::vector<Camera>& cameras,
+    const MeshProtocol& protocol,
+    Json& recipe
+) {
+  SurfaceInput input = with_exit_code(code, [&] {
+    SurfaceInput read = read_surface(path);
+    if (protocol.cull == MeshCulling::kCameras) cull_surface(read, cameras, protocol);
+    return read;
+  });
+  recipe = {{"file", path.filename().string()}};
+  if (input.cleaning) recipe["clean"] = config_to_json(*input.cleaning);
+  if (input.culling) recipe["cull"] = config_to_json(*input.culling);
+  return std::move(input.surface);
+}
+
+}  // namespace
+
+std::map<std::string, double> score_meshes(
+    const RunSpec& spec, const Scene& scene, const MeshProtocol& protocol, Json& recipe
+) {
+  const std::vector<Camera> cameras = train_cameras(scene);
+  std::map<std::string, double> values;
+  recipe["protocol"] = config_to_json(protocol);
+  for (const MeshLayer& layer : kMeshLayers) {
+    const fs::path predicted = mesh_of(spec.folder, layer);
+    const fs::path true_mesh = spec.dataset_folder / layer.truth;
+    if (!fs::exists(predicted) || !fs::exists(true_mesh)) continue;
+    Json done = Json::object();
+    const Surface mesh =
+        prepared(predicted, ExitCode::kBadPrediction, cameras, protocol, done["prediction"]);
+    const Surface truth =
+        prepared(true_mesh, ExitCode::kBadReference, cameras, protocol, done["reference"]);
+    for (const auto distance :
+         {SurfaceDistance::kPointToTriangle, SurfaceDistance::kPointToPoint}) {
+      MeshProtocol each = protocol;
+      each.distance = distance;
+      for (const auto& [id, value] : mesh_values(mesh_scores(mesh, truth, each), each))
+        values[layer.prefix + id] = value;
+    }
+    recipe[std::string(layer.prefix) + "mesh"] = done;
+  }
+  return values;
+}
+
+}  // namespace glint

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// The mesh stage: a trained method renders the depth of its training views into renders_train/,
+// which are fused into mesh.ply (the first surface, glass included) and, for methods that see
+// through glass, mesh_transmission.ply (what lies behind it).
+#pragma once
+
+#include "metrics/fusion/tsdf.h"
+#include "metrics/mesh/mesh_protocol.h"
+#include "reports/records/run_folder.h"
+
+namespace glint {
+
+// A surface that becomes a mesh and is scored.
+struct MeshLayer {
+  const char* map;     // in renders_train/<view>/
+  const char* mesh;    // in a run folder
+  const char* truth;   // in a dataset folder
+  const char* prefix;  // of its metrics' ids
+};
+inline constexpr MeshLayer kMeshLayers[] = {
+    {"depth", "mesh.ply", "gt/mesh.ply", ""},
+    {"behind_depth", "mesh_transmission.ply", "gt/mesh_behind.ply", kBehindMesh}};
+
+// The run's mesh of that layer. A run without one behind glass has its mesh.ply there: a single
+// layer may lie behind the glass.
+fs::path mesh_of(const fs::path& run, const MeshLayer& layer);
+
+// rgb.png, depth.exr and, of methods that look behind glass, behind_depth.exr (of the first surface
+// where t is at most a half) of every training view.
+void render_train_stage(const RunSpec& spec, const Scene& scene, const Method& method);
+
+// Fuses renders_train/; bounds that are not set are the scene's, grown by a tenth. Writes the
+// meshes and mesh.json: options, what was fused, per mesh. Errors: kBadPrediction (no
+// renders_train/, a damaged map), those of fuse_depth.
+Json fuse_stage(const RunSpec& spec, const Scene& scene, TsdfOptions options);
+
+// Both, and renders_train/ removed again unless `keep_renders`.
+Json mesh_stage(
+    const RunSpec& spec,
+    const Scene& scene,
+    const Method& method,
+    const TsdfOptions& options,
+    bool keep_renders = false
+);
+
+}  // namespace glint

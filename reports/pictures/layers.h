@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// What the page shows of a view: the maps of one render or of the truth under the ids of layers,
+// and how each becomes a picture. One range for all methods of a scene.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "glint/core/config.h"
+#include "glint/core/files.h"
+#include "glint/scene/scene.h"
+#include "reports/pictures/depth_scale.h"
+
+namespace glint {
+
+enum class LayerStyle { kPicture, kDepth, kNormal, kShare, kError, kAngle };
+
+struct PageLayer {
+  const char* id;     // "render", "depth", ...
+  const char* title;  // as shown
+  LayerStyle style;
+  const char* file = nullptr;  // under renders/<view>/; null: computed
+  int channels = 3;
+};
+const std::vector<PageLayer>& page_layers();
+
+// Limits of the colours of errors (mean over channels of |render - truth|) and of angles (degrees).
+inline constexpr float kPageErrorHigh = 0.25f, kPageAngleHigh = 45;
+
+// Layer id -> map; absent: not rendered, damaged (a warning says so), or of another size than the
+// view. "error" (of the render clamped to [0, 1]) and "angle" (NaN where the truth has no normal)
+// need `view`; nullptr: the truth is not at hand.
+using LayerMaps = std::map<std::string, Image>;
+LayerMaps rendered_layers(const fs::path& view_folder, const View* view);
+// The truth under the same ids: "render" is the image, "through" and "mirrored" its two parts.
+LayerMaps true_layers(const View& view);
+
+Image layer_picture(const PageLayer& layer, const Image& map, const DepthScale& scale);
+
+// Id, title, style, and for colour maps unit, limits and colours at equal steps from low to high.
+Json layers_json(const DepthScale& scale);
+
+}  // namespace glint

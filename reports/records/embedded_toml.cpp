@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "reports/records/embedded.h"
+
+namespace glint {
+
+std::vector<std::string> embedded_names(std::string_view folder) {
+  std::vector<std::string> names;
+  for (const auto& [path, content] : embedded_files()) {
+    const std::filesystem::path file(path);
+    if (file.parent_path() == folder) names.push_back(file.stem().string());
+  }
+  return names;
+}
+
+Json json_from_toml(std::string_view text, std::string_view where) {
+  try {
+    std::ostringstream json;
+    json << toml::json_formatter(toml::parse(text));
+    return Json::parse(json.str());
+  } catch (const toml::parse_error& error) {
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format("{}:{}: {}", where, error.source().begin.line, error.description())
+    );
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Where a run happens: machine, build, device.
+#pragma once
+
+#include <string>
+
+#include "glint/core/config.h"
+
+namespace glint {
+
+// Machine, threads, build (compiler, git revision), device and date: part of every record.
+Json environment_json();
+
+// Where ops run from now on: "cpu", "cuda", or "auto": the GPU where one is usable, else the CPU,
+// with one line that says why. Call before the first scene is loaded. Errors: kEnvironment ("cuda"
+// without a usable device), kUsage (others).
+void choose_device(const std::string& requested);
+
+}  // namespace glint

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "reports/records/profile.h"
+
+#include <set>
+
+#include "glint/core/files.h"
+#include "reports/records/embedded.h"
+
+namespace glint {
+
+namespace {
+
+std::string profile_text(const std::string& name) {
+  const auto it = embedded_files().find(fmt::format("profiles/{}.toml", name));
+  if (it != embedded_files().end()) return std::string(it->second);
+  std::string known;
+  for (const std::string& profile : embedded_names("profiles"))
+    known += (known.empty() ? "" : ", ") + profile;
+  GLINT_CHECK(
+      fs::is_regular_file(name),
+      kUsage,
+      "--profile {}: no such profile or TOML file; profiles: {}",
+      name,
+      known
+  );
+  return with_exit_code(ExitCode::kUsage, [&] { return read_file(name); });
+}
+
+// "method.name=value" -> {"method", "name=value"}; without a method the first part is empty.
+std::pair<std::string, std::string> split_assignment(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  GLINT_CHECK(
+      equals != std::string::npos && equals > 0,
+      kUsage,
+      "--set {}: expected name=value or method.name=value",
+      assignment
+  );
+  const std::size_t dot = assignment.substr(0, equals).find('.');
+  if (dot == std::string::npos) return {"", assignment};
+  return {assignment.substr(0, dot), assignment.substr(dot + 1)};
+}
+
+}  // namespace
+
+Profile load_profile(const std::string& name) {
+  const std::string where = fmt::format("profile {}", name);
+  Profile profile;
+  config_from_json(profile, json_from_toml(profile_text(name), where), where);
+  profile.name = fs::path(name).stem().string();
+  GLINT_CHECK(
+      profile.iterations > 0 && profile.timing_frames > 0 && profile.timing_warmup >= 0,
+      kUsage,
+      "{}: iterations and timing_frames must be positive",
+      where
+  );
+  profile.sources();
+  profile.mesh_protocol();
+  return profile;
+}
+
+TsdfOptions Profile::tsdf_options() const {
+  TsdfOptions options;
+  config_from_json(options, mesh, fmt::format("profile {} [mesh]", name));
+  return options;
+}
+
+MeshProtocol Profile::mesh_protocol() const {
+  MeshProtocol protocol = mesh_protocol_for(tsdf_options());
+  config_from_json(protocol, mesh_metrics, fmt::format("profile {} [mesh_metrics]", name));
+  return protocol;
+}
+
+std::vector<SceneSource> Profile::sources() const {
+  const std::string where = fmt::format("profile {}", name);
+  std::vector<SceneSource> sources;
+  std::set<std::string> names;
+  for (const Json& entry : scenes) {
+    SceneSource source{"glassroom"};
+    config_from_json(source, defaults, where + " defaults");
+    config_from_json(source, entry.is_string() ? Json{{"scene", entry}} : entry, where + " scenes");
+    GLINT_CHECK(
+        !source.scene.empty() && names.insert(source.scene).second,
+        kUsage,
+        "{}: scene '{}' has no name or stands there twice",
+        where,
+        source.scene
+    );
+    sources.push_back(source);
+  }
+  return sources;
+}
+
+Json method_overrides(
+    const Profile& profile, const std::string& method, const std::vector<std::string>& assignments
+) {
+  Json config = profile.overrides.value(method, Json::object());
+  for (const std::string& text : assignments) {
+    const auto [target, assignment] = split_assignment(text);
+    if (!target.empty() && target != method) continue;
+    const std::size_t equals = assignment.find('=');
+    Json value = Json::parse(assignment.substr(equals + 1), nullptr, false);
+    if (value.is_discarded()) value = assignment.substr(equals + 1);
+    config[assignment.substr(0, equals)] = value;
+  }
+  return config;
+}
+
+}  // namespace glint

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// A profile: which scenes, methods and seeds `all` runs, and how long. TOML files in
+// reports/profiles, compiled in; or a file of the user's.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "glint/core/config.h"
+#include "metrics/fusion/tsdf.h"
+#include "metrics/mesh/mesh_protocol.h"
+
+namespace glint {
+
+// A scene of a profile: made by GlassRoom, or a folder that a loader knows.
+struct SceneSource {
+  std::string dataset;    // "glassroom", or the name shown for a folder's data
+  std::string scene;      // "room_1"; for folders the name shown, unique in the profile
+  std::string folder;     // folders: where it lies, relative to --data unless absolute
+  double max_pixels = 0;  // folders: images shrunk below this area; 0: as stored
+  int width = 160, height = 90, views = 64, spp = 128;  // glassroom
+  std::uint64_t seed = 0;                               // glassroom: varies the layout
+  std::string assets;                                   // glassroom: folder with glTF furniture
+
+  bool made() const { return folder.empty(); }
+
+  template <class V>
+  void visit(V&& v) {
+    v("dataset", dataset, "dataset the scene belongs to");
+    v("scene", scene, "name of the scene");
+    v("folder", folder, "folder with the data; empty: made by GlassRoom");
+    v("max_pixels", max_pixels, "shrink images below this area; 0: as stored");
+    v("width", width, "pixels");
+    v("height", height, "pixels");
+    v("views", views, "views along the camera path");
+    v("spp", spp, "samples a pixel");
+    v("seed", seed, "varies the layout of a room");
+    v("assets", assets, "folder with glTF furniture");
+  }
+};
+
+struct Profile {
+  std::string name, description;
+  int iterations = 1000;             // of every method
+  std::vector<std::string> methods;  // ids
+  std::vector<std::uint64_t> seeds{0};
+  int timing_frames = 50, timing_warmup = 5;
+  Json defaults = Json::object();      // SceneSource fields shared by all scenes
+  Json scenes = Json::array();         // names, or objects with SceneSource fields
+  Json overrides = Json::object();     // method id -> config fields
+  Json mesh = Json::object();          // TsdfOptions fields of the mesh stage
+  Json mesh_metrics = Json::object();  // MeshProtocol fields; its tolerance is otherwise 2 voxels
+
+  template <class V>
+  void visit(V&& v) {
+    v("description", description, "one line");
+    v("iterations", iterations, "training steps");
+    v("methods", methods, "method ids");
+    v("seeds", seeds, "seeds of training");
+    v("timing_frames", timing_frames, "frames timed for FPS");
+    v("timing_warmup", timing_warmup, "frames before the clock starts");
+    v("defaults", defaults, "scene fields shared by all scenes");
+    v("scenes", scenes, "names, or tables of scene fields");
+    v("overrides", overrides, "config fields by method");
+    v("mesh", mesh, "extraction: voxel, truncation_voxels, ...");
+    v("mesh_metrics", mesh_metrics, "comparison: num_samples, thresholds_m, ...");
+  }
+
+  // Errors (kUsage): unknown fields of [mesh] and [mesh_metrics].
+  TsdfOptions tsdf_options() const;
+  MeshProtocol mesh_protocol() const;
+
+  // Errors (kUsage): a scene without a name, an unknown field, a name twice.
+  std::vector<SceneSource> sources() const;
+};
+
+// `name`: an embedded profile, or the path of a TOML file (its stem becomes the name).
+// Errors (kUsage): neither; the message lists the embedded ones.
+Profile load_profile(const std::string& name);
+
+// The fields of `assignments` ("name=value", or "method.name=value" for one method) laid over the
+// profile's overrides of `method`, as create() of a MethodSpec takes them. Errors (kUsage).
+Json method_overrides(
+    const Profile& profile, const std::string& method, const std::vector<std::string>& assignments
+);
+
+}  // namespace glint

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "reports/records/records.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "glint/core/progress.h"
+#include "glint/core/rng.h"
+
+namespace glint {
+
+namespace {
+
+// The same field written and read in one place. `v(name, field)` is called for every plain field.
+template <class R, class V>
+void visit_fields(R& record, V&& v) {
+  v("schema", record.schema);
+  v("profile", record.profile);
+  v("dataset", record.dataset);
+  v("scene", record.cell.scene);
+  v("method", record.cell.method);
+  v("seed", record.cell.seed);
+  v("resolution", record.resolution);
+  v("imported", record.imported);
+  v("config_hash", record.config_hash);
+  v("dataset_hash", record.dataset_hash);
+  v("num_surfels", record.num_surfels);
+  v("warnings", record.warnings);
+  v("not_measured", record.not_measured);
+  v("not_applicable", record.not_applicable);
+  v("timings", record.timings);
+  v("environment", record.environment);
+}
+
+template <class F, class V>
+void visit_failure(F& failure, V&& v) {
+  v("stage", failure.stage);
+  v("kind", failure.kind);
+  v("message", failure.message);
+  v("log_tail", failure.log_tail);
+}
+
+auto reader_of(const Json& json) {
+  return [&json](const char* name, auto& field) {
+    if (const auto it = json.find(name); it != json.end()) it->get_to(field);
+  };
+}
+
+auto writer_to(Json& json) {
+  return [&json](const char* name, const auto& field) { json[name] = field; };
+}
+
+Record fields_of(const Json& json) {
+  Record record;
+  visit_fields(record, reader_of(json));
+  if (json.value("status", "ok") == "failed") {
+    record.failure.emplace();
+    const Json failure = json.value("failure", Json::object());
+    visit_failure(*record.failure, reader_of(failure));
+  }
+  const Json metrics = json.value("metrics", Json::object());
+  for (const auto& [id, value] : metrics.items())
+    if (value.is_number()) record.metrics[id] = value.get<double>();
+  return record;
+}
+
+// The last record of a cell wins and keeps the cell's place.
+class RecordList {
+ public:
+  void add(Record record) {
+    const auto [it, added] = places_.emplace(record.cell, records_.size());
+    if (added)
+      records_.push_back(std::move(record));
+    else
+      records_[it->second] = std::move(record);
+  }
+  std::vector<Record> take() { return std::move(records_); }
+
+ private:
+  std::vector<Record> records_;
+  std::map<CellKey, std::size_t> places_;
+};
+
+}  // namespace
+
+std::string CellKey::text() const { return fmt::format("{}/{}/{}", scene, method, seed); }
+
+Json record_to_json(const Record& record) {
+  Json json = Json::object();
+  visit_fields(record, writer_to(json));
+  json["status"] = record.ok() ? "ok" : "failed";
+  if (!record.ok()) visit_failure(*record.failure, writer_to(json["failure"] = Json::object()));
+  json["metrics"] = Json::object();
+  for (const auto& [id, value] : record.metrics)
+    if (std::isfinite(value)) json["metrics"][id] = value;
+  return json;
+}
+
+Record record_from_json(const Json& json, std::string_view where) {
+  GLINT_CHECK(
+      json.is_object() && json.contains("scene") && json.contains("method"),
+      kBadPrediction,
+      "{}: not a record (no 'scene' or 'method')",
+      where
+  );
+  try {
+    Record record = fields_of(json);
+    GLINT_CHECK(
+        record.schema <= kRecordSchema,
+        kBadPrediction,
+        "{}: schema {} is newer than this program's {}; update the program",
+        where,
+        record.schema,
+        kRecordSchema
+    );
+    return record;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(
+        ExitCode::kBadPrediction,
+        fmt::format("{}: a field has another type ({})", where, error.what())
+    );
+  }
+}
+
+void append_record(const fs::path& file, const Record& record) {
+  append_line(file, record_to_json(record).dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::vector<Record> read_records(const fs::path& file) {
+  if (!fs::exists(file)) return {};
+  RecordList records;
+  const std::string content =
+      with_exit_code(ExitCode::kBadPrediction, [&] { return read_file(file); });
+  std::istringstream lines(content);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string where = fmt::format("{}:{}", file.string(), ++number);
+    if (line.empty()) continue;
+    const Json json = Json::parse(line, nullptr, false);
+    if (json.is_discarded())
+      log::warn(where + ": torn record (interrupted write), skipped");
+    else
+      records.add(record_from_json(json, where));
+  }
+  return records.take();
+}
+
+const Record* find_record(const std::vector<Record>& records, const CellKey& cell) {
+  const auto it = std::find_if(records.begin(), records.end(), [&](const Record& record) {
+    return record.cell == cell;
+  });
+  return it == records.end() ? nullptr : &*it;
+}
+
+std::string hash_text(std::string_view text) { return fmt::format("{:016x}", hash_name(text)); }
+
+}  // namespace glint

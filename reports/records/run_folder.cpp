@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "reports/records/run_folder.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "glint/scene/image_files.h"
+#include "reports/records/environment.h"
+
+namespace glint {
+
+namespace {
+
+// The fields of config.json, written and read in one place.
+template <class S, class V>
+void visit_spec(S& spec, V&& v) {
+  v("method", spec.method);
+  v("overrides", spec.config);
+  v("iterations", spec.options.iterations);
+  v("seed", spec.options.seed);
+  v("dataset", spec.dataset);
+  v("scene", spec.scene);
+  v("max_pixels", spec.max_pixels);
+  v("config_hash", spec.config_hash);
+  v("dataset_hash", spec.dataset_hash);
+}
+
+void check_map(const fs::path& folder, const std::string& name, const Image& map, ImageSize size) {
+  GLINT_CHECK(
+      map.size() == size && (map.channels() == 1 || map.channels() == 3),
+      kBadPrediction,
+      "{}: the method rendered {} as {}x{}x{}, expected {}x{} pixels of 1 or 3 channels",
+      folder.string(),
+      name,
+      map.width(),
+      map.height(),
+      map.channels(),
+      size.width,
+      size.height
+  );
+}
+
+void write_layer(const fs::path& folder, const std::string& name, const Image& layer) {
+  const bool for_people = name == "interface" || name == "transmission" || name == "reflection";
+  if (for_people)
+    write_png(folder / (name + ".png"), layer);
+  else
+    write_exr(folder / (name + ".exr"), layer);
+}
+
+}  // namespace
+
+fs::path run_folder(const fs::path& out, const CellKey& cell) { return out / "runs" / cell.text(); }
+
+void write_run_spec(const RunSpec& spec, const Json& resolved_config) {
+  Json json = Json::object();
+  visit_spec(spec, [&](const char* name, const auto& field) { json[name] = field; });
+  json["dataset_folder"] = spec.dataset_folder.string();
+  json["config"] = resolved_config;
+  write_file(spec.folder / "config.json", json.dump(2) + "\n");
+}
+
+RunSpec read_run_spec(const fs::path& folder) {
+  const fs::path path = folder / "config.json";
+  GLINT_CHECK(
+      fs::exists(path),
+      kBadPrediction,
+      "{}: not a run folder (no config.json); make one with `glint-bench train`",
+      folder.string()
+  );
+  const Json json = read_json_object(path, ExitCode::kBadPrediction);
+  RunSpec spec;
+  spec.folder = folder;
+  try {
+    visit_spec(spec, [&](const char* name, auto& field) { json.at(name).get_to(field); });
+    spec.dataset_folder = json.at("dataset_folder").get<std::string>();
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(
+        ExitCode::kBadPrediction, fmt::format("{}: {}; train again", path.string(), error.what())
+    );
+  }
+  return spec;
+}
+
+void clear_run_folder(const fs::path& folder) {
+  std::error_code code;
+  const bool used = fs::exists(folder, code) && !fs::is_empty(folder, code);
+  GLINT_CHECK(
+      !used || fs::exists(folder / "config.json"),
+      kUsage,
+      "{}: holds files, but no earlier run; choose another folder",
+      folder.string()
+  );
+  fs::remove_all(folder, code);
+  if (!code) fs::create_directories(folder, code);
+  GLINT_CHECK(
+      !code, kEnvironment, "{}: cannot be made empty ({})", folder.string(), code.message()
+  );
+}
+
+void write_trained(const RunSpec& spec, const TrainCost& cost) {
+  Json json = environment_json();
+  json["config_hash"] = spec.config_hash;
+  json["dataset_hash"] = spec.dataset_hash;
+  json["train_seconds"] = cost.seconds;
+  json["peak_memory_mb"] = cost.peak_memory_mb;
+  write_file(spec.folder / "env.json", json.dump(2) + "\n");
+}
+
+std::optional<TrainCost> trained_cost(const RunSpec& spec) {
+  const fs::path path = spec.folder / "env.json";
+  if (!fs::exists(path)) return std::nullopt;
+  const Json json = read_json_object(path, ExitCode::kBadPrediction);
+  const bool same = json.value("config_hash", "") == spec.config_hash &&
+                    json.value("dataset_hash", "") == spec.dataset_hash;
+  if (!same) return std::nullopt;
+  return TrainCost{json.value("train_seconds", 0.0), json.value("peak_memory_mb", 0.0)};
+}
+
+std::optional<TrainedElsewhere> trained_elsewhere(const RunSpec& spec) {
+  if (!fs::exists(spec.folder / "config.json") || !fs::exists(spec.folder / "env.json"))
+    return std::nullopt;
+  RunSpec there = read_run_spec(spec.folder);
+  const bool same = there.method == spec.method && there.config == spec.config &&
+                    there.options.iterations == spec.options.iterations &&
+                    there.options.seed == spec.options.seed &&
+                    there.dataset_hash == spec.dataset_hash;
+  if (!same || !trained_cost(there)) return std::nullopt;
+  const Json environment = read_json_object(spec.folder / "env.json", ExitCode::kBadPrediction);
+  return TrainedElsewhere{there.config_hash, environment.value("git_revision", "unknown")};
+}
+
+fs::path view_folder(const fs::path& run, const std::string& view_name) {
+  return run / "renders" / flat_view_name(view_name);
+}
+
+void write_render(const fs::path& folder, const RenderOutput& output) {
+  write_exr(folder / "rgb.exr", output.rgb);
+  write_png(folder / "rgb.png", output.rgb);
+  const auto there = [&](const std::string& name, const Image& map) {
+    if (!map.empty()) check_map(folder, name, map, output.rgb.size());
+    return !map.empty();
+  };
+  if (there("depth", output.depth)) write_exr(folder / "depth.exr", output.depth);
+  if (there("normal", output.normal)) write_exr(folder / "normal.exr", output.normal, true);
+  for (const auto& [name, layer] : output.layers)
+    if (there(name, layer)) write_layer(folder, name, layer);
+}
+
+std::vector<std::string> log_tail(const fs::path& run, std::size_t lines) {
+  std::vector<std::string> tail;
+  const fs::path path = run / "log.jsonl";
+  if (run.empty() || !fs::exists(path)) return tail;
+  std::istringstream log(read_file(path));
+  for (std::string line; std::getline(log, line);) tail.push_back(line);
+  if (tail.size() > lines) tail.erase(tail.begin(), tail.end() - static_cast<long>(lines));
+  return tail;
+}
+
+}  // namespace glint

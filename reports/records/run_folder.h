@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// runs/<scene>/<method>/<seed>/: everything about one cell. Stages read and write here, so each can
+// be repeated alone and every number of a table can be traced to files.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "glint/method.h"
+#include "reports/records/records.h"
+#include "reports/records/scene_source.h"
+
+namespace glint {
+
+// What one run is; config.json holds it.
+struct RunSpec {
+  fs::path folder;
+  std::string method;
+  Json config = Json::object();  // overrides for MethodSpec::create
+  RunOptions options;
+  fs::path dataset_folder;
+  std::string dataset, scene;  // names
+  double max_pixels = 0;
+  std::string config_hash, dataset_hash;
+};
+
+fs::path run_folder(const fs::path& out, const CellKey& cell);
+
+void write_run_spec(const RunSpec& spec, const Json& resolved_config);
+// Errors (kBadPrediction): no run folder, config.json damaged.
+RunSpec read_run_spec(const fs::path& folder);
+
+// An empty folder for a new run. Errors (kUsage): it holds something that is not an earlier run.
+void clear_run_folder(const fs::path& folder);
+
+// What training cost. env.json holds it and appears last, so that its presence with equal hashes
+// says "trained"; nothing: not trained, or as something else.
+struct TrainCost {
+  double seconds = 0, peak_memory_mb = 0;
+};
+void write_trained(const RunSpec& spec, const TrainCost& cost);
+std::optional<TrainCost> trained_cost(const RunSpec& spec);
+
+// What another revision's training of the same thing (method, overrides, iterations, seed, data)
+// left in spec.folder; nothing: it holds no such run.
+struct TrainedElsewhere {
+  std::string config_hash, revision;
+};
+std::optional<TrainedElsewhere> trained_elsewhere(const RunSpec& spec);
+
+// renders/<flat name>.
+fs::path view_folder(const fs::path& run, const std::string& view_name);
+
+// rgb.exr (as displayed, not clamped), rgb.png, depth.exr, normal.exr, and each layer under its
+// name (docs/RECORDS.md lists those that are scored): the radiance of a set ("interface",
+// "transmission", "reflection") as PNG, for people; everything else as EXR. Errors
+// (kBadPrediction): a map of another size than rgb, or with neither 1 nor 3 channels.
+void write_render(const fs::path& folder, const RenderOutput& output);
+
+// Last lines of log.jsonl, for failure records.
+std::vector<std::string> log_tail(const fs::path& run, std::size_t lines = 50);
+
+}  // namespace glint

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "reports/tables/results_page.h"
+
+#include <algorithm>
+#include <set>
+
+#include "reports/tables/table_writers.h"
+
+namespace glint {
+namespace {
+
+using Texts = std::set<std::string>;
+
+template <class F>
+Texts collect(const std::vector<Record>& records, F&& text_of) {
+  Texts texts;
+  for (const Record& record : records)
+    if (const std::string text = text_of(record); !text.empty()) texts.insert(text);
+  return texts;
+}
+
+std::string environment_text(const Record& record, const char* key) {
+  const auto found = record.environment.find(key);
+  if (found == record.environment.end()) return {};
+  return found->is_string() ? found->get<std::string>() : found->dump();
+}
+
+// "trained by revision ..." of records that were scored by another one.
+Texts trained_by(const std::vector<Record>& records) {
+  Texts texts;
+  for (const Record& record : records)
+    for (const std::string& warning : record.warnings)
+      if (warning.starts_with("trained by revision ")) texts.insert(warning);
+  return texts;
+}
+
+std::string joined(const Texts& texts) { return fmt::format("{}", fmt::join(texts, ", ")); }
+
+std::string facts(const ResultsInfo& info, const std::vector<Record>& records) {
+  const auto environment = [&](const char* key) {
+    return joined(collect(records, [&](const Record& r) { return environment_text(r, key); }));
+  };
+  const Texts dates = collect(records, [](const Record& r) { return environment_text(r, "date"); });
+  std::string text = fmt::format("- Command: `{}`\n- Records: `{}`\n", info.command, info.records);
+  text += fmt::format(
+      "- Scenes: {}; test views of {} pixels\n",
+      joined(collect(records, [](const Record& r) { return r.dataset + "/" + r.cell.scene; })),
+      joined(collect(records, [](const Record& r) { return r.resolution; }))
+  );
+  text += fmt::format("- Scored by revision {}", environment("git_revision"));
+  if (const Texts trained = trained_by(records); !trained.empty())
+    text += fmt::format("; {}", joined(trained));
+  text += fmt::format(
+      "\n- {} to {} (UTC)\n",
+      dates.empty() ? "" : *dates.begin(),
+      dates.empty() ? "" : *dates.rbegin()
+  );
+  text += fmt::format(
+      "- Machine: {}, {} threads, device {}\n",
+      environment("cpu"),
+      environment("threads"),
+      environment("device")
+  );
+  if (!info.remarks.empty()) text += fmt::format("- {}\n", info.remarks);
+  return text;
+}
+
+}  // namespace
+
+ResultsInfo read_results_info(const fs::path& file) {
+  ResultsInfo info;
+  config_from_json(info, read_json_object(file), file.string());
+  return info;
+}
+
+std::string results_markdown(const ResultsInfo& info, const std::vector<Record>& records) {
+  std::string text =
+      "# Results\n\n"
+      "Written by `glint-bench results` from the records named below; a test fails when the two "
+      "differ.\n\n" +
+      facts(info, records);
+  for (const TableDefinition& definition : table_definitions())
+    if (const Table table = build_table(definition, records); has_measurement(table))
+      text += fmt::format("\n{}", table_markdown(table));
+  return text;
+}
+
+std::string readme_results(const ResultsInfo& info, const std::vector<Record>& records) {
+  const auto definitions = table_definitions();
+  const auto summary =
+      std::find_if(definitions.begin(), definitions.end(), [](const TableDefinition& definition) {
+        return definition.id == "summary";
+      });
+  const std::string table = table_markdown(build_table(*summary, records));
+  return fmt::format(  // without the table's heading
+      "{}\n{}- All tables: [docs/RESULTS.md](docs/RESULTS.md)\n",
+      table.substr(table.find('\n') + 1),
+      facts(info, records)
+  );
+}
+
+std::string with_results(const std::string& readme, const std::string& results) {
+  const std::size_t begin = readme.find(kResultsBegin), end = readme.find(kResultsEnd);
+  GLINT_CHECK(
+      begin != std::string::npos && end != std::string::npos && begin < end,
+      kBadReference,
+      "README: no lines '{}' and '{}' to write the results between",
+      kResultsBegin,
+      kResultsEnd
+  );
+  const std::size_t from = begin + std::string_view(kResultsBegin).size();
+  return fmt::format("{}\n{}{}", readme.substr(0, from), results, readme.substr(end));
+}
+
+}  // namespace glint

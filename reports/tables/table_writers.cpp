@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include "reports/tables/table_writers.h"
+
+#include <algorithm>
+
+namespace glint {
+
+namespace {
+
+constexpr std::string_view kPublishedNote =
+    "† published by the paper's authors, measured on their own data; not comparable digit by "
+    "digit.";
+constexpr std::string_view kPartialNote =
+    "* mean over fewer scenes than other methods; not ranked.";
+
+std::string status_word(CellStatus status) {
+  switch (status) {
+    case CellStatus::kOk:
+      return "ok";
+    case CellStatus::kPartial:
+      return "partial";
+    case CellStatus::kMissing:
+      return "missing";
+    case CellStatus::kFailed:
+      return "failed";
+    case CellStatus::kUnavailable:
+      return "unavailable";
+    case CellStatus::kNotApplicable:
+      return "not applicable";
+  }
+  return "missing";
+}
+
+// Stands in place of a value.
+std::string word_of(const TableCell& cell) {
+  return cell.status == CellStatus::kUnavailable ? cell.text : status_word(cell.status);
+}
+
+std::string group_title(const TableColumn& column) {
+  return column.published ? column.group + "†" : column.group;
+}
+
+std::string join(const std::vector<std::string>& parts, std::string_view separator) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    text += (i ? std::string(separator) : "") + parts[i];
+  return text;
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv_value(const TableCell& cell, const TableColumn& column) {
+  const bool text = !column.field.empty();
+  if (!cell.has_value()) return csv_field(word_of(cell));
+  return csv_field(text || column.published ? cell.text : fmt::format("{:.10g}", cell.value));
+}
+
+Json cell_json(const TableCell& cell, const TableColumn& column) {
+  Json json = Json::object();
+  json["status"] = status_word(cell.status);
+  if (cell.has_value()) {
+    json["text"] = shown_text(cell, column);
+    if (column.field.empty()) json["value"] = cell.value;
+  }
+  if (cell.num_seeds > 0) {
+    json["n_scenes"] = cell.num_scenes;
+    json["n_seeds"] = cell.num_seeds;
+    json["spread"] = cell.spread;
+    json["spread_kind"] = cell.num_seeds > 2 ? "std" : (cell.num_seeds == 2 ? "range" : "none");
+  }
+  if (cell.rank > 0) json["rank"] = cell.rank;
+  if (cell.tied) json["tied_with_first"] = true;
+  if (!cell.note.empty()) json["note"] = cell.note;
+  return json;
+}
+
+Json column_json(const TableColumn& column) {
+  const char* direction = column.order == RankOrder::kHigherFirst  ? "higher"
+                          : column.order == RankOrder::kLowerFirst ? "lower"
+                                                                   : "none";
+  return {
+      {"id", column.id},
+      {"title", column.title},
+      {"group", column.group},
+      {"metric", column.metric},
+      {"unit", column.unit},
+      {"direction", direction},
+      {"decimals", column.decimals},
+      {"scale", column.scale},
+      {"published", column.published}};
+}
+
+std::string markdown_rows(const Table& table) {
+  std::vector<std::string> header{"Method"}, rule{"---"};
+  for (const TableColumn& column : table.columns) {
+    header.push_back(markdown_text(shown_title(column)) + "<br>" + group_title(column));
+    rule.push_back("---:");
+  }
+  std::string text = fmt::format("| {} |\n| {} |\n", join(header, " | "), join(rule, " | "));
+  for (const TableRow& row : table.rows) {
+    std::vector<std::string> cells{markdown_text(row.title)};
+    for (std::size_t i = 0; i < row.cells.size(); ++i) {
+      const char* mark = row.cells[i].rank == 1 ? "**" : (row.cells[i].rank == 2 ? "_" : "");
+      const std::string shown = markdown_text(shown_text(row.cells[i], table.columns[i]));
+      cells.push_back(fmt::format("{0}{1}{0}", mark, shown));
+    }
+    text += fmt::format("| {} |\n", join(cells, " | "));
+  }
+  return text;
+}
+
+const TableRow* find_row(const Table& table, const std::string& method) {
+  for (const TableRow& row : table.rows)
+    if (row.method == method) return &row;
+  return nullptr;
+}
+
+// Method -> column id of the measured column -> difference.
+Json differences_json(const Table& differences) {
+  Json json = Json::object();
+  for (const TableRow& row : differences.rows)
+    for (std::size_t i = 0; i < row.cells.size(); ++i)
+      if (row.cells[i].has_value())
+        json[row.method][differences.columns[i].id] = row.cells[i].value;
+  return json;
+}
+
+}  // namespace
+
+std::string markdown_text(std::string_view text) {
+  std::string safe;
+  for (const char c : text)
+    safe += c == '|' ? "\\|" : (c == '<' ? "&lt;" : (c == '\n' ? " " : std::string(1, c)));
+  return safe;
+}
+
+std::string shown_text(const TableCell& cell, const TableColumn& column) {
+  if (cell.status == CellStatus::kNotApplicable) return "–";
+  if (!cell.has_value()) return word_of(cell);
+  std::string text = cell.text;
+  if (cell.num_seeds > 1) text += fmt::format(" ± {:.{}f}", cell.spread, column.decimals);
+  if (cell.tied) text += "≈";
+  return cell.status == CellStatus::kPartial ? text + "*" : text;
+}
+
+std::string shown_title(const TableColumn& column) {
+  std::string title = column.title;
+  if (!column.unit.empty()) title += fmt::format(" ({})", column.unit);
+  if (column.order != RankOrder::kNone) title += fmt::format(" {}", order_arrow(column.order));
+  return title;
+}
+
+std::vector<std::string> table_notes(const Table& table) {
+  std::vector<std::string> notes = table.notes;
+  const bool published = std::any_of(
+      table.columns.begin(), table.columns.end(), [](const TableColumn& c) { return c.published; }
+  );
+  bool partial = false;
+  for (const TableRow& row : table.rows)
+    for (const TableCell& cell : row.cells) partial |= cell.status == CellStatus::kPartial;
+  if (partial) notes.emplace_back(kPartialNote);
+  if (published) notes.emplace_back(kPublishedNote);
+  return notes;
+}
+
+std::string table_markdown(const Table& table) {
+  std::string text = fmt::format("## {}\n\n{}\n\n", table.title, markdown_text(table.caption));
+  text += markdown_rows(table);
+  if (const Table differences = difference_table(table); !differences.rows.empty())
+    text += fmt::format("\n{}\n\n{}", markdown_text(differences.title), markdown_rows(differences));
+  text += "\n";
+  for (const std::string& note : table_notes(table))
+    text += fmt::format("- {}\n", markdown_text(note));
+  return text;
+}
+
+std::string table_csv(const Table& table) {
+  const Table differences = difference_table(table);
+  std::vector<std::string> header{"method"};
+  for (const Table* part : {&table, &differences})
+    for (const TableColumn& column : part->columns) header.push_back(csv_field(column.id));
+  std::string text = join(header, ",") + "\n";
+  for (const TableRow& row : table.rows) {
+    std::vector<std::string> cells{csv_field(row.method)};
+    for (std::size_t i = 0; i < row.cells.size(); ++i)
+      cells.push_back(csv_value(row.cells[i], table.columns[i]));
+    const TableRow* difference = find_row(differences, row.method);
+    for (std::size_t i = 0; i < differences.columns.size(); ++i)
+      cells.push_back(
+          difference ? csv_value(difference->cells[i], differences.columns[i]) : "not applicable"
+      );
+    text += join(cells, ",") + "\n";
+  }
+  return text;
+}
+
+Json table_json(const Table& table) {
+  Json json = {{"id", table.id}, {"title", table.title}, {"caption", table.caption}};
+  json["columns"] = Json::array();
+  for (const TableColumn& column : table.columns) json["columns"].push_back(column_json(column));
+  json["rows"] = Json::array();
+  for (const TableRow& row : table.rows) {
+    Json cells = Json::object();
+    for (std::size_t i = 0; i < row.cells.size(); ++i)
+      cells[table.columns[i].id] = cell_json(row.cells[i], table.columns[i]);
+    json["rows"].push_back(
+        {{"method", row.method}, {"title", row.title}, {"cells", std::move(cells)}}
+    );
+  }
+  json["differences"] = differences_json(difference_table(table));
+  json["order_agreement"] = Json::array();
+  for (const OrderAgreement& order : table.agreement)
+    json["order_agreement"].push_back(
+        {{"column", order.column}, {"kendall_tau", order.tau}, {"n_methods", order.num_methods}}
+    );
+  json["notes"] = table_notes(table);
+  return json;
+}
+
+void write_table(const fs::path& folder, const Table& table) {
+  write_file(folder / (table.id + ".md"), table_markdown(table));
+  write_file(folder / (table.id + ".tex"), table_latex(table));
+  write_file(folder / (table.id + ".csv"), table_csv(table));
+  write_file(folder / (table.id + ".json"), table_json(table).dump(2) + "\n");
+  write_file(folder / (table.id + ".html"), table_html(table));
+  if (const Table differences = difference_table(table); !differences.rows.empty())
+    write_file(folder / (differences.id + ".tex"), table_latex(differences));
+}
+
+}  // namespace glint

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// A Table in each format. Cells without a value are words, never zeros or blanks; published
+// columns carry a dagger, means over fewer scenes an asterisk.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glint/core/files.h"
+#include "reports/tables/tables.h"
+
+namespace glint {
+
+// What a reader sees in a cell: "31.24", "31.24 ± 0.10" (several seeds), "31.24*", "missing".
+std::string shown_text(const TableCell& cell, const TableColumn& column);
+std::string shown_title(const TableColumn& column);  // "RMSE (m) ↓"
+
+// The table's notes and what its marks mean, a line each.
+std::vector<std::string> table_notes(const Table& table);
+
+std::string table_markdown(const Table& table);  // best in bold, second in italics
+// A tabular to \input: needs booktabs and xcolor with its option `table`.
+std::string table_latex(const Table& table);
+// Method id first, then column ids; unrounded values, or the status word.
+std::string table_csv(const Table& table);
+Json table_json(const Table& table);
+std::string table_html(const Table& table);  // a page of its own, every text escaped
+
+struct TerminalStyle {
+  bool color = false;
+  std::size_t width = 0;  // columns of the terminal; 0: no limit
+};
+// Wider tables come in blocks below each other, each with the methods; published ones last.
+std::string table_terminal(const Table& table, TerminalStyle style = {});
+
+// Measured minus published, for the columns that the paper has on its first dataset; no columns
+// where it has none, no rows where nothing is measured. The data are not the same.
+Table difference_table(const Table& table);
+
+// A LaTeX document with FOLDER/<id>.tex of all tables: booktabs, xcolor and graphicx.
+std::string latex_document(const std::vector<Table>& tables);
+
+// FOLDER/<id>.md, .tex, .csv, .json, .html; <id>_differences.tex where there are any
+void write_table(const fs::path& folder, const Table& table);
+
+// Plain rows in aligned columns, two spaces apart; the first column flush left, others right. For
+// listings that are no Table (plan, status, perf).
+std::string aligned_rows(const std::vector<std::vector<std::string>>& rows);
+
+// Text inside a cell of a Markdown table: pipes and tags stay letters.
+std::string markdown_text(std::string_view text);
+
+// Characters of a UTF-8 text (not bytes): the width on a terminal of the scripts used here.
+std::size_t text_width(std::string_view utf8);
+
+}  // namespace glint

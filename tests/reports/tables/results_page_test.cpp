@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "reports/tables/results_page.h"
+
+#include <catch2/catch.hpp>
+
+using namespace glint;
+
+TEST_CASE("docs/RESULTS.md and the README's table are what the committed records give") {
+  const ResultsInfo info = read_results_info("docs/results/results.json");
+  const auto records = read_records(info.records);
+  REQUIRE(!records.empty());
+  INFO("run `glint-bench results` and commit what it writes");
+  CHECK(read_file("docs/RESULTS.md") == results_markdown(info, records));
+  const std::string readme = read_file("README.md");
+  CHECK(readme == with_results(readme, readme_results(info, records)));
+}
+
+TEST_CASE("Results stand between the README's markers, and nothing else changes") {
+  const std::string readme =
+      std::string("before\n") + kResultsBegin + "\nold\n" + kResultsEnd + "\nafter\n";
+  const std::string written = with_results(readme, "new\n");
+  CHECK(written == std::string("before\n") + kResultsBegin + "\nnew\n" + kResultsEnd + "\nafter\n");
+  CHECK(with_results(written, "new\n") == written);
+  CHECK_THROWS_AS(with_results("no markers", "new\n"), Error);
+}
+
+TEST_CASE("The page says which revision trained and which scored") {
+  Record record;
+  record.dataset = "glassroom";
+  record.cell = {"room_1", "glint", 0};
+  record.metrics = {{"psnr", 30.0}};
+  record.warnings = {"trained by revision abc1234"};
+  record.environment = {{"git_revision", "def5678"}, {"date", "2026-01-01T00:00:00Z"}};
+  const std::string page = results_markdown({"r.jsonl", "glint-bench all", "a remark"}, {record});
+  for (const char* text :
+       {"abc1234", "def5678", "2026-01-01", "glint-bench all", "a remark", "30.00"})
+    CHECK_THAT(page, Catch::Contains(text));
+}

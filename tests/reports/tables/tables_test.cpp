@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: MIT
+// tests/reports/golden: a fixed records.jsonl and the tables that it must give.
+#include "reports/tables/tables.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "metrics/metric.h"
+#include "reports/tables/published.h"
+#include "reports/tables/table_writers.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+
+namespace {
+
+const fs::path kGolden = "tests/reports/golden";
+
+TableDefinition definition_of(const std::string& id) {
+  for (const TableDefinition& definition : table_definitions())
+    if (definition.id == id) return definition;
+  throw std::runtime_error("no table " + id);
+}
+
+Table golden_table(const std::string& id) {
+  return build_table(definition_of(id), read_records(kGolden / "records.jsonl"));
+}
+
+const TableCell& cell_of(const Table& table, const std::string& method, const std::string& column) {
+  for (const TableRow& row : table.rows)
+    if (row.method == method)
+      for (std::size_t i = 0; i < table.columns.size(); ++i)
+        if (table.columns[i].id == column) return row.cells[i];
+  throw std::runtime_error("no cell " + method + " " + column);
+}
+
+}  // namespace
+
+TEST_CASE("a cell is the mean over scenes, then over seeds") {
+  const Table table = golden_table("table1_photometric");
+  const TableCell& cell = cell_of(table, "2dgs", "psnr");
+  CHECK(cell.value == ((30.0 + 32.5) / 2 + (31.0 + 33.0) / 2) / 2);
+  CHECK(cell.num_scenes == 2);
+  CHECK(cell.num_seeds == 2);
+  CHECK(cell.spread == 32.0 - 31.25);  // two seeds: their range
+}
+
+TEST_CASE("three seeds have a sample standard deviation") {
+  std::vector<Record> records;
+  for (const double psnr : {30.0, 31.0, 33.0}) {
+    Record record;
+    record.dataset = "glassroom";
+    record.cell = {"room_1", "2dgs", records.size()};
+    record.metrics["psnr"] = psnr;
+    records.push_back(record);
+  }
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  CHECK(cell_of(table, "2dgs", "psnr").spread == Approx(std::sqrt(7.0 / 3)).epsilon(1e-14));
+}
+
+TEST_CASE("methods that were not run are missing, in every format a word") {
+  const Table table = golden_table("table1_photometric");
+  CHECK(cell_of(table, "pgsr", "psnr").status == CellStatus::kMissing);
+  CHECK(cell_of(table, "2dgs", "lpips-vgg-3dgs").status == CellStatus::kMissing);
+  CHECK(
+      table_csv(table).find("\npgsr,missing,missing,missing,missing,31.96,0.95,0.07") !=
+      std::string::npos
+  );
+  CHECK(table_markdown(table).find("| PGSR | missing |") != std::string::npos);
+  CHECK(table_json(table)["rows"][1]["cells"]["psnr"]["status"] == "missing");
+  CHECK_FALSE(table_json(table)["rows"][1]["cells"]["psnr"].contains("value"));
+}
+
+TEST_CASE("a metric that the machine had no weights for says so in every format") {
+  Record record;
+  record.dataset = "glassroom";
+  record.cell = {"room_1", "2dgs", 0};
+  record.metrics["psnr"] = 30;
+  record.not_measured["lpips-vgg-3dgs"] = "no weights";
+  const Table table = build_table(definition_of("table1_photometric"), {record});
+  CHECK(cell_of(table, "2dgs", "lpips-vgg-3dgs").status == CellStatus::kUnavailable);
+  CHECK(cell_of(table, "2dgs", "lpips-vgg-3dgs").rank == 0);
+  CHECK(cell_of(table, "2dgs", "ssim-3dgs").status == CellStatus::kMissing);
+  CHECK(table_csv(table).find("\n2dgs,30,missing,no weights,missing,") != std::string::npos);
+  for (const std::string& text : {table_markdown(table), table_latex(table), table_terminal(table)})
+    CHECK(text.find("no weights") != std::string::npos);
+  const Json cell = table_json(table)["rows"][0]["cells"]["lpips-vgg-3dgs"];
+  CHECK(cell["status"] == "unavailable");
+  CHECK(cell["note"] == "no weights");
+  CHECK_FALSE(cell.contains("value"));
+}
+
+TEST_CASE("what neither a method nor the data allow is not applicable, not missing") {
+  Record record;
+  record.dataset = "glassroom";
+  record.cell = {"room_1", "2dgs", 0};
+  record.metrics["psnr"] = 30;
+  record.metrics["psnr@opaque"] = 31;
+  record.not_applicable = {"transparency-iou"};
+  const Table decomposition = build_table(definition_of("decomposition"), {record});
+  const TableCell& cell = cell_of(decomposition, "2dgs", "transparency-iou");
+  CHECK(cell.status == CellStatus::kNotApplicable);
+  CHECK_FALSE(cell.note.empty());
+  CHECK(cell_of(decomposition, "2dgs", "behind-absrel").status == CellStatus::kMissing);
+  const Table regions = build_table(definition_of("regions"), {record});
+  CHECK(cell_of(regions, "2dgs", "psnr@opaque").status == CellStatus::kOk);
+  CHECK(cell_of(regions, "2dgs", "psnr@glass").status == CellStatus::kNotApplicable);
+  CHECK(cell_of(regions, "envgs", "psnr@glass").status == CellStatus::kMissing);
+}
+
+TEST_CASE("a method that failed everywhere says why") {
+  const TableCell cell = cell_of(golden_table("table1_photometric"), "tsgs", "psnr");
+  CHECK(cell.status == CellStatus::kFailed);
+  CHECK(cell.note == "room_1/tsgs/0 failed (dataset: no points)");
+}
+
+TEST_CASE("a mean over fewer scenes is marked and takes no rank, even when it looks best") {
+  const Table table = golden_table("table1_photometric");
+  const TableCell& partial = cell_of(table, "glint", "psnr");
+  CHECK(partial.status == CellStatus::kPartial);
+  CHECK(partial.num_scenes == 1);
+  CHECK(partial.rank == 0);
+  CHECK(shown_text(partial, table.columns[0]) == "34.00*");
+  CHECK(cell_of(table, "envgs", "psnr").rank == 1);
+  CHECK(cell_of(table, "2dgs", "psnr").rank == 2);
+}
+
+TEST_CASE("ranks go by unrounded values, ties share one, and lower is better where it is") {
+  const TableDefinition definition = definition_of("table2_geometry");
+  std::vector<Record> records;
+  const std::pair<const char*, double> values[] = {
+      {"2dgs", 10.004}, {"pgsr", 10.001}, {"envgs", 10.001}, {"tsgs", 10.009}, {"glint", 12}};
+  for (const auto& [method, value] : values) {
+    Record record;
+    record.dataset = "glassroom";
+    record.cell = {"room_1", method, 0};
+    record.metrics["normal-mae"] = value;
+    records.push_back(record);
+  }
+  const Table table = build_table(definition, records);
+  CHECK(cell_of(table, "pgsr", "normal-mae").rank == 1);
+  CHECK(cell_of(table, "envgs", "normal-mae").rank == 1);
+  CHECK(cell_of(table, "2dgs", "normal-mae").rank == 3);
+  CHECK(cell_of(table, "tsgs", "normal-mae").rank == 0);
+}
+
+TEST_CASE("a single measured method is not best of anything") {
+  std::vector<Record> records(1);
+  records[0].dataset = "glassroom";
+  records[0].cell = {"room_1", "2dgs", 0};
+  records[0].metrics["psnr"] = 30;
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  CHECK(cell_of(table, "2dgs", "psnr").rank == 0);
+}
+
+TEST_CASE("published columns hold the paper's digits and are marked in every format") {
+  const Table table = golden_table("table1_photometric");
+  CHECK(cell_of(table, "glint", "published/3D-FRONT-T/PSNR").text == "34.50");
+  CHECK(table_markdown(table).find("3D-FRONT-T†") != std::string::npos);
+  CHECK(table_latex(table).find("3D-FRONT-T$^\\dagger$ (published)") != std::string::npos);
+  CHECK(table_terminal(table).find("3D-FRONT-T†") != std::string::npos);
+  CHECK(table_csv(table).find("published/3D-FRONT-T/PSNR") != std::string::npos);
+}
+
+TEST_CASE("ranks shade with the paper's three blues in LaTeX and on a colour terminal only") {
+  const Table table = golden_table("table1_photometric");
+  CHECK(table_latex(table).find("\\cellcolor[RGB]{200,225,255}34.00 & ") != std::string::npos);
+  CHECK(
+      table_latex(table).find("\\cellcolor[RGB]{225,240,255}31.62 $\\pm$ 0.75") != std::string::npos
+  );
+  CHECK(table_terminal(table, {true, 0}).find("48;2;200;225;255m") != std::string::npos);
+  CHECK(table_terminal(table).find('\x1b') == std::string::npos);
+}
+
+TEST_CASE("the order of methods is compared with the paper's, column by column") {
+  const Table table = golden_table("table1_photometric");
+  REQUIRE_FALSE(table.agreement.empty());
+  CHECK(table.agreement[0].column == "psnr");
+  CHECK(table.agreement[0].num_methods == 2);  // 2dgs and envgs; glint is incomplete
+  CHECK(table.agreement[0].tau == 1);
+}
+
+TEST_CASE("the paper's missing cells are not applicable, its hours are as printed") {
+  const Table table = golden_table("tableB_cost");
+  CHECK(cell_of(table, "2dgs", "published/3D-FRONT-T/FPS").status == CellStatus::kNotApplicable);
+  CHECK(cell_of(table, "glint", "published/3D-FRONT-T/Training Time").text == "~2.5 h");
+  CHECK(cell_of(table, "2dgs", "device").text == "cpu");
+  CHECK(cell_of(table, "2dgs", "resolution").text == "160x90");
+}
+
+TEST_CASE("records of a further dataset get columns of their own in table 1 only") {
+  auto records = read_records(kGolden / "records.jsonl");
+  Record fox = records[1];
+  fox.dataset = "nerfstudio";
+  fox.cell.scene = "fox";
+  fox.metrics["psnr"] = 21;
+  records.push_back(fox);
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  CHECK(cell_of(table, "2dgs", "nerfstudio/psnr").value == 21);
+  CHECK(cell_of(table, "2dgs", "psnr").num_scenes == 2);
+  CHECK(
+      build_table(definition_of("table2_geometry"), records).columns.size() ==
+      golden_table("table2_geometry").columns.size()
+  );
+}
+
+TEST_CASE("without any record every measured cell is missing and the paper's stand") {
+  for (const TableDefinition& definition : table_definitions()) {
+    const Table table = build_table(definition, {});
+    for (const TableRow& row : table.rows)
+      for (std::size_t i = 0; i < row.cells.size(); ++i)
+        if (!table.columns[i].published) CHECK(row.cells[i].status == CellStatus::kMissing);
+  }
+}
+
+TEST_CASE("columns agree with the metric registry on unit and which way is better") {
+  for (const TableDefinition& definition : table_definitions())
+    for (const TableColumn& column : definition.columns) {
+      const Metric* metric = find_metric(column.metric);
+      if (!metric) continue;  // of cost and networks
+      INFO(definition.id << " " << column.metric);
+      if (column.scale == 10 && column.unit == "dm")
+        CHECK(metric->unit == "m");
+      else
+        CHECK((metric->unit == column.unit && column.scale == 1));
+      CHECK(
+          (metric->direction == Direction::kHigherIsBetter) ==
+          (column.order == RankOrder::kHigherFirst)
+      );
+    }
+}
+
+TEST_CASE("the tables of fixed records equal the golden files") {
+  for (const std::string id : {"table1_photometric", "table2_geometry", "tableB_cost"}) {
+    const Table table = golden_table(id);
+    CHECK(table_markdown(table) == read_file(kGolden / (id + ".md")));
+    CHECK(table_latex(table) == read_file(kGolden / (id + ".tex")));
+    CHECK(table_csv(table) == read_file(kGolden / (id + ".csv")));
+    CHECK(table_json(table).dump(2) + "\n" == read_file(kGolden / (id + ".json")));
+    CHECK(table_terminal(table) == read_file(kGolden / (id + ".txt")));
+  }
+}
+
+TEST_CASE("a second place that the paired bootstrap cannot tell from the first is tied") {
+  std::vector<Record> records;
+  const auto add = [&](const char* method, const std::vector<double>& values) {
+    for (std::size_t seed = 0; seed < values.size(); ++seed) {
+      Record record;
+      record.dataset = "glassroom";
+      record.cell = {"room_1", method, seed};
+      record.metrics["psnr"] = values[seed];
+      records.push_back(record);
+    }
+  };
+  add("2dgs", {30.0, 31.0, 32.0});
+  add("envgs", {29.9, 31.2, 31.8});
+  const auto table = [&] { return build_table(definition_of("table1_photometric"), records); };
+  CHECK(cell_of(table(), "envgs", "psnr").rank == 2);
+  CHECK(cell_of(table(), "envgs", "psnr").tied);
+  CHECK_FALSE(cell_of(table(), "2dgs", "psnr").tied);
+  CHECK(table_markdown(table()).find("_30.97 ± 0.97≈_") != std::string::npos);
+  CHECK(table_markdown(table()).find("- ≈ tied with the first") != std::string::npos);
+  CHECK(table_json(table())["rows"][3]["cells"]["psnr"]["tied_with_first"] == true);
+  records.resize(3);
+  add("envgs", {29.9, 30.9, 31.7});  // worse on every seed
+  CHECK_FALSE(cell_of(table(), "envgs", "psnr").tied);
+  CHECK(table_markdown(table()).find("≈") == std::string::npos);
+}
+
+TEST_CASE("fewer than three pairs of scene and seed claim no tie and say so") {
+  std::vector<Record> records;
+  for (const auto& [method, psnr] : {std::pair("2dgs", 30.0), std::pair("envgs", 29.99)}) {
+    Record record;
+    record.dataset = "glassroom";
+    record.cell = {"room_1", method, 0};
+    record.metrics["psnr"] = psnr;
+    records.push_back(record);
+  }
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  CHECK_FALSE(cell_of(table, "envgs", "psnr").tied);
+  CHECK(table_markdown(table).find("- Fewer than 3 pairs") != std::string::npos);
+}
+
+TEST_CASE("differences to the paper stand apart, with a sign, where both numbers are") {
+  const Table differences = difference_table(golden_table("table1_photometric"));
+  REQUIRE(differences.rows.size() == 3);  // 2dgs, envgs, glint
+  REQUIRE(differences.columns.size() == 3);
+  CHECK(differences.columns[0].id == "difference/psnr");
+  CHECK(cell_of(differences, "envgs", "difference/psnr").text == "+0.29");
+  CHECK(
+      cell_of(differences, "envgs", "difference/lpips-vgg-3dgs").status ==
+      CellStatus::kNotApplicable
+  );
+  CHECK(difference_table(golden_table("regions")).rows.empty());
+}
+
+TEST_CASE("the HTML table escapes what records and definitions say") {
+  Table table = golden_table("table1_photometric");
+  table.rows[0].title = "<b>\"&";
+  table.notes.push_back("</ul><script>");
+  const std::string html = table_html(table);
+  CHECK(html.find("<th scope=\"row\">&lt;b&gt;&quot;&amp;</th>") != std::string::npos);
+  CHECK(html.find("<script>") == std::string::npos);
+  CHECK(html.find("class=\"rank1\" title=\"\">34.00</td>") != std::string::npos);
+}
+
+TEST_CASE("on a narrow terminal groups come below each other, each with the methods") {
+  const Table table = golden_table("table1_photometric");
+  CHECK(table_terminal(table, {false, 1000}) == table_terminal(table));
+  for (const std::size_t width : {100, 60, 40}) {
+    std::istringstream lines(table_terminal(table, {false, width}));
+    std::size_t headers = 0;
+    std::string line;
+    std::getline(lines, line);  // title
+    while (std::getline(lines, line) && line.rfind("  Mean", 0) != 0) {
+      CHECK(text_width(line) <= width);
+      headers += line.rfind("Method", 0) == 0;
+      const bool measured = line.find("GlassRoom") != std::string::npos;
+      CHECK_FALSE((measured && line.find("†") != std::string::npos));
+    }
+    // 66 columns measured, 84 published in two groups of 45.
+    CHECK(headers == (width == 100 ? 2 : (width == 60 ? 4 : 6)));
+  }
+}
+
+TEST_CASE("LaTeX gets no character that it cannot print") {
+  Table table = golden_table("table1_photometric");
+  table.rows[0].title = "a\\b_{c}^2 ≈ 漢\t|";
+  const std::string tex = table_latex(table);
+  CHECK(
+      tex.find("a\\textbackslash{}b\\_\\{c\\}\\textasciicircum{}2 $^\\approx$ ??$|$") !=
+      std::string::npos
+  );
+}
+
+TEST_CASE("LaTeX gets a minus for signs and differences, hyphens stay") {
+  Table table = golden_table("table1_photometric");
+  table.rows[0].title = "-1.5, a - b, x-y 3D-F -z";
+  CHECK(table_latex(table).find("$-$1.5, a $-$ b, x-y 3D-F -z &") != std::string::npos);
+}
+
+TEST_CASE("pdflatex compiles all tables in one document") {
+  if (std::system("command -v pdflatex >/dev/null 2>&1") != 0) {
+    WARN("skipped: no pdflatex; scripts/setup_extras.sh installs it");
+    return;
+  }
+  const test::TempFolder folder;
+  std::vector<Table> tables;
+  for (const TableDefinition& definition : table_definitions()) {
+    tables.push_back(build_table(definition, read_records(kGolden / "records.jsonl")));
+    tables.back().notes.push_back("100% of $a_b$ #1 & ~^\\ {x} 漢");
+    write_table(folder.path(), tables.back());
+  }
+  write_file(folder / "all.tex", latex_document(tables));
+  const std::string command = fmt::format(
+      "cd '{}' && pdflatex -interaction=nonstopmode -halt-on-error all.tex >out.txt 2>&1",
+      folder.path().string()
+  );
+  const bool compiled = std::system(command.c_str()) == 0;
+  INFO((compiled ? "" : read_file(folder / "out.txt")));
+  CHECK(compiled);
+  CHECK(fs::exists(folder / "all.pdf"));
+}
+
+TEST_CASE("a definition with an unknown key or direction is an error naming the file") {
+  CHECK_THROWS_WITH(
+      parse_table_definition("titel = 'x'", "t"), Catch::Contains("tables/t.toml: no field 'titel'")
+  );
+  CHECK_THROWS_WITH(
+      parse_table_definition("columns = [{metric = 'm', direction = 'up'}]", "t"),
+      Catch::Contains("direction is 'up'")
+  );
+  CHECK_THROWS_WITH(parse_table_definition("a = [", "t"), Catch::Contains("tables/t.toml:1"));
+}
