@@ -7,13 +7,13 @@
 // as it has no effect in the official code (its statistic is cleared before it is read).
 #include "glint/core/kernel.h"
 #include "glint/method.h"
-#include "glint/render/blend.h"
+#include "glint/render/map_kernels.h"
+#include "glint/render/map_ops.h"
 #include "glint/scene/ply.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/initial_points.h"
-#include "glint/train/map_kernels.h"
 #include "glint/train/photometric.h"
-#include "glint/train/surfel_set.h"
+#include "glint/train/trainable_set.h"
 #include "glint/train/trainer.h"
 
 namespace glint {
@@ -73,13 +73,7 @@ class TwoDgs final : public Method {
     InitialSurfels initial;
     initial.seed = options.seed;
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
-    set_ = SurfelSet(
-        surfels_from_points(points, initial),
-        windows_.rates,
-        windows_.densify,
-        scene.spatial_scale,
-        options.seed
-    );
+    set_ = TrainableSet(points, initial, {windows_.rates, windows_.densify, scene.spatial_scale});
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
 
@@ -97,14 +91,14 @@ class TwoDgs final : public Method {
     geometry_.add(view, iteration, out, depth_, gradient_, stats);
     if (settings_.with_distortion) add_distortion(out, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
-    set_.backward(view.camera, sh_degree_, settings_, gradient_);
+    set_.backward(gradient_);
     set_.update(iteration + 1);
     stats.num_surfels = set_.cloud().size();
     return stats;
   }
 
-  RenderOutput render(const Camera& camera) const override {
-    const RasterOutput& out = set_.forward(camera, sh_degree_, {}, {}, render_pass_);
+  RenderOutput render(const Camera& camera) override {
+    const RasterOutput& out = set_.forward(camera, sh_degree_);
     RenderOutput result;
     expected_depth_map(out, result.depth);
     result.normal = unit_normals(out.normal);
@@ -113,15 +107,13 @@ class TwoDgs final : public Method {
     return result;
   }
 
-  void draw(const Camera& camera) const override {
-    set_.forward(camera, sh_degree_, {}, {}, render_pass_);
-  }
+  void draw(const Camera& camera) override { set_.forward(camera, sh_degree_); }
 
   void save(const std::string& folder) const override {
     write_surfel_ply(fs::path(folder) / "interface.ply", set_.cloud());
   }
   void load(const std::string& folder) override {
-    set_ = SurfelSet(read_surfel_ply(fs::path(folder) / "interface.ply"), {}, {}, 1, 0);
+    set_ = TrainableSet(read_surfel_ply(fs::path(folder) / "interface.ply"));
     sh_degree_ = 3;
   }
   Json config() const override { return config_to_json(config_); }
@@ -149,8 +141,7 @@ class TwoDgs final : public Method {
   TwoDgsConfig config_, windows_;
   const Scene* scene_ = nullptr;
   std::vector<std::string> warnings_;
-  SurfelSet set_;
-  mutable RasterPass render_pass_;
+  TrainableSet set_;
   ViewSampler views_;
   int sh_degree_ = 3;
   RasterSettings settings_;

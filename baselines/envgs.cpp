@@ -13,14 +13,15 @@
 #include <cmath>
 
 #include "glint/method.h"
+#include "glint/render/glass_transport.h"
+#include "glint/render/map_ops.h"
 #include "glint/scene/ply.h"
 #include "glint/train/geometry_losses.h"
-#include "glint/train/glass_transport.h"
 #include "glint/train/initial_points.h"
 #include "glint/train/mirror_cutoffs.h"
 #include "glint/train/perceptual.h"
 #include "glint/train/photometric.h"
-#include "glint/train/surfel_set.h"
+#include "glint/train/trainable_set.h"
 #include "glint/train/trainer.h"
 
 namespace glint {
@@ -28,7 +29,6 @@ namespace glint {
 namespace {
 
 constexpr int kPublishedIterations = 40000;
-constexpr int kBaseChannels = 4;  // colour, s
 
 struct EnvGsConfig {
   float lambda_ssim = 0.2f;
@@ -43,6 +43,7 @@ struct EnvGsConfig {
   float environment_gradient = 1e-4f;
   int environment_densify_interval = 500;
   SurfelRates rates;
+  float rate_specular = 0.01f;
 
   EnvGsConfig() {
     geometry.lambda_consistency = 0.04f;
@@ -67,6 +68,7 @@ struct EnvGsConfig {
     geometry.visit(v);
     densify.visit(v);
     rates.visit(v);
+    v("rate_specular", rate_specular, "learning rate of specularity");
     v("environment_gradient", environment_gradient, "densification threshold of the environment");
     v("environment_densify_interval", environment_densify_interval, "steps, of the environment");
   }
@@ -96,10 +98,9 @@ class EnvGs final : public Method {
     set_up_losses();
     InitialSurfels initial;
     initial.seed = options.seed;
-    initial.extra_names = {"specular"};
-    initial.extra_values = {config_.initial_specular};
+    initial.extra = {{kSpecular, config_.initial_specular, config_.rate_specular}};
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
-    base_ = new_set(surfels_from_points(points, initial), windows_.densify, options.seed);
+    base_ = new_set(points, initial, windows_.densify);
     DensifyConfig densify = windows_.densify;
     densify.interval = windows_.environment_densify_interval;
     densify.gradient_threshold = config_.environment_gradient;
@@ -107,7 +108,7 @@ class EnvGs final : public Method {
     initial = {};
     initial.seed = options.seed + 2;
     const PointCloud grid = config_.grid.points(scene, options.seed);
-    environment_ = new_set(surfels_from_points(grid, initial), densify, options.seed + 2);
+    environment_ = new_set(grid, initial, densify);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
 
@@ -120,7 +121,7 @@ class EnvGs final : public Method {
     environment_degree_ =
         std::clamp((iteration - windows_.environment_from) / windows_.sh_interval, 0, 3);
     const Image& image = forward(view.camera);
-    clear_gradient(view.camera.size(), kBaseChannels, dL_dbase_);
+    clear_gradient(view.camera.size(), base_output_->features.channels(), dL_dbase_);
     clear_image(dL_dimage_, view.camera.size(), 3);
     const PhotometricWeights weights{1 - config_.lambda_ssim, config_.lambda_ssim};
     const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);
@@ -138,7 +139,7 @@ class EnvGs final : public Method {
     return stats;
   }
 
-  RenderOutput render(const Camera& camera) const override {
+  RenderOutput render(const Camera& camera) override {
     RenderOutput out;
     out.rgb = forward(camera);
     const GlassBuffer& buffer = transport_.buffer();
@@ -155,17 +156,17 @@ class EnvGs final : public Method {
     return out;
   }
 
-  void draw(const Camera& camera) const override { forward(camera); }
+  void draw(const Camera& camera) override { forward(camera); }
 
   void save(const std::string& folder) const override {
     write_surfel_ply(fs::path(folder) / "interface.ply", base_.cloud());
     write_surfel_ply(fs::path(folder) / "reflection.ply", environment_.cloud());
   }
   void load(const std::string& folder) override {
-    base_ = SurfelSet(read_surfel_ply(fs::path(folder) / "interface.ply"), {}, {}, 1, 0);
-    environment_ = SurfelSet(read_surfel_ply(fs::path(folder) / "reflection.ply"), {}, {}, 1, 0);
+    base_ = TrainableSet(read_surfel_ply(fs::path(folder) / "interface.ply"));
+    environment_ = TrainableSet(read_surfel_ply(fs::path(folder) / "reflection.ply"));
     GLINT_CHECK(
-        base_.cloud().extra_names == std::vector<std::string>({"specular"}),
+        base_.cloud().extra_names == std::vector<std::string>({kSpecular}),
         kBadPrediction,
         "{}/interface.ply: expected the extra field specular; was it trained by another method?",
         folder
@@ -184,8 +185,10 @@ class EnvGs final : public Method {
   std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
-  SurfelSet new_set(SurfelCloud cloud, const DensifyConfig& densify, std::uint64_t seed) const {
-    return SurfelSet(std::move(cloud), windows_.rates, densify, scene_->spatial_scale, seed);
+  TrainableSet new_set(
+      const PointCloud& points, const InitialSurfels& initial, const DensifyConfig& densify
+  ) const {
+    return TrainableSet(points, initial, {windows_.rates, densify, scene_->spatial_scale});
   }
   void set_up_losses() {
     warnings_ = geometry_.set_up(windows_.geometry, *scene_, "envgs");
@@ -193,13 +196,13 @@ class EnvGs final : public Method {
     warn_without_points(*scene_, "envgs", warnings_);
   }
 
-  // Rendering goes through the buffers of training.
-  const Image& forward(const Camera& camera) const {
+  const Image& forward(const Camera& camera) {
     GlassOptions options;
+    options.channels = interface_channels(base_.cloud());
     options.transmission = options.fresnel = false;
     options.reflection = with_environment_;
     transport_.set_options(options);
-    base_output_ = &base_.forward(camera, base_degree_, {});
+    base_output_ = &base_.forward(camera, base_degree_);
     const GlassBuffer& buffer = transport_.read_interface(camera, *base_output_);
     copy_color(base_output_->features, layers_.interface);
     if (with_environment_)
@@ -215,24 +218,22 @@ class EnvGs final : public Method {
     const Rays* dL_drays = nullptr;
     if (with_environment_) {
       copy_color(dL_dlayers.reflection, dL_dtrace_.color);
-      dL_drays = &environment_.trace_backward(
-          transport_.buffer().reflected, environment_degree_, config_.mirror.settings(), dL_dtrace_
-      );
+      dL_drays = &environment_.trace_backward(dL_dtrace_);
     }
     transport_.interface_vjp(camera, *base_output_, dL_drays, {}, dL_dbase_);
-    base_.backward(camera, base_degree_, {}, dL_dbase_);
+    base_.backward(dL_dbase_);
   }
 
   EnvGsConfig config_, windows_;
   const Scene* scene_ = nullptr;
   std::vector<std::string> warnings_;
   ViewSampler views_;
-  mutable SurfelSet base_, environment_;
+  TrainableSet base_, environment_;
   bool with_environment_ = false;
   int base_degree_ = 0, environment_degree_ = 0;
-  mutable GlassTransport transport_;
-  mutable const RasterOutput* base_output_ = nullptr;
-  mutable GlassLayers layers_;
+  GlassTransport transport_;
+  const RasterOutput* base_output_ = nullptr;
+  GlassLayers layers_;
   PhotometricLoss photometric_;
   std::unique_ptr<PerceptualLoss> perceptual_;
   GeometryLosses geometry_;

@@ -18,6 +18,7 @@
 #include "glint/glint_config.h"
 #include "glint/glint_model.h"
 #include "glint/method.h"
+#include "glint/render/map_ops.h"
 #include "glint/scene/ply.h"
 #include "glint/train/photometric.h"
 #include "glint/train/trainer.h"
@@ -49,8 +50,9 @@ class Glint final : public Method {
     model_.reflection = new_set(config_.grid.points(scene, options.seed), initial, densify);
     initial = {};
     initial.seed = options.seed;
-    initial.extra_names = {"transparency", "specular"};
-    initial.extra_values = {config_.initial_transparency, config_.initial_specular};
+    initial.extra = {
+        {kTransparency, config_.initial_transparency, config_.rate_transparency},
+        {kSpecular, config_.initial_specular, config_.rate_specular}};
     model_.interface = new_set(points, initial, windows_.densify);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
@@ -71,16 +73,16 @@ class Glint final : public Method {
     );
     add_map_losses(view, iteration, weights, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
-    model_.backward(view.camera, config_, dL_dimage_, dL_dtransparency_, !frozen_, dL_dinterface_);
+    model_.backward(config_, dL_dimage_, dL_dtransparency_, !frozen_, dL_dinterface_);
     update(iteration);
     stats.num_surfels = num_surfels();
     return stats;
   }
 
-  RenderOutput render(const Camera& camera) const override {
+  RenderOutput render(const Camera& camera) override {
     return model_.render(camera, config_, phase_);
   }
-  void draw(const Camera& camera) const override { model_.forward(camera, config_, phase_); }
+  void draw(const Camera& camera) override { model_.forward(camera, config_, phase_); }
 
   void save(const std::string& folder) const override {
     write_surfel_ply(fs::path(folder) / "interface.ply", model_.interface.cloud());
@@ -89,14 +91,14 @@ class Glint final : public Method {
   }
   void load(const std::string& folder) override {
     const auto read = [&](const char* name) {
-      return SurfelSet(read_surfel_ply(fs::path(folder) / name), {}, {}, 1, 0);
+      return TrainableSet(read_surfel_ply(fs::path(folder) / name));
     };
     model_.interface = read("interface.ply");
     model_.transmission = read("transmission.ply");
     model_.reflection = read("reflection.ply");
     GLINT_CHECK(
         model_.interface.cloud().extra_names ==
-            std::vector<std::string>({"transparency", "specular"}),
+            std::vector<std::string>({kTransparency, kSpecular}),
         kBadPrediction,
         "{}/interface.ply: expected the extra fields transparency and specular; was it trained by "
         "another method?",
@@ -119,16 +121,10 @@ class Glint final : public Method {
   std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
-  SurfelSet new_set(
+  TrainableSet new_set(
       const PointCloud& points, const InitialSurfels& initial, const DensifyConfig& densify
   ) const {
-    return SurfelSet(
-        surfels_from_points(points, initial),
-        windows_.rates,
-        densify,
-        scene_->spatial_scale,
-        initial.seed
-    );
+    return TrainableSet(points, initial, {windows_.rates, densify, scene_->spatial_scale});
   }
   DensifyConfig secondary_densify() const {
     DensifyConfig densify = windows_.densify;
@@ -164,7 +160,7 @@ class Glint final : public Method {
   void clear_gradients(ImageSize size) {
     clear_image(dL_dimage_, size, 3);
     clear_image(dL_dtransparency_, size, 1);
-    clear_gradient(size, kInterfaceChannels, dL_dinterface_);
+    clear_gradient(size, model_.interface_output().features.channels(), dL_dinterface_);
   }
   void add_map_losses(
       const View& view, int iteration, PhotometricWeights weights, StepStats& stats
@@ -196,7 +192,7 @@ class Glint final : public Method {
   const Scene* scene_ = nullptr;
   std::vector<std::string> warnings_;
   ViewSampler views_;
-  mutable GlintModel model_;  // rendering goes through the buffers of training
+  GlintModel model_;
   GlintPhase phase_;
   bool frozen_ = false;
   PhotometricLoss photometric_;

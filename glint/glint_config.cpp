@@ -7,10 +7,10 @@
 namespace glint {
 
 GlintConfig::GlintConfig() {
-  geometry.lambda_depth = GlintPriors::kLambdaDepth;
-  geometry.lambda_normal = GlintPriors::kLambdaNormal;
-  geometry.min_cosine = GlintPriors::kMinCosine;
-  geometry.gate_from = GlintPriors::kGateFrom;
+  geometry.lambda_depth = PriorLosses::kLambdaDepth;
+  geometry.lambda_normal = PriorLosses::kLambdaNormal;
+  geometry.min_cosine = PriorLosses::kMinCosine;
+  geometry.gate_from = PriorLosses::kGateFrom;
   geometry.lambda_consistency = 0.05f;
   geometry.consistency_from = 14000;  // the share of the run that [Huang24] leaves it off
   geometry.lambda_smooth = 0.01f;

@@ -45,6 +45,8 @@ struct GlintConfig {
   // their surfels would not recover before the next pruning.
   bool reset_secondary = false;
   SurfelRates rates;
+  float rate_transparency = 0.05f;  // as the official code has them
+  float rate_specular = 0.01f;
 
   GlintConfig();
 
@@ -75,6 +77,8 @@ struct GlintConfig {
     transmission_losses.visit(v);
     densify.visit(v);
     rates.visit(v);
+    v("rate_transparency", rate_transparency, "learning rate of transparency");
+    v("rate_specular", rate_specular, "learning rate of specularity");
     v("transmission_gradient", transmission_gradient, "threshold of the transmission set");
     v("reflection_gradient", reflection_gradient, "densification threshold of the reflection set");
     v("secondary_densify_interval", secondary_densify_interval, "steps, of secondary sets");

@@ -4,7 +4,8 @@
 #include <algorithm>
 
 #include "glint/core/kernel.h"
-#include "glint/train/map_kernels.h"
+#include "glint/render/map_kernels.h"
+#include "glint/render/map_ops.h"
 
 namespace glint {
 
@@ -24,9 +25,16 @@ Image scaled_by_pixel(const Image& color, const Image& factor) {
 const Image& GlintModel::forward(
     const Camera& camera, const GlintConfig& config, const GlintPhase& phase
 ) {
+  camera_ = camera;
   phase_ = phase;
-  transport_.set_options({config.f0, phase.transmission, phase.reflection, config.detach_origins});
-  interface_output_ = &interface.forward(camera, phase.interface_degree, {});
+  transport_.set_options(
+      {.channels = interface_channels(interface.cloud()),
+       .f0 = config.f0,
+       .transmission = phase.transmission,
+       .reflection = phase.reflection,
+       .detach_origins = config.detach_origins}
+  );
+  interface_output_ = &interface.forward(camera, phase.interface_degree);
   const GlassBuffer& buffer = transport_.read_interface(camera, *interface_output_);
   copy_color(interface_output_->features, layers_.interface);
   if (phase.transmission) render_transmission(camera, config);
@@ -62,20 +70,17 @@ void GlintModel::render_transmission(const Camera& camera, const GlintConfig& co
   }
 }
 
-void GlintModel::transmission_vjp(
-    const Camera& camera, const GlintConfig& config, const Image& dL_dradiance
-) {
+void GlintModel::transmission_vjp(const GlintConfig& config, const Image& dL_dradiance) {
   if (config.transmission == "trace") {
     copy_color(dL_dradiance, dL_dtrace_.color);
-    transmission.trace_backward(through_, phase_.transmission_degree, {}, dL_dtrace_);
+    transmission.trace_backward(dL_dtrace_);
   } else {
     copy_color(dL_dradiance, dL_dtransmission_.features);
-    transmission.backward(camera, phase_.transmission_degree, {}, dL_dtransmission_, near_limit_);
+    transmission.backward(dL_dtransmission_);
   }
 }
 
 void GlintModel::backward(
-    const Camera& camera,
     const GlintConfig& config,
     const Image& dL_dimage,
     const Image& dL_dtransparency,
@@ -86,21 +91,19 @@ void GlintModel::backward(
   const Rays* dL_drays = nullptr;
   if (phase_.reflection) {
     copy_color(dL_dlayers.reflection, dL_dtrace_.color);
-    dL_drays = &reflection.trace_backward(
-        buffer().reflected, phase_.reflection_degree, config.mirror.settings(), dL_dtrace_
-    );
+    dL_drays = &reflection.trace_backward(dL_dtrace_);
   }
-  if (phase_.transmission) transmission_vjp(camera, config, dL_dlayers.transmission);
+  if (phase_.transmission) transmission_vjp(config, dL_dlayers.transmission);
   if (!interface_too) return;
-  transport_.interface_vjp(camera, *interface_output_, dL_drays, dL_dtransparency, dL_dinterface);
-  interface.backward(camera, phase_.interface_degree, {}, dL_dinterface);
+  transport_.interface_vjp(camera_, *interface_output_, dL_drays, dL_dtransparency, dL_dinterface);
+  interface.backward(dL_dinterface);
 }
 
 // Median depth of the transmission set behind the interface, which a few faint surfels between the
 // layers do not move; where nothing is, the interface's.
 Image GlintModel::behind_depth(const Camera& camera) {
   Image depth =
-      transmission.forward(camera, phase_.transmission_degree, {}, near_limit_, behind_pass_)
+      transmission.forward(behind_pass_, camera, phase_.transmission_degree, {}, near_limit_)
           .depth_median;
   for (std::size_t i = 0; i < depth.num_pixels(); ++i)
     if (depth.data()[i] <= 0) depth.data()[i] = buffer().depth.data()[i];

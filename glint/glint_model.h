@@ -6,8 +6,8 @@
 
 #include "glint/glint_config.h"
 #include "glint/method.h"
-#include "glint/train/glass_transport.h"
-#include "glint/train/surfel_set.h"
+#include "glint/render/glass_transport.h"
+#include "glint/train/trainable_set.h"
 
 namespace glint {
 
@@ -19,7 +19,7 @@ struct GlintPhase {
 
 class GlintModel {
  public:
-  SurfelSet interface, transmission, reflection;
+  TrainableSet interface, transmission, reflection;
 
   // The picture [H][W][3]; it and the buffers below stay valid until the next call.
   const Image& forward(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
@@ -27,7 +27,6 @@ class GlintModel {
   // added to, the gradient of losses on the interface's maps; dL_dtransparency that of t (may be
   // empty). `interface_too` off: the interface stays as it is.
   void backward(
-      const Camera& camera,
       const GlintConfig& config,
       const Image& dL_dimage,
       const Image& dL_dtransparency,
@@ -43,10 +42,11 @@ class GlintModel {
 
  private:
   void render_transmission(const Camera& camera, const GlintConfig& config);
-  void transmission_vjp(const Camera& camera, const GlintConfig& config, const Image& dL_dradiance);
+  void transmission_vjp(const GlintConfig& config, const Image& dL_dradiance);
   Image behind_depth(const Camera& camera);
   void add_components(RenderOutput& out) const;
 
+  Camera camera_;  // of the last forward call, as is the phase
   GlintPhase phase_;
   GlassTransport transport_;
   const RasterOutput* interface_output_ = nullptr;

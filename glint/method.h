@@ -46,9 +46,10 @@ class Method {
   // be looked at. Errors: kUsage (config), kBadReference (scene lacks what the method needs).
   virtual void initialize(const Scene& scene, const RunOptions& options) = 0;
   virtual StepStats step(int iteration) = 0;  // iteration counts from 0
-  virtual RenderOutput render(const Camera& camera) const = 0;
+  // Not const: buffers are kept from one view to the next, and shared with step().
+  virtual RenderOutput render(const Camera& camera) = 0;
   // The picture alone, left on the device where it was made: what FPS counts.
-  virtual void draw(const Camera& camera) const { render(camera); }
+  virtual void draw(const Camera& camera) { render(camera); }
   // Surfel sets as PLY files and whatever else is needed to render again.
   virtual void save(const std::string& folder) const = 0;
   virtual void load(const std::string& folder) = 0;

@@ -31,9 +31,7 @@ RasterOutput render_one(Vec3d mean, Vec4<double> q, Vec2d scale) {
   SurfelArrays surfels;
   surfels.add(mean, scale, q, 0.9, {0.25f, 0.5f, 0.75f});
   Rasterizer rasterizer;
-  RasterOutput output;
-  rasterizer.forward(surfels.view(), plain_camera(), {}, output);
-  return output;
+  return rasterizer.forward({surfels.view(), plain_camera(), {}});
 }
 
 }  // namespace

@@ -2,8 +2,9 @@
 // Loops whose bodies run on either device. A kernel is a struct of numbers and pointers with
 //   GLINT_HD void operator()(std::size_t i) const;          run_kernel
 //   GLINT_HD Sum operator()(int x, int y) const;            sum_kernel; Sum: a number or +=
-// On the CPU it is a parallel loop. On the GPU it needs an entry in glint/cuda/kernels.h, which
-// fills the pointers below: so the layers under glint/cuda know nothing of it.
+// On the CPU it is a parallel loop. On the GPU its header, a *_kernels.h in glint/ or baselines/,
+// says so in the list at its end: x_kernels.h has XKernels. The build joins the lists for
+// glint/cuda, which fills the pointers below: so the layers under it know nothing of it.
 #pragma once
 
 #include <type_traits>
@@ -15,6 +16,9 @@
 #include "glint/core/parallel.h"
 
 namespace glint {
+
+template <class... Kernels>
+struct KernelList {};
 
 template <class Kernel>
 struct OnGpu {

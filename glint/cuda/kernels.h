@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The kernels of run_kernel and sum_kernel (glint/core/kernel.h) on a GPU: one line each in the
-// lists at the end.
+// The kernels of run_kernel and sum_kernel (glint/core/kernel.h) on a GPU: those that the headers
+// list which have them (*_kernels.h).
 #pragma once
 
 #include <vector>
 
 #include "glint/core/kernel.h"
 #include "glint/cuda/block.h"
-#include "glint/render/shade_kernels.h"
-#include "glint/train/adam_kernel.h"
-#include "glint/train/densify_kernels.h"
-#include "glint/train/depth_prior_kernels.h"
-#include "glint/train/glass_kernels.h"
-#include "glint/train/map_kernels.h"
-#include "glint/train/normal_kernels.h"
-#include "glint/train/photometric_kernels.h"
-#include "glint/train/transparency_kernels.h"
+#include "kernel_lists.h"  // made by the build
 
 namespace glint::gpu {
 
@@ -83,61 +75,21 @@ SumOf<Kernel> sum_on(ImageSize size, const Kernel& kernel) {
   return total;
 }
 
-template <class... Kernels>
-struct KernelList {
-  template <class Exec>
-  static void offer_runs() {
-    ((OnGpu<Kernels>::run = run_on<Exec, Kernels>), ...);
-  }
-  template <class Exec>
-  static void offer_sums() {
-    ((SumOnGpu<Kernels>::run = sum_on<Exec, Kernels>), ...);
-  }
-};
-
-using RunKernels = KernelList<
-    ActivateGeometry,
-    ActivateFeatures,
-    ActivateVjp,
-    TraceActivateVjp,
-    AdamKernel<true>,
-    AdamKernel<false>,
-    ObserveRaster,
-    ObserveTrace,
-    CameraRays,
-    ReadInterface,
-    ComposeGlass,
-    ComposeGlassVjp,
-    ReadInterfaceVjp,
-    ExpectedDepth,
-    ExpectedDepthVjp,
-    CopyColor,
-    UnitNormals,
-    ShiftDepth,
-    MoveAlongRays,
-    ConsistencyDepthVjp,
-    LabelL1,
-    LabelBce,
-    ErodeAndWeigh,
-    ViewingCosine,
-    BlurMomentRows,
-    BlurGradientColumns>;
-
-using SumKernels = KernelList<
-    CountNormals,
-    NormalPriorAt<float>,
-    NormalSmoothnessAt<float>,
-    NormalConsistencyAt,
-    DepthMomentsAt<float>,
-    StridedWeight<float>,
-    MatchGradients<float>,
-    MatchingScaleVjp<float>,
-    DepthPriorAt<float>,
-    SumPixels,
-    GuideL1<float>,
-    GuideBce<float>,
-    TransparencyPriorAt<float>,
-    SsimAt,
-    PhotometricAt>;
+// Gives a kernel of run_kernel or of sum_kernel its place on Exec.
+template <class Exec, class Kernel>
+void offer() {
+  if constexpr (requires(const Kernel& kernel) { kernel(0, 0); })
+    SumOnGpu<Kernel>::run = sum_on<Exec, Kernel>;
+  else
+    OnGpu<Kernel>::run = run_on<Exec, Kernel>;
+}
+template <class Exec, class... Kernels>
+void offer_all(KernelList<Kernels...>) {
+  (offer<Exec, Kernels>(), ...);
+}
+template <class Exec, class... Lists>
+void offer_lists(KernelList<Lists...>) {
+  (offer_all<Exec>(Lists{}), ...);
+}
 
 }  // namespace glint::gpu

@@ -6,8 +6,8 @@
 #include "glint/cuda/kernels.h"
 #include "glint/cuda/raster_pipeline.h"
 #include "glint/cuda/trace_pipeline.h"
-#include "glint/render/gpu_ops.h"
-#include "glint/render/raster_saved.h"
+#include "glint/render/op_backends.h"
+#include "glint/render/raster_tiles.h"
 
 namespace glint::gpu {
 
@@ -18,146 +18,134 @@ inline float* pointer(const Image& image) {
 
 inline DeviceSurfels device_surfels(const RasterInput& in) {
   return {
-      in.count,
-      in.channels,
-      in.means.data(),
-      in.scales.data(),
-      in.rotations.data(),
-      in.opacities.data(),
-      in.features.data()};
+      .count = in.count,
+      .channels = in.channels,
+      .means = in.means.data(),
+      .scales = in.scales.data(),
+      .rotations = in.rotations.data(),
+      .opacities = in.opacities.data(),
+      .features = in.features.data()};
 }
-template <class Maps>
-DeviceImages device_images(const Maps& maps) {
+inline DeviceMaps device_maps(const RasterMaps<ImageMap>& maps) {
+  DeviceMaps result;
+  for_each_map(
+      {}, [](const char*, int, float*& to, const Image& map) { to = pointer(map); }, result, maps
+  );
+  return result;
+}
+inline DeviceGradients device_gradients(RasterGradient& g) {
   return {
-      pointer(maps.features),
-      pointer(maps.alpha),
-      pointer(maps.depth_sum),
-      pointer(maps.depth_median),
-      pointer(maps.normal),
-      pointer(maps.distortion)};
+      .means = g.means.data(),
+      .scales = g.scales.data(),
+      .rotations = g.rotations.data(),
+      .opacities = g.opacities.data(),
+      .features = g.features.data(),
+      .screen = g.screen.data()};
+}
+inline DeviceRasterCall device_call(const RasterCall& call, RasterOutput& output) {
+  return {
+      .surfels = device_surfels(call.input),
+      .camera = camera_of(call),
+      .near_limit = call.input.near_limit.data,
+      .range = distortion_range(call.settings),
+      .out = device_maps(output),
+      .visibility = output.visibility.data(),
+      .in_view = output.in_view.data()};
 }
 
 template <class Exec>
-class RasterizerOn final : public GpuRasterizer {
+class RasterizerOn final : public RasterBackend {
  public:
-  void forward(
-      const RasterInput& input,
-      const Camera& camera,
-      const RasterSettings& settings,
-      RasterOutput& output
-  ) override {
-    pipeline_.forward(
-        device_surfels(input),
-        camera_of(camera, settings.near_plane),
-        input.near_limit.data,
-        distortion_range(settings),
-        device_images(output),
-        output.visibility.data(),
-        output.in_view.data()
-    );
+  void forward(const RasterCall& call, RasterOutput& output) override {
+    pipeline_.forward(device_call(call, output));
   }
   void backward(
-      const RasterInput& input,
-      const Camera& camera,
-      const RasterSettings& settings,
-      const RasterOutput& output,
+      const RasterCall&,
+      const RasterOutput&,
       const RasterOutputGradient& dL_doutput,
-      RasterGradient& g
+      RasterGradient& gradient
   ) override {
-    pipeline_.backward(
-        device_surfels(input),
-        camera_of(camera, settings.near_plane),
-        device_images(output),
-        device_images(dL_doutput),
-        {g.means.data(),
-         g.scales.data(),
-         g.rotations.data(),
-         g.opacities.data(),
-         g.features.data(),
-         g.screen.data()}
-    );
+    pipeline_.backward(device_maps(dL_doutput), device_gradients(gradient));
   }
-  std::size_t num_pairs() const override { return pipeline_.num_pairs(); }
-  std::size_t num_pixel_pairs() const override { return pipeline_.num_pixel_pairs(); }
+  std::size_t num_pairs() override { return pipeline_.num_pairs(); }
+  std::size_t num_pixel_pairs() override { return pipeline_.num_pixel_pairs(); }
 
  private:
-  mutable RasterPipeline<Exec> pipeline_{executor<Exec>()};
+  RasterPipeline<Exec> pipeline_{executor<Exec>()};
 };
 
 inline DeviceTraceInput device_input(const TraceInput& in) {
   return {
-      in.count,
-      in.sh_degree,
-      in.means.data(),
-      in.scales.data(),
-      in.rotations.data(),
-      in.opacities.data(),
-      in.sh_dc.data(),
-      in.sh_rest.data()};
+      .count = in.count,
+      .sh_degree = in.sh_degree,
+      .means = in.means.data(),
+      .scales = in.scales.data(),
+      .rotations = in.rotations.data(),
+      .opacities = in.opacities.data(),
+      .sh_dc = in.sh_dc.data(),
+      .sh_rest = in.sh_rest.data()};
 }
 template <class Maps>
 DeviceTraceOutput device_output(const Maps& maps) {
-  return {pointer(maps.color), pointer(maps.alpha), pointer(maps.depth_sum), pointer(maps.normal)};
+  return {
+      .color = pointer(maps.color),
+      .alpha = pointer(maps.alpha),
+      .depth_sum = pointer(maps.depth_sum),
+      .normal = pointer(maps.normal)};
+}
+inline DeviceTraceGradients device_gradients(TraceGradient& g) {
+  return {
+      .means = g.means.data(),
+      .scales = g.scales.data(),
+      .rotations = g.rotations.data(),
+      .opacities = g.opacities.data(),
+      .sh_dc = g.sh_dc.data(),
+      .sh_rest = g.sh_rest.data(),
+      .visibility = g.visibility.data(),
+      .half_depths = g.half_depths.data(),
+      .origins = g.rays.origins.data(),
+      .directions = g.rays.directions.data()};
 }
 inline TraceCutoffs cutoffs(const TraceSettings& s) {
   return {s.near, s.max_rho, s.min_alpha, s.min_transmittance, s.max_hits};
 }
+inline DeviceTraceCall device_call(const TraceCall& call, const TraceOutput& output) {
+  return {
+      .input = device_input(call.input),
+      .rays = {call.rays.origins.data(), call.rays.directions.data()},
+      .num_rays = call.rays.origins.num_pixels(),
+      .cutoffs = cutoffs(call.settings),
+      .out = device_output(output)};
+}
 
 template <class Exec>
-class TracerOn final : public GpuTracer {
+class TracerOn final : public TraceBackend {
  public:
-  void forward(
-      const TraceInput& input, const Rays& rays, const TraceSettings& settings, TraceOutput& output
-  ) override {
-    pipeline_.forward(
-        device_input(input),
-        {rays.origins.data(), rays.directions.data()},
-        rays.origins.num_pixels(),
-        cutoffs(settings),
-        device_output(output)
-    );
+  void forward(const TraceCall& call, TraceOutput& output) override {
+    pipeline_.forward(device_call(call, output));
   }
   void backward(
-      const TraceInput& input,
-      const Rays& rays,
-      const TraceSettings& settings,
-      const TraceOutput& output,
+      const TraceCall&,
+      const TraceOutput&,
       const TraceOutputGradient& dL_doutput,
-      TraceGradient& g
+      TraceGradient& gradient
   ) override {
-    pipeline_.backward(
-        device_input(input),
-        {rays.origins.data(), rays.directions.data()},
-        cutoffs(settings),
-        device_output(output),
-        device_output(dL_doutput),
-        g.rays.origins.data(),
-        g.rays.directions.data(),
-        {g.means.data(),
-         g.scales.data(),
-         g.rotations.data(),
-         g.opacities.data(),
-         g.sh_dc.data(),
-         g.sh_rest.data(),
-         g.visibility.data(),
-         g.half_depths.data()}
-    );
+    pipeline_.backward(device_output(dL_doutput), device_gradients(gradient));
   }
-  std::size_t num_hits() const override { return pipeline_.num_hits(); }
+  std::size_t num_hits() override { return pipeline_.num_hits(); }
 
  private:
-  mutable TracePipeline<Exec> pipeline_{executor<Exec>()};
+  TracePipeline<Exec> pipeline_{executor<Exec>()};
 };
 
 // Ops run on Exec from now on; `backend` offers its memory.
 template <class Exec>
 void use_executor(const DeviceBackend& backend) {
-  RunKernels::template offer_runs<Exec>();
-  SumKernels::template offer_sums<Exec>();
-  gpu_ops.rasterizer = []() -> std::unique_ptr<GpuRasterizer> {
+  offer_lists<Exec>(KernelLists{});
+  gpu_ops.rasterizer = []() -> std::unique_ptr<RasterBackend> {
     return std::make_unique<RasterizerOn<Exec>>();
   };
-  gpu_ops.tracer = []() -> std::unique_ptr<GpuTracer> {
+  gpu_ops.tracer = []() -> std::unique_ptr<TraceBackend> {
     return std::make_unique<TracerOn<Exec>>();
   };
   use_gpu(backend);

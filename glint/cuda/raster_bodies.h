@@ -56,7 +56,7 @@ struct ProjectSurfels {
     const float opacity = surfels.opacities[i];
     const ProjectedSurfel<float> p =
         project_surfel(geometry_at(surfels, i), camera, max_rho_of(opacity));
-    splats[i] = {p.map, p.x_ref, p.y_ref, p.center_x, p.center_y, opacity, p.z_center, p.normal};
+    splats[i] = splat_of(p, opacity);
     boxes[i] = pixel_box(p.box_min_x, p.box_max_x, p.box_min_y, p.box_max_y, camera);
     num_tiles[i] = tile_rect(boxes[i]).count();
   }
@@ -130,9 +130,21 @@ struct TilePass {
   int width, height, channels;
   DistortionRange range;
 
+  GLINT_HD const float* feature(std::uint32_t surfel) const {
+    return features + static_cast<std::size_t>(surfel) * static_cast<std::size_t>(channels);
+  }
+  template <int kChannels>
+  GLINT_HD MapChannels maps() const {
+    return {kChannels > 0 ? kChannels : channels, range.on};
+  }
   GLINT_HD int tile_x(int tile) const { return tile % tile_grid(width, height).across; }
   GLINT_HD int tile_y(int tile) const { return tile / tile_grid(width, height).across; }
 };
+
+// Of a channel of pixel i in a map of so many.
+GLINT_HD std::size_t place(std::size_t i, int channels, int channel) {
+  return i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(channel);
+}
 
 // A pixel while its tile is traversed.
 struct TilePixel {
@@ -186,22 +198,18 @@ GLINT_HD int batch_size(std::uint32_t first, std::uint32_t end) {
   return static_cast<int>(left < kTileThreads ? left : std::uint32_t{kTileThreads});
 }
 
-// Images in device memory; shapes of RasterOutput, of which empty ones are null.
-struct DeviceImages {
-  float *features, *alpha, *depth_sum, *depth_median, *normal, *distortion;
-};
-// What the backward pass needs beside them.
-struct DeviceSums {
-  float *final_transmittance, *first_depth, *moment1, *moment2;
-};
+// In device memory: images with the shapes of RasterOutput, null where there are none, and what the
+// backward pass needs beside them.
+using DeviceMaps = RasterMaps<PointerMap>;
+using DeviceKept = KeptMaps<PointerMap>;
 
 template <int kChannels>
 struct ForwardTile {
   static constexpr int kThreads = kTileThreads;
   using Shared = SplatBatch;
   TilePass pass;
-  DeviceImages out;
-  DeviceSums saved;
+  DeviceMaps out;
+  DeviceKept kept;
   float* visibility;  // [N]
 
   template <class Block>
@@ -239,29 +247,32 @@ struct ForwardTile {
   ) const {
     SplatHit<float> hit;
     if (!pixel.live() || !pixel.composite(shared.splats[k], hit)) return false;
-    const float* feature = pass.features + static_cast<std::size_t>(shared.surfels[k]) *
-                                               static_cast<std::size_t>(pass.channels);
-    sums.add(hit, feature, pass.channels, shared.splats[k].normal, pass.range);
+    const float* feature = pass.feature(shared.surfels[k]);
+    sums.add(hit, shared.splats[k], feature, pass.channels, pass.range);
     weight = hit.weight;
     return true;
   }
-  GLINT_HD void store(const TilePixel& pixel, const PixelSums<float, kChannels>& sums) const {
+  GLINT_HD void store(const TilePixel& pixel, PixelSums<float, kChannels>& sums) const {
     if (!pixel.inside) return;
     const std::size_t i = pixel.index(pass);
-    const float transmittance = abs_of(pixel.transmittance), alpha = 1 - transmittance;
-    for (int c = 0; c < pass.channels; ++c)
-      out.features[i * static_cast<std::size_t>(pass.channels) + static_cast<std::size_t>(c)] =
-          sums.features[c];
-    for (std::size_t c = 0; c < 3; ++c) out.normal[3 * i + c] = sums.normal[c];
-    out.alpha[i] = alpha;
-    out.depth_sum[i] = sums.depth;
-    out.depth_median[i] = sums.median;
-    saved.final_transmittance[i] = transmittance;
-    if (!pass.range.on) return;
-    saved.first_depth[i] = sums.first_depth;
-    saved.moment1[i] = sums.moment1;
-    saved.moment2[i] = sums.moment2;
-    out.distortion[i] = distortion(alpha, sums.moment1, sums.moment2);
+    sums.finish(abs_of(pixel.transmittance), pass.range);
+    const auto store_map = [i](int width, const float* values, float* map) {
+      for (int c = 0; c < width; ++c) map[place(i, width, c)] = values[c];
+    };
+    for_each_map(
+        pass.maps<kChannels>(),
+        [&](const char*, int width, const float* values, float* map) {
+          store_map(width, values, map);
+        },
+        sums.maps,
+        out
+    );
+    for_each_kept_map(
+        pass.maps<kChannels>(),
+        [&](int width, float, const float* values, float* map) { store_map(width, values, map); },
+        sums.kept,
+        kept
+    );
   }
 };
 
@@ -271,8 +282,8 @@ struct BackwardTile {
   static constexpr int kSums = splat_sums(kChannels > 0 ? kChannels : kMaxChannels);
   using Shared = SplatBatch;
   TilePass pass;
-  DeviceImages out, dL_dout;
-  DeviceSums saved;
+  DeviceMaps out, dL_dout;
+  DeviceKept kept;
   float* gradients;  // [N][kSums]
 
   template <class Block>
@@ -300,32 +311,31 @@ struct BackwardTile {
   }
 
  private:
-  GLINT_HD static float at(const float* image, std::size_t i) {
-    return image == nullptr ? 0.0f : image[i];
-  }
   GLINT_HD void start(std::size_t i, PixelGradient<float, kChannels>& state) const {
-    PixelSums<float, kChannels> sums;
-    sums.depth = out.depth_sum[i];
-    state.total_alpha = out.alpha[i];
-    state.alpha = at(dL_dout.alpha, i);
-    state.depth = at(dL_dout.depth_sum, i);
-    state.median = at(dL_dout.depth_median, i);
-    const auto channels = static_cast<std::size_t>(pass.channels);
-    for (std::size_t c = 0; c < channels; ++c) {
-      state.features[c] = at(dL_dout.features, channels * i + c);
-      sums.features[c] = out.features[channels * i + c];
-    }
-    for (std::size_t c = 0; c < 3; ++c) {
-      state.normal[c] = at(dL_dout.normal, 3 * i + c);
-      sums.normal[c] = out.normal[3 * i + c];
-    }
-    if (pass.range.on) {
-      state.distortion = at(dL_dout.distortion, i);
-      state.first_depth = saved.first_depth[i];
-      state.moment1 = saved.moment1[i];
-      state.moment2 = saved.moment2[i];
-    }
-    state.start(sums, saved.final_transmittance[i], pass.channels, pass.range.on);
+    PixelMaps<float, kChannels> maps;
+    for_each_map(
+        pass.maps<kChannels>(),
+        [i](const char*, int width, float* dL, float* values, const float* dL_dmap, const float* map
+        ) {
+          for (int c = 0; c < width; ++c) {
+            dL[c] = dL_dmap == nullptr ? 0.0f : dL_dmap[place(i, width, c)];
+            values[c] = map[place(i, width, c)];
+          }
+        },
+        state.dL,
+        maps,
+        dL_dout,
+        out
+    );
+    for_each_kept_map(
+        pass.maps<kChannels>(),
+        [i](int width, float, float* values, const float* map) {
+          if (width > 0) *values = map[i];
+        },
+        state.kept,
+        kept
+    );
+    state.start(maps, pass.channels, pass.range.on);
   }
   GLINT_HD bool step(
       const Shared& shared,
@@ -336,8 +346,7 @@ struct BackwardTile {
   ) const {
     SplatHit<float> hit;
     if (!pixel.live() || !pixel.composite(shared.splats[k], hit)) return false;
-    const float* feature = pass.features + static_cast<std::size_t>(shared.surfels[k]) *
-                                               static_cast<std::size_t>(pass.channels);
+    const float* feature = pass.feature(shared.surfels[k]);
     state.hit(hit, shared.splats[k], feature, pass.channels, pass.range, sums);
     return true;
   }
@@ -361,13 +370,7 @@ struct SurfelVjp {
   GLINT_HD void operator()(std::size_t i) const {
     const float* s = sums + i * static_cast<std::size_t>(stride);
     const bool seen = num_tiles[i] > 0;
-    const auto at3 = [&](int k) { return Vec3f{s[k], s[k + 1], s[k + 2]}; };
-    ProjectedSurfel<float> g{};
-    g.map = {at3(kSumGx), at3(kSumGy), at3(kSumG0), s[kSumDet]};
-    g.center_x = s[kSumCenterX];
-    g.center_y = s[kSumCenterY];
-    g.z_center = s[kSumZCenter];
-    g.normal = at3(kSumNormal);
+    const ProjectedSurfel<float> g = projected_gradient<float>([s](int slot) { return s[slot]; });
     SurfelGeometry<float> dL_dsurfel{};
     Vec3f dL_dm{};
     // Surfels without pairs get exact zeros, whatever their parameters (they may not be finite).

@@ -10,68 +10,55 @@
 
 namespace glint::gpu {
 
+// A rasterisation in device memory; shapes of RasterCall and RasterOutput.
+struct DeviceRasterCall {
+  DeviceSurfels surfels;
+  CameraOf<float> camera;
+  const float* near_limit;  // null: none
+  DistortionRange range;
+  DeviceMaps out;
+  float* visibility;
+  std::uint8_t* in_view;
+};
+
 template <class Exec>
 class RasterPipeline {
  public:
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
+  template <int>
+  using BufferMap = Buffer<float>;
 
   explicit RasterPipeline(Exec& exec) : exec_(exec) {}
 
-  void forward(
-      const DeviceSurfels& surfels,
-      const CameraOf<float>& camera,
-      const float* near_limit,
-      const DistortionRange& range,
-      const DeviceImages& out,
-      float* visibility,
-      std::uint8_t* in_view
-  ) {
-    list_tiles(surfels, camera);
-    exec_.for_each(surfels.count, ResetVisibility{num_tiles_.data(), visibility, in_view});
-    const auto pixels = static_cast<std::size_t>(pass_.width * pass_.height);
-    final_transmittance_.resize(pixels);
-    for (auto* image : {&first_depth_, &moment1_, &moment2_}) image->resize(range.on ? pixels : 0);
+  void forward(const DeviceRasterCall& call) {
+    call_ = call;
+    list_tiles(call.surfels, call.camera);
+    exec_.for_each(
+        call.surfels.count, ResetVisibility{num_tiles_.data(), call.visibility, call.in_view}
+    );
+    fit_kept();
     pass_.splats = splats_.data();
-    pass_.features = surfels.features;
+    pass_.features = call.surfels.features;
     pass_.pairs = pair_surfels_.data();
     pass_.ranges = ranges_.data();
-    pass_.near_limit = near_limit;
-    pass_.near_plane = camera.near_plane;
-    pass_.channels = surfels.channels;
-    pass_.range = range;
-    with_channels([&]<int kChannels>() {
-      exec_.launch(ranges_.size(), ForwardTile<kChannels>{pass_, out, sums(), visibility});
+    pass_.near_limit = call.near_limit;
+    pass_.near_plane = call.camera.near_plane;
+    pass_.channels = call.surfels.channels;
+    pass_.range = call.range;
+    with_channels(pass_.channels, [&]<int kChannels>() {
+      exec_.launch(ranges_.size(), ForwardTile<kChannels>{pass_, call.out, kept_, call.visibility});
     });
   }
 
   // Of the last forward call.
-  void backward(
-      const DeviceSurfels& surfels,
-      const CameraOf<float>& camera,
-      const DeviceImages& out,
-      const DeviceImages& dL_dout,
-      const DeviceGradients& gradients
-  ) {
-    with_channels([&]<int kChannels>() {
-      constexpr int kSums = BackwardTile<kChannels>::kSums;
-      gradient_sums_.resize(surfels.count * kSums);
+  void backward(const DeviceMaps& dL_dout, const DeviceGradients& gradients) {
+    with_channels(pass_.channels, [&]<int kChannels>() {
+      using Tile = BackwardTile<kChannels>;
+      gradient_sums_.resize(call_.surfels.count * Tile::kSums);
       exec_.fill_zero(gradient_sums_);
-      exec_.launch(
-          ranges_.size(),
-          BackwardTile<kChannels>{pass_, out, dL_dout, sums(), gradient_sums_.data()}
-      );
-      exec_.for_each(
-          surfels.count,
-          SurfelVjp{
-              surfels,
-              camera,
-              splats_.data(),
-              num_tiles_.data(),
-              gradient_sums_.data(),
-              kSums,
-              gradients}
-      );
+      exec_.launch(ranges_.size(), Tile{pass_, call_.out, dL_dout, kept_, gradient_sums_.data()});
+      vjp_of_surfels(Tile::kSums, gradients);
     });
   }
 
@@ -117,17 +104,34 @@ class RasterPipeline {
     exec_.fill_zero(ranges_);
     exec_.for_each(num_pairs_, FindTileRanges{keys_.data(), num_pairs_, ranges_.data()});
   }
-  DeviceSums sums() {
-    return {final_transmittance_.data(), first_depth_.data(), moment1_.data(), moment2_.data()};
+  void vjp_of_surfels(int stride, const DeviceGradients& gradients) {
+    exec_.for_each(
+        call_.surfels.count,
+        SurfelVjp{
+            call_.surfels,
+            call_.camera,
+            splats_.data(),
+            num_tiles_.data(),
+            gradient_sums_.data(),
+            stride,
+            gradients}
+    );
   }
-  template <class F>
-  void with_channels(F&& body) {
-    if (pass_.channels == 3) return body.template operator()<3>();
-    if (pass_.channels == 5) return body.template operator()<5>();
-    body.template operator()<0>();
+  void fit_kept() {
+    const auto pixels = static_cast<std::size_t>(pass_.width * pass_.height);
+    for_each_kept_map(
+        {call_.surfels.channels, call_.range.on},
+        [&](int width, float, float*& map, Buffer<float>& memory) {
+          memory.resize(static_cast<std::size_t>(width) * pixels);
+          map = memory.data();
+        },
+        kept_,
+        kept_memory_
+    );
   }
 
   Exec& exec_;
+  DeviceRasterCall call_{};
   TilePass pass_{};
   std::size_t num_pairs_ = 0;
   Buffer<Splat> splats_;
@@ -135,7 +139,8 @@ class RasterPipeline {
   Buffer<std::uint32_t> num_tiles_, first_pair_, pair_surfels_;
   Buffer<std::uint64_t> keys_;
   Buffer<PairRange> ranges_;
-  Buffer<float> final_transmittance_, first_depth_, moment1_, moment2_;
+  KeptMaps<BufferMap> kept_memory_;
+  DeviceKept kept_;
   Buffer<float> gradient_sums_;
 };
 

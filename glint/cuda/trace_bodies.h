@@ -336,8 +336,10 @@ struct BackwardRays {
   }
 };
 
+// Shapes of TraceGradient.
 struct DeviceTraceGradients {
   float *means, *scales, *rotations, *opacities, *sh_dc, *sh_rest, *visibility, *half_depths;
+  float *origins, *directions;
 };
 
 // From the sums back to a surfel's parameters.

@@ -9,6 +9,15 @@
 
 namespace glint::gpu {
 
+// A call in device memory; shapes of TraceCall and TraceOutput.
+struct DeviceTraceCall {
+  DeviceTraceInput input;
+  DeviceRays rays;
+  std::size_t num_rays;
+  TraceCutoffs cutoffs;
+  DeviceTraceOutput out;
+};
+
 template <class Exec>
 class TracePipeline {
  public:
@@ -17,53 +26,40 @@ class TracePipeline {
 
   explicit TracePipeline(Exec& exec) : exec_(exec) {}
 
-  void forward(
-      const DeviceTraceInput& input,
-      const DeviceRays& rays,
-      std::size_t num_rays,
-      const TraceCutoffs& cutoffs,
-      const DeviceTraceOutput& out
-  ) {
-    update_tree(input, cutoffs);
-    num_rays_ = num_rays;
-    counts_.resize(num_rays);
-    hits_.resize(num_rays * static_cast<std::size_t>(cutoffs.max_hits));
-    exec_.for_each(num_rays, ForwardRays{tree(), input, rays, cutoffs, out, saved()});
+  void forward(const DeviceTraceCall& call) {
+    call_ = call;
+    update_tree(call.input, call.cutoffs);
+    counts_.resize(call.num_rays);
+    hits_.resize(call.num_rays * static_cast<std::size_t>(call.cutoffs.max_hits));
+    exec_.for_each(
+        call.num_rays, ForwardRays{tree(), call.input, call.rays, call.cutoffs, call.out, saved()}
+    );
   }
   // Of the last forward call.
-  void backward(
-      const DeviceTraceInput& input,
-      const DeviceRays& rays,
-      const TraceCutoffs& cutoffs,
-      const DeviceTraceOutput& out,
-      const DeviceTraceOutput& dL_dout,
-      float* dL_dorigins,
-      float* dL_ddirections,
-      const DeviceTraceGradients& gradients
-  ) {
-    sums_.resize(input.count * kTraceSums);
+  void backward(const DeviceTraceOutput& dL_dout, const DeviceTraceGradients& gradients) {
+    sums_.resize(call_.input.count * kTraceSums);
     exec_.fill_zero(sums_);
     exec_.for_each(
-        num_rays_,
+        call_.num_rays,
         BackwardRays{
             discs_.data(),
-            input,
-            rays,
-            cutoffs,
-            out,
+            call_.input,
+            call_.rays,
+            call_.cutoffs,
+            call_.out,
             dL_dout,
             saved(),
             sums_.data(),
-            dL_dorigins,
-            dL_ddirections}
+            gradients.origins,
+            gradients.directions}
     );
-    exec_.for_each(input.count, DiscVjp{input, sums_.data(), gradients});
+    exec_.for_each(call_.input.count, DiscVjp{call_.input, sums_.data(), gradients});
   }
 
   // Contributors of all rays of the last forward call. Waits for the device.
   std::size_t num_hits() {
-    std::vector<std::uint32_t> counts(num_rays_);
-    exec_.download(counts_, num_rays_, counts.data());
+    std::vector<std::uint32_t> counts(call_.num_rays);
+    exec_.download(counts_, call_.num_rays, counts.data());
     return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   }
 
@@ -102,8 +98,8 @@ class TracePipeline {
   DeviceHits saved() { return {counts_.data(), hits_.data()}; }
 
   Exec& exec_;
+  DeviceTraceCall call_{};
   int updates_ = 0;
-  std::size_t num_rays_ = 0;
   Buffer<DiscSurfel> discs_;
   Buffer<Box> partial_bounds_, bounds_;
   Buffer<std::uint64_t> keys_;

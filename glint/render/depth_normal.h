@@ -30,4 +30,21 @@ GLINT_HD void normal_from_differences_vjp(
   dL_dright_left += cross(g, down_up);
 }
 
+// n = N / |N| of a composited normal. A shorter N counts as no normal and gives zero: one surfel
+// that counts leaves at least its alpha, 1/255.
+inline constexpr float kMinNormalLength = 1e-6f;
+template <class T>
+GLINT_HD Vec3<T> unit_normal(Vec3<T> composited) {
+  const T norm = length(composited);
+  const T at_least = max_of(norm, T(kMinNormalLength));
+  return select(norm > T(kMinNormalLength), (T(1) / at_least) * composited, Vec3<T>{});
+}
+template <class T>
+GLINT_HD void unit_normal_vjp(Vec3<T> composited, Vec3<T> dL_dunit, Vec3<T>& dL_dcomposited) {
+  const T norm = length(composited);
+  const T at_least = max_of(norm, T(kMinNormalLength));
+  const Vec3<T> g = normalize_vjp(unit_normal(composited), at_least, dL_dunit);
+  dL_dcomposited += select(norm > T(kMinNormalLength), g, Vec3<T>{});
+}
+
 }  // namespace glint

@@ -3,93 +3,129 @@
 // the text of every rasteriser backend. kChannels: feature channels; 0: known at run time only.
 #pragma once
 
+#include <utility>
+
+#include "glint/render/raster_maps.h"
 #include "glint/render/splat_hit.h"
 
 namespace glint {
 
 inline constexpr int kMaxChannels = 16;
 
+// Feature channels with code of their own: those that methods use. Others share one.
+using ChannelCounts = std::integer_sequence<int, 3, 4, 5>;
+
+// body<kChannels>() of a call with so many feature channels.
+template <class F>
+void with_channels(int channels, F&& body) {
+  [&]<int... kCounts>(std::integer_sequence<int, kCounts...>) {
+    const bool found =
+        ((channels == kCounts && (body.template operator()<kCounts>(), true)) || ...);
+    if (!found) body.template operator()<0>();
+  }
+  (ChannelCounts{});
+}
+
 struct DistortionRange {
   bool on = false;
   float near = 0.2f, far = 100.0f;
 };
 
+// A pixel's numbers as the lists of raster_maps.h hold them.
+template <class T>
+struct PixelOf {
+  template <int kWidth>
+  using Map = T[kWidth > 0 ? kWidth : kMaxChannels];
+};
+template <class T, int kChannels>
+using PixelMaps = RasterMaps<PixelOf<T>::template Map, kChannels>;
+template <class T>
+using PixelKept = KeptMaps<PixelOf<T>::template Map>;
+
 template <class T, int kChannels>
 struct PixelSums {
-  static constexpr int kRoom = kChannels > 0 ? kChannels : kMaxChannels;
-  T features[kRoom], normal[3];
-  T depth, median;
-  T first_depth, moment1, moment2;  // of the distortion
+  PixelMaps<T, kChannels> maps;
+  PixelKept<T> kept;
 
   GLINT_HD void clear() {
-    for (T& feature : features) feature = T(0);
-    for (T& axis : normal) axis = T(0);
-    depth = median = moment1 = moment2 = T(0);
-    first_depth = T(1);
+    for_each_map(
+        {kChannels > 0 ? kChannels : kMaxChannels, true},
+        [](const char*, int width, T* values) {
+          for (int c = 0; c < width; ++c) values[c] = T(0);
+        },
+        maps
+    );
+    for_each_kept_map(
+        {0, true}, [](int, float empty, T* value) { *value = T(empty); }, kept
+    );
   }
   GLINT_HD void add(
       const SplatHit<T>& hit,
+      const Splat& splat,
       const float* feature,
       int channels,
-      Vec3f splat_normal,
       const DistortionRange& range
   ) {
-    for (int c = 0; c < (kChannels > 0 ? kChannels : channels); ++c)
-      features[c] = fma_of(hit.weight, T(feature[c]), features[c]);
-    depth = fma_of(hit.weight, hit.depth, depth);
-    for (int c = 0; c < 3; ++c) normal[c] = fma_of(hit.weight, T(splat_normal[c]), normal[c]);
+    for_each_attribute(
+        splat,
+        feature,
+        kChannels > 0 ? kChannels : channels,
+        [&](const auto& value, int, int width, T* sum) {
+          for (int c = 0; c < width; ++c) sum[c] = fma_of(hit.weight, T(value[c]), sum[c]);
+        },
+        maps
+    );
+    *maps.depth_sum = fma_of(hit.weight, hit.depth, *maps.depth_sum);
     const auto is_median = hit.valid & (hit.transmittance > T(0.5f));
-    median = select(is_median, hit.depth, median);
+    *maps.depth_median = select(is_median, hit.depth, *maps.depth_median);
     if (range.on) add_moments(hit, range);
+  }
+  // Behind the last hit.
+  GLINT_HD void finish(T transmittance, const DistortionRange& range) {
+    *kept.transmittance = transmittance;
+    *maps.alpha = T(1) - transmittance;
+    if (range.on) *maps.distortion = distortion(*maps.alpha, *kept.moment1, *kept.moment2);
   }
 
  private:
   GLINT_HD void add_moments(const SplatHit<T>& hit, const DistortionRange& range) {
+    T& first = *kept.first_depth;
     const T z = select(hit.valid, hit.depth, T(1));
-    first_depth = select(hit.valid & (hit.transmittance >= T(1)), z, first_depth);
-    const T m = distortion_depth(z, first_depth, T(range.near), T(range.far));
-    moment1 = fma_of(hit.weight, m, moment1);
-    moment2 = fma_of(hit.weight, m * m, moment2);
+    first = select(hit.valid & (hit.transmittance >= T(1)), z, first);
+    const T m = distortion_depth(z, first, T(range.near), T(range.far));
+    *kept.moment1 = fma_of(hit.weight, m, *kept.moment1);
+    *kept.moment2 = fma_of(hit.weight, m * m, *kept.moment2);
   }
 };
 
-// Sums over pixels that one splat hands back to its surfel.
-enum SplatSum {
-  kSumGx = 0,  // 3: zeta's gradient times X
-  kSumGy = 3,  // 3: times Y
-  kSumG0 = 6,  // 3
-  kSumDet = 9,
-  kSumOpacity = 10,
-  kSumCenterX = 11,
-  kSumCenterY = 12,
-  kSumZCenter = 13,
-  kSumNormal = 14,   // 3
-  kSumFeatures = 17  // channels
-};
-constexpr int splat_sums(int channels) { return (kSumFeatures + channels + 7) / 8 * 8; }
-
-// dL/d(sums of a pixel), and what the way back needs of the sums themselves.
+// dL/d(maps of a pixel), and what the way back needs of the maps themselves.
 template <class T, int kChannels>
 struct PixelGradient {
-  static constexpr int kRoom = kChannels > 0 ? kChannels : kMaxChannels;
-  T features[kRoom], normal[3];
-  T alpha, depth, median, distortion;
-  T total_alpha, first_depth, moment1, moment2;
-  T median_behind;  // the median hit is the first to leave this or less
-  T remaining;      // S minus the prefix so far, see blend_alpha_vjp
+  PixelMaps<T, kChannels> dL;
+  PixelKept<T> kept;
+  T total_alpha;
+  T median_behind;  // transmittance at or below which a hit may be the median
+  T remaining;      // sum w dL/dw of the hits not met yet
 
-  // From dL/d(outputs) and the outputs, all set but the last two.
-  GLINT_HD void start(
-      const PixelSums<T, kChannels>& sums, T final_transmittance, int channels, bool with_distortion
-  ) {
-    median_behind = max_of(T(0.5f), final_transmittance);
-    remaining = alpha * total_alpha + depth * sums.depth;
-    for (int c = 0; c < (kChannels > 0 ? kChannels : channels); ++c)
-      remaining = fma_of(features[c], sums.features[c], remaining);
-    for (int c = 0; c < 3; ++c) remaining = fma_of(normal[c], sums.normal[c], remaining);
+  // From the maps, dL/d(maps) and `kept`; before the first hit.
+  GLINT_HD void start(const PixelMaps<T, kChannels>& maps, int channels, bool with_distortion) {
+    total_alpha = *maps.alpha;
+    median_behind = max_of(T(0.5f), *kept.transmittance);
+    remaining = *dL.alpha * total_alpha + *dL.depth_sum * *maps.depth_sum;
+    for_each_attribute(
+        Splat{},  // no values are looked at
+        nullptr,
+        kChannels > 0 ? kChannels : channels,
+        [&](const auto&, int, int width, const T* gradient, const T* sum) {
+          for (int c = 0; c < width; ++c) remaining = fma_of(gradient[c], sum[c], remaining);
+        },
+        dL,
+        maps
+    );
     // sum w dL/dw of the distortion is twice the distortion itself: it is quadratic in w.
     if (with_distortion)
-      remaining += T(2) * distortion * (total_alpha * moment2 - moment1 * moment1);
+      remaining +=
+          T(2) * *dL.distortion * (total_alpha * *kept.moment2 - *kept.moment1 * *kept.moment1);
   }
   // Back through one hit, front to back. out: SplatSum, added to.
   GLINT_HD void hit(
@@ -100,19 +136,23 @@ struct PixelGradient {
       const DistortionRange& range,
       T* out
   ) {
-    T value = fma_of(depth, hit.depth, alpha);
-    for (int c = 0; c < (kChannels > 0 ? kChannels : channels); ++c) {
-      value = fma_of(features[c], T(feature[c]), value);
-      out[kSumFeatures + c] = fma_of(hit.weight, features[c], out[kSumFeatures + c]);
-    }
-    for (int c = 0; c < 3; ++c) {
-      value = fma_of(normal[c], T(splat.normal[c]), value);
-      out[kSumNormal + c] = fma_of(hit.weight, normal[c], out[kSumNormal + c]);
-    }
+    T value = fma_of(*dL.depth_sum, hit.depth, *dL.alpha);
+    for_each_attribute(
+        splat,
+        feature,
+        kChannels > 0 ? kChannels : channels,
+        [&](const auto& attribute, int slot, int width, const T* gradient) {
+          for (int c = 0; c < width; ++c) {
+            value = fma_of(gradient[c], T(attribute[c]), value);
+            out[slot + c] = fma_of(hit.weight, gradient[c], out[slot + c]);
+          }
+        },
+        dL
+    );
     // The last hit in front of which more than half of the light is left.
     const auto is_median =
         (hit.transmittance > T(0.5f)) & (hit.transmittance_behind <= median_behind);
-    T dL_dz = fma_of(hit.weight, depth, keep(is_median, median));
+    T dL_dz = fma_of(hit.weight, *dL.depth_sum, keep(is_median, *dL.depth_median));
     if (range.on) add_distortion(hit, range, value, dL_dz);
     remaining = remaining - hit.weight * value;
     const T dL_dalpha = blend_alpha_vjp(hit.transmittance, hit.alpha.alpha, value, remaining);
@@ -125,9 +165,9 @@ struct PixelGradient {
   ) const {
     const T z = select(hit.valid, hit.depth, T(1));
     const T near(range.near), far(range.far);
-    const T m = distortion_depth(z, first_depth, near, far);
-    value += distortion * distortion_dweight(m, total_alpha, moment1, moment2);
-    const T dL_dm = distortion * distortion_dm(hit.weight, m, total_alpha, moment1);
+    const T m = distortion_depth(z, *kept.first_depth, near, far);
+    value += *dL.distortion * distortion_dweight(m, total_alpha, *kept.moment1, *kept.moment2);
+    const T dL_dm = *dL.distortion * distortion_dm(hit.weight, m, total_alpha, *kept.moment1);
     dL_dz += distortion_depth_vjp(z, near, far, dL_dm);
   }
   // From alpha and depth of the hit.

@@ -9,34 +9,20 @@
 
 namespace glint {
 
+static float lane_of(Float8 v, int i) { return v[i]; }  // for splat_of()
+
 namespace {
 
 constexpr std::size_t kGrain = 1024;  // surfels a block
 
-float lane(float v, int) { return v; }
-float lane(Float8 v, int i) { return v[i]; }
-template <class T>
-Vec3f lane(Vec3<T> v, int i) {
-  return {lane(v.x, i), lane(v.y, i), lane(v.z, i)};
-}
-
-template <class T>
-Splat splat_of(const ProjectedSurfel<T>& p, int i, float opacity) {
-  return {
-      {lane(p.map.gx, i), lane(p.map.gy, i), lane(p.map.g0, i), lane(p.map.det, i)},
-      lane(p.x_ref, i),
-      lane(p.y_ref, i),
-      lane(p.center_x, i),
-      lane(p.center_y, i),
-      opacity,
-      lane(p.z_center, i),
-      lane(p.normal, i)};
-}
-
 template <class T>
 PixelBox pixel_box_of(const ProjectedSurfel<T>& p, int i, const CameraOf<float>& camera) {
   return pixel_box(
-      lane(p.box_min_x, i), lane(p.box_max_x, i), lane(p.box_min_y, i), lane(p.box_max_y, i), camera
+      lane_of(p.box_min_x, i),
+      lane_of(p.box_max_x, i),
+      lane_of(p.box_min_y, i),
+      lane_of(p.box_max_y, i),
+      camera
   );
 }
 
@@ -50,7 +36,7 @@ void project_lanes(
       load_geometry<T>(input, first), broadcast_camera<T>(camera), load_lanes<T>(max_rho)
   );
   for (int i = 0; i < kLanesOf<T>; ++i) {
-    lists.splats[first + i] = splat_of(p, i, input.opacities[first + i]);
+    lists.splats[first + i] = splat_of(p, input.opacities[first + i], i);
     lists.boxes[first + i] = pixel_box_of(p, i, camera);
   }
 }
@@ -139,7 +125,8 @@ void list_tiles(TileLists& lists) {
 
 }  // namespace
 
-CameraOf<float> camera_of(const Camera& camera, float near_plane) {
+CameraOf<float> camera_of(const RasterCall& call) {
+  const Camera& camera = call.camera;
   return {
       cast<float>(camera.rotation_cam_from_world),
       cast<float>(camera.translation_cam_from_world),
@@ -149,7 +136,7 @@ CameraOf<float> camera_of(const Camera& camera, float near_plane) {
       static_cast<float>(camera.cy),
       static_cast<float>(camera.width),
       static_cast<float>(camera.height),
-      near_plane};
+      call.settings.near_plane};
 }
 
 template <class T>
@@ -166,12 +153,10 @@ SurfelGeometry<T> load_geometry(const RasterInput& input, std::size_t i) {
 template SurfelGeometry<float> load_geometry(const RasterInput&, std::size_t);
 template SurfelGeometry<Float8> load_geometry(const RasterInput&, std::size_t);
 
-void build_tile_lists(
-    const RasterInput& input, const Camera& camera, float near_plane, bool scalar, TileLists& lists
-) {
-  lists.tiles_x = (camera.width + kTileSize - 1) / kTileSize;
-  lists.tiles_y = (camera.height + kTileSize - 1) / kTileSize;
-  project_all(input, camera_of(camera, near_plane), scalar, lists);
+void build_tile_lists(const RasterCall& call, TileLists& lists) {
+  lists.tiles_x = (call.camera.width + kTileSize - 1) / kTileSize;
+  lists.tiles_y = (call.camera.height + kTileSize - 1) / kTileSize;
+  project_all(call.input, camera_of(call), call.settings.scalar, lists);
   sort_by_depth(lists);
   list_tiles(lists);
 }

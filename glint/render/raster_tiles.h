@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "glint/render/pixel_pass.h"
 #include "glint/render/radix_sort.h"
 #include "glint/render/rasterize.h"
-#include "glint/render/splat_hit.h"
 
 namespace glint {
 
@@ -31,7 +31,10 @@ struct TileLists {
   std::vector<KeyedIndex> order, scratch;  // reused between calls
 };
 
-CameraOf<float> camera_of(const Camera& camera, float near_plane);
+CameraOf<float> camera_of(const RasterCall& call);
+inline DistortionRange distortion_range(const RasterSettings& settings) {
+  return {settings.with_distortion, settings.distortion_near, settings.distortion_far};
+}
 template <class T>
 CameraOf<T> broadcast_camera(const CameraOf<float>& c) {
   const auto lift = [](Vec3f v) { return Vec3<T>{T(v.x), T(v.y), T(v.z)}; };
@@ -51,9 +54,6 @@ CameraOf<T> broadcast_camera(const CameraOf<float>& c) {
 template <class T>
 SurfelGeometry<T> load_geometry(const RasterInput& input, std::size_t i);
 
-// Fills `lists`. scalar: without SIMD lanes (for perf).
-void build_tile_lists(
-    const RasterInput& input, const Camera& camera, float near_plane, bool scalar, TileLists& lists
-);
+void build_tile_lists(const RasterCall& call, TileLists& lists);  // fills `lists`
 
 }  // namespace glint

@@ -1,26 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "glint/render/rasterize.h"
 
+#include <optional>
+
 #include "glint/core/error.h"
-#include "glint/render/gpu_ops.h"
+#include "glint/render/op_backends.h"
 #include "glint/render/pixel_pass.h"
-#include "glint/render/raster_saved.h"
 
 namespace glint {
 
-struct Rasterizer::Backends {
-  RasterSaved cpu;
-  std::unique_ptr<GpuRasterizer> gpu;  // once the GPU was in use
+struct Rasterizer::State {
+  std::optional<RasterCall> call;
+  RasterOutput output;
+  RasterGradient gradient;
+  DeviceChoice<RasterBackend> devices;
 
-  GpuRasterizer& on_gpu() {
-    if (gpu == nullptr) gpu = gpu_ops.rasterizer();
-    return *gpu;
+  RasterBackend& device() { return devices.on(on_gpu(), raster_on_cpu, gpu_ops.rasterizer); }
+  const RasterCall& last_call() const {
+    GLINT_CHECK(call.has_value(), kUsage, "rasterize: nothing was rasterised before");
+    return *call;
   }
 };
 
 namespace {
 
-void check_input(const RasterInput& input, const Camera& camera) {
+void check_call(const RasterCall& call) {
+  const RasterInput& input = call.input;
   GLINT_CHECK(
       input.channels >= 1 && input.channels <= kMaxChannels,
       kUsage,
@@ -34,87 +39,61 @@ void check_input(const RasterInput& input, const Camera& camera) {
                            input.features.size() == n * input.channels;
   GLINT_CHECK(sizes_agree, kUsage, "rasterize: array sizes do not match {} surfels", n);
   GLINT_CHECK(
-      input.near_limit.empty() || input.near_limit.size() == camera.size(),
+      input.near_limit.empty() || input.near_limit.size() == call.camera.size(),
       kUsage,
       "rasterize: near_limit is {}x{}, the camera {}x{}",
       input.near_limit.width,
       input.near_limit.height,
-      camera.width,
-      camera.height
+      call.camera.width,
+      call.camera.height
   );
 }
 
-void fit_outputs(
-    const RasterInput& input, const RasterSettings& settings, ImageSize size, RasterOutput& out
-) {
-  fit(out.features, size, input.channels);
-  fit(out.normal, size, 3);
-  for (Image* image : {&out.alpha, &out.depth_sum, &out.depth_median}) fit(*image, size, 1);
-  out.visibility.resize(input.count);
-  out.in_view.resize(input.count);
-  if (settings.with_distortion)
-    fit(out.distortion, size, 1);
-  else
-    out.distortion = Image();
+void fit_output(const RasterCall& call, RasterOutput& out) {
+  const auto fit_map = [&](const char*, int channels, Image& map) {
+    if (channels == 0)
+      map = Image();
+    else
+      fit(map, call.camera.size(), channels);
+  };
+  for_each_map(call.maps(), fit_map, out);
+  out.visibility.resize(call.input.count);
+  out.in_view.resize(call.input.count);
 }
 
 void fit_gradient(const RasterInput& input, RasterGradient& gradient) {
-  const std::size_t n = input.count;
-  gradient.means.resize(3 * n);
-  gradient.scales.resize(2 * n);
-  gradient.rotations.resize(4 * n);
-  gradient.opacities.resize(n);
-  gradient.features.resize(n * input.channels);
-  gradient.screen.resize(2 * n);
+  RasterGradient::for_each_array(
+      static_cast<std::size_t>(input.channels),
+      [&](const char*, std::size_t width, FloatArray& array) { array.resize(width * input.count); },
+      gradient
+  );
 }
 
 }  // namespace
 
-Rasterizer::Rasterizer() : backends_(std::make_unique<Backends>()) {}
+Rasterizer::Rasterizer() : state_(std::make_unique<State>()) {}
 Rasterizer::~Rasterizer() = default;
 Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
 Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
 
-std::size_t Rasterizer::num_pairs() const {
-  return on_gpu() ? backends_->on_gpu().num_pairs() : backends_->cpu.lists.num_pairs();
+const RasterCall& Rasterizer::call() const { return state_->last_call(); }
+const RasterOutput& Rasterizer::output() const { return state_->output; }
+std::size_t Rasterizer::num_pairs() const { return state_->device().num_pairs(); }
+std::size_t Rasterizer::num_pixel_pairs() const { return state_->device().num_pixel_pairs(); }
+
+const RasterOutput& Rasterizer::forward(const RasterCall& call) {
+  check_call(call);
+  state_->call = call;
+  fit_output(call, state_->output);
+  state_->device().forward(call, state_->output);
+  return state_->output;
 }
 
-std::size_t Rasterizer::num_pixel_pairs() const {
-  return on_gpu() ? backends_->on_gpu().num_pixel_pairs() : raster_pixel_pairs(backends_->cpu);
-}
-
-void Rasterizer::forward(
-    const RasterInput& input,
-    const Camera& camera,
-    const RasterSettings& settings,
-    RasterOutput& output,
-    bool scalar
-) {
-  check_input(input, camera);
-  fit_outputs(input, settings, camera.size(), output);
-  if (on_gpu())
-    backends_->on_gpu().forward(input, camera, settings, output);
-  else
-    rasterize_forward_cpu(input, camera, settings, output, scalar, backends_->cpu);
-}
-
-void Rasterizer::backward(
-    const RasterInput& input,
-    const Camera& camera,
-    const RasterSettings& settings,
-    const RasterOutput& output,
-    const RasterOutputGradient& dL_doutput,
-    RasterGradient& gradient,
-    bool scalar
-) {
-  check_input(input, camera);
-  fit_gradient(input, gradient);
-  if (on_gpu())
-    backends_->on_gpu().backward(input, camera, settings, output, dL_doutput, gradient);
-  else
-    rasterize_backward_cpu(
-        input, camera, settings, output, dL_doutput, gradient, scalar, backends_->cpu
-    );
+const RasterGradient& Rasterizer::backward(const RasterOutputGradient& dL_doutput) {
+  const RasterCall& call = state_->last_call();
+  fit_gradient(call.input, state_->gradient);
+  state_->device().backward(call, state_->output, dL_doutput, state_->gradient);
+  return state_->gradient;
 }
 
 }  // namespace glint

@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "glint/core/image.h"
+#include "glint/render/raster_maps.h"
 #include "glint/scene/camera.h"
 
 namespace glint {
@@ -25,6 +25,7 @@ struct RasterSettings {
   bool with_distortion = false;  // also the distortion map [Huang24 Eq. 13]
   float distortion_near = 0.2f;  // metres, of the NDC mapping of the distortion loss
   float distortion_far = 100.0f;
+  bool scalar = false;  // on the CPU: without SIMD lanes, the same text (for perf and tests)
 };
 
 // Activated surfels, structure of arrays; borrowed. N surfels, C feature channels (1..16).
@@ -39,24 +40,36 @@ struct RasterInput {
   ImageView near_limit;              // optional [H][W][1]: only hits with z > limit count
 };
 
-struct RasterOutput {
-  Image features;      // [H][W][C] sum w f; no background is added
-  Image alpha;         // [H][W][1] sum w = 1 - transmittance
-  Image depth_sum;     // [H][W][1] sum w z; expected depth = depth_sum / alpha
-  Image depth_median;  // [H][W][1] z of the last contributor met while transmittance > 0.5; 0: none
-  Image normal;        // [H][W][3] sum w n in camera space, each n facing the camera; not unit
-  Image distortion;    // [H][W][1] sum_ij w_i w_j (m_i - m_j)^2, j < i; empty unless asked for
+// One rasterisation. Borrowed arrays must stay where and what they are until its backward().
+struct RasterCall {
+  RasterInput input;
+  Camera camera;
+  RasterSettings settings;
+
+  MapChannels maps() const { return {input.channels, settings.with_distortion}; }
+};
+
+struct RasterOutput : RasterMaps<ImageMap> {
   FloatArray visibility;        // [N] sum over pixels of w
   Array<std::uint8_t> in_view;  // [N] 1: reached at least one tile
 };
 
-struct RasterOutputGradient {  // dL/d(output); empty images count as zero
-  Image features, alpha, depth_sum, depth_median, normal, distortion;
-};
+using RasterOutputGradient = RasterMaps<ImageMap>;  // dL/d(output); empty images count as zero
 
 struct RasterGradient {
   FloatArray means, scales, rotations, opacities, features;  // shapes of RasterInput
   FloatArray screen;  // [N][2] dL/d(projected centre) x (W/2, H/2): NDC, for densification
+
+  // f(name, array of each, floats a surfel); channels: of features.
+  template <class F, class... Others>
+  static void for_each_array(std::size_t channels, F&& f, Others&... gradients) {
+    f("means", std::size_t{3}, gradients.means...);
+    f("scales", std::size_t{2}, gradients.scales...);
+    f("rotations", std::size_t{4}, gradients.rotations...);
+    f("opacities", std::size_t{1}, gradients.opacities...);
+    f("features", channels, gradients.features...);
+    f("screen", std::size_t{2}, gradients.screen...);
+  }
 };
 
 class Rasterizer {
@@ -66,32 +79,22 @@ class Rasterizer {
   Rasterizer(Rasterizer&&) noexcept;
   Rasterizer& operator=(Rasterizer&&) noexcept;
 
-  // Both are deterministic: the same bytes for any number of threads. `scalar` runs the scalar
-  // instantiation of the same text (for perf and tests).
-  void forward(
-      const RasterInput& input,
-      const Camera& camera,
-      const RasterSettings& settings,
-      RasterOutput& output,
-      bool scalar = false
-  );
-  // Gradients of the last forward call; input, camera and settings must be the same.
-  void backward(
-      const RasterInput& input,
-      const Camera& camera,
-      const RasterSettings& settings,
-      const RasterOutput& output,
-      const RasterOutputGradient& dL_doutput,
-      RasterGradient& gradient,
-      bool scalar = false
-  );
+  // What both return stays valid until the next call of the same. Both are deterministic: the same
+  // bytes for any number of threads. Errors (kUsage): array sizes that do not match; backward()
+  // without a forward().
+  const RasterOutput& forward(const RasterCall& call);
+  // Gradients of the last forward call.
+  const RasterGradient& backward(const RasterOutputGradient& dL_doutput);
+
+  const RasterCall& call() const;      // the last one; errors (kUsage): there was none
+  const RasterOutput& output() const;  // of it
   // Of the last forward call: (surfel, tile) pairs, and pixels inside the surfels' screen boxes.
   std::size_t num_pairs() const;
   std::size_t num_pixel_pairs() const;
 
  private:
-  struct Backends;  // what backward needs from forward; reused between calls
-  std::unique_ptr<Backends> backends_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace glint

@@ -3,12 +3,22 @@
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
-#include "glint/render/raster_saved.h"
+#include "glint/render/op_backends.h"
 #include "glint/render/tile_kernel.h"
 
 namespace glint {
 
 namespace {
+
+// What backward needs of forward; reused between calls.
+struct RasterSaved {
+  TileLists lists;
+  KeptMaps<ImageMap> kept;
+  std::vector<float> pair_visibility;  // [pairs]
+  // [pairs] blocks of the tile where a pixel has a hit, one bit each: backward looks at no others.
+  std::vector<std::uint8_t> pair_blocks;
+  std::vector<float> pair_gradients;  // [pairs][slot_width]
+};
 
 // ---- forward -----------------------------------------------------------------------------------
 
@@ -24,8 +34,11 @@ struct ForwardVisitor {
   const float* feature;
   const Splat* splat;
 
-  ForwardVisitor(const TileContext& tile, const RasterSettings& settings, RasterSaved& saved)
-      : tile(tile), range(distortion_range(settings)), saved(saved), channels(tile.input.channels) {
+  ForwardVisitor(const TileContext& tile, RasterSaved& saved)
+      : tile(tile),
+        range(distortion_range(tile.call.settings)),
+        saved(saved),
+        channels(tile.call.input.channels) {
     for (auto& group : sums) group.clear();
   }
 
@@ -35,14 +48,14 @@ struct ForwardVisitor {
   void begin(TileEntry entry) {
     visibility = T(0);
     blocks = 0;
-    feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
+    feature = tile.feature(entry.surfel);
     splat = &tile.lists.splats[entry.surfel];
   }
   void hit(int g, const SplatHit<T>& hit) {
     visibility += hit.weight;
     const bool counts = any(hit.transmittance_behind < hit.transmittance);  // or stops a pixel
     blocks |= static_cast<unsigned>(counts) << (g / kGroupsPerBlock<T>);
-    sums[g].add(hit, feature, channels, splat->normal, range);
+    sums[g].add(hit, *splat, feature, channels, range);
   }
   void end(TileEntry entry) {
     saved.pair_visibility[entry.pair] = lane_sum(visibility);
@@ -53,31 +66,34 @@ struct ForwardVisitor {
     saved.pair_blocks[entry.pair] = 0;
   }
 
-  void store(const TilePixels<T>& pixels, RasterOutput& out) const {
+  void store(const TilePixels<T>& pixels, RasterOutput& out) {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) {
-      const PixelSums<T, kChannels>& s = sums[g];
-      const T alpha = T(1) - pixels.final_transmittance(g);
-      for (int c = 0; c < channels; ++c) store_pixels(tile, out.features, g, c, s.features[c]);
-      for (int c = 0; c < 3; ++c) store_pixels(tile, out.normal, g, c, s.normal[c]);
-      store_pixels(tile, out.alpha, g, 0, alpha);
-      store_pixels(tile, out.depth_sum, g, 0, s.depth);
-      store_pixels(tile, out.depth_median, g, 0, s.median);
-      store_pixels(tile, saved.final_transmittance, g, 0, pixels.final_transmittance(g));
-      if (!range.on) continue;
-      store_pixels(tile, saved.first_depth, g, 0, s.first_depth);
-      store_pixels(tile, saved.moment1, g, 0, s.moment1);
-      store_pixels(tile, saved.moment2, g, 0, s.moment2);
-      store_pixels(tile, out.distortion, g, 0, distortion(alpha, s.moment1, s.moment2));
+      sums[g].finish(pixels.final_transmittance(g), range);
+      const auto store_map = [&](int width, const T* values, Image& map) {
+        for (int c = 0; c < width; ++c) store_pixels(tile, map, g, c, values[c]);
+      };
+      for_each_map(
+          tile.call.maps(),
+          [&](const char*, int width, const T* values, Image& map) {
+            store_map(width, values, map);
+          },
+          sums[g].maps,
+          out
+      );
+      for_each_kept_map(
+          tile.call.maps(),
+          [&](int width, float, const T* values, Image& map) { store_map(width, values, map); },
+          sums[g].kept,
+          saved.kept
+      );
     }
   }
 };
 
 template <class T, int kChannels>
-void forward_tile(
-    const TileContext& tile, const RasterSettings& settings, RasterSaved& saved, RasterOutput& out
-) {
+void forward_tile(const TileContext& tile, RasterSaved& saved, RasterOutput& out) {
   TilePixels<T> pixels(tile);
-  ForwardVisitor<T, kChannels> visitor(tile, settings, saved);
+  ForwardVisitor<T, kChannels> visitor(tile, saved);
   for_each_hit(tile, pixels, visitor);
   visitor.store(pixels, out);
 }
@@ -101,41 +117,43 @@ struct BackwardVisitor {
 
   BackwardVisitor(
       const TileContext& tile,
-      const RasterSettings& settings,
       RasterSaved& saved,
       const RasterOutput& out,
-      const RasterOutputGradient& g
+      const RasterOutputGradient& dL_dout
   )
-      : tile(tile), range(distortion_range(settings)), saved(saved), channels(tile.input.channels) {
-    for (int i = 0; i < kGroupsPerTile<T>; ++i) load_group(i, out, g);
+      : tile(tile),
+        range(distortion_range(tile.call.settings)),
+        saved(saved),
+        channels(tile.call.input.channels) {
+    for (int g = 0; g < kGroupsPerTile<T>; ++g) load_group(g, out, dL_dout);
   }
 
-  T load(const Image& image, int group, int channel) const {
-    return image.empty() ? T(0) : load_pixels<T>(tile, image, group, channel, 0.0f);
+  void load(const Image& map, int group, int width, float outside, T* values) const {
+    for (int c = 0; c < width; ++c)
+      values[c] = map.empty() ? T(0) : load_pixels<T>(tile, map, group, c, outside);
   }
-  void load_group(int i, const RasterOutput& out, const RasterOutputGradient& g) {
-    PixelGradient<T, kChannels>& p = pixels[i];
-    PixelSums<T, kChannels> s;
-    s.depth = load(out.depth_sum, i, 0);
-    p.total_alpha = load(out.alpha, i, 0);
-    p.alpha = load(g.alpha, i, 0);
-    p.depth = load(g.depth_sum, i, 0);
-    p.median = load(g.depth_median, i, 0);
-    for (int c = 0; c < channels; ++c) {
-      p.features[c] = load(g.features, i, c);
-      s.features[c] = load(out.features, i, c);
-    }
-    for (int c = 0; c < 3; ++c) {
-      p.normal[c] = load(g.normal, i, c);
-      s.normal[c] = load(out.normal, i, c);
-    }
-    if (range.on) {
-      p.distortion = load(g.distortion, i, 0);
-      p.first_depth = load_pixels<T>(tile, saved.first_depth, i, 0, 1.0f);
-      p.moment1 = load(saved.moment1, i, 0);
-      p.moment2 = load(saved.moment2, i, 0);
-    }
-    p.start(s, load(saved.final_transmittance, i, 0), channels, range.on);
+  void load_group(int g, const RasterOutput& out, const RasterOutputGradient& dL_dout) {
+    PixelMaps<T, kChannels> maps;
+    for_each_map(
+        tile.call.maps(),
+        [&](const char*, int width, T* dL, T* values, const Image& dL_dmap, const Image& map) {
+          load(dL_dmap, g, width, 0.0f, dL);
+          load(map, g, width, 0.0f, values);
+        },
+        pixels[g].dL,
+        maps,
+        dL_dout,
+        out
+    );
+    for_each_kept_map(
+        tile.call.maps(),
+        [&](int width, float empty, T* values, const Image& map) {
+          load(map, g, width, empty, values);
+        },
+        pixels[g].kept,
+        saved.kept
+    );
+    pixels[g].start(maps, channels, range.on);
   }
 
   std::uint64_t groups(TileEntry entry) const {
@@ -143,7 +161,7 @@ struct BackwardVisitor {
   }
   void begin(TileEntry entry) {
     std::fill_n(sums, splat_sums(channels), T(0));
-    feature = &tile.input.features[static_cast<std::size_t>(entry.surfel) * channels];
+    feature = tile.feature(entry.surfel);
     splat = &tile.lists.splats[entry.surfel];
   }
   void hit(int g, const SplatHit<T>& hit) {
@@ -166,36 +184,28 @@ struct BackwardVisitor {
 template <class T, int kChannels>
 void backward_tile(
     const TileContext& tile,
-    const RasterSettings& settings,
     RasterSaved& saved,
     const RasterOutput& out,
-    const RasterOutputGradient& g
+    const RasterOutputGradient& dL_dout
 ) {
   TilePixels<T> pixels(tile);
-  BackwardVisitor<T, kChannels> visitor(tile, settings, saved, out, g);
+  BackwardVisitor<T, kChannels> visitor(tile, saved, out, dL_dout);
   for_each_hit(tile, pixels, visitor);
 }
 
-// Calls body<T, kChannels> for the lane type and channel count of this call.
+// Calls body<T, kChannels>(tile) for every tile, with the lane type and channel count of the call.
 template <class F>
-void dispatch(bool scalar, int channels, F&& body) {
-  const auto with_channels = [&](auto lanes) {
-    using T = decltype(lanes);
-    if (channels == 3) return body.template operator()<T, 3>();
-    if (channels == 5) return body.template operator()<T, 5>();
-    return body.template operator()<T, 0>();
+void for_each_tile(const RasterCall& call, const TileLists& lists, F&& body) {
+  const auto with_lanes = [&](auto lane) {
+    with_channels(call.input.channels, [&]<int kChannels>() {
+      parallel_for(lists.num_tiles(), 2, [&](std::size_t i) {
+        const int tile = static_cast<int>(i);
+        body.template operator()<decltype(lane), kChannels>(TileContext{
+            call, lists, call.camera.size(), tile % lists.tiles_x, tile / lists.tiles_x});
+      });
+    });
   };
-  scalar ? with_channels(0.0f) : with_channels(Float8(0.0f));
-}
-
-template <class F>
-void for_each_tile(
-    const RasterInput& input, const TileLists& lists, ImageSize size, float near_plane, F&& body
-) {
-  parallel_for(lists.num_tiles(), 2, [&](std::size_t i) {
-    const int tile = static_cast<int>(i);
-    body(TileContext{input, lists, size, near_plane, tile % lists.tiles_x, tile / lists.tiles_x});
-  });
+  call.settings.scalar ? with_lanes(0.0f) : with_lanes(Float8(0.0f));
 }
 
 // ---- sums over a surfel's tiles ----------------------------------------------------------------
@@ -209,19 +219,6 @@ void sum_pairs(const RasterSaved& saved, std::size_t surfel, int width, float* s
     for (int i = 0; i < width; i += 8)
       (Float8::load(sums + i) + Float8::load(slot + i)).store(sums + i);
   }
-}
-
-template <class T>
-ProjectedSurfel<T> projected_gradient(const float* sums, int width) {
-  const auto at = [&](int i) { return load_strided<T>(sums + i, width); };
-  const auto at3 = [&](int i) { return Vec3<T>{at(i), at(i + 1), at(i + 2)}; };
-  ProjectedSurfel<T> g{};
-  g.map = {at3(kSumGx), at3(kSumGy), at3(kSumG0), at(kSumDet)};
-  g.center_x = at(kSumCenterX);
-  g.center_y = at(kSumCenterY);
-  g.z_center = at(kSumZCenter);
-  g.normal = at3(kSumNormal);
-  return g;
 }
 
 // Surfels without pairs get exact zeros, whatever their parameters (they may not be finite).
@@ -265,7 +262,8 @@ void surfel_vjp_lanes(
   const SurfelGeometry<T> surfel = load_geometry<T>(input, first);
   SurfelGeometry<T> g{};
   Vec3<T> dL_dm;
-  project_surfel_vjp(surfel, c, projected_gradient<T>(sums, width), g, dL_dm);
+  const auto sum = [&](int slot) { return load_strided<T>(sums + slot, width); };
+  project_surfel_vjp(surfel, c, projected_gradient<T>(sum), g, dL_dm);
   zero_unseen<T>(load_lanes<T>(num_pairs) > T(0), g, dL_dm);
   store3(out.means, first, g.mean);
   store_strided(&out.scales[2 * first], 2, g.scale.x);
@@ -277,50 +275,32 @@ void surfel_vjp_lanes(
   store_strided(&out.screen[2 * first + 1], 2, screen.y);
 }
 
-void surfel_vjp(
-    const RasterInput& input,
-    const Camera& camera,
-    float near_plane,
-    const RasterSaved& saved,
-    bool scalar,
-    RasterGradient& out
-) {
-  const CameraOf<float> c = camera_of(camera, near_plane);
-  parallel_for_blocks(input.count, 512, [&](std::size_t begin, std::size_t end) {
+void surfel_vjp(const RasterCall& call, const RasterSaved& saved, RasterGradient& out) {
+  const CameraOf<float> camera = camera_of(call);
+  parallel_for_blocks(call.input.count, 512, [&](std::size_t begin, std::size_t end) {
     std::size_t i = begin;
-    if (!scalar)
-      for (; i + 8 <= end; i += 8) surfel_vjp_lanes<Float8>(input, c, saved, i, out);
-    for (; i < end; ++i) surfel_vjp_lanes<float>(input, c, saved, i, out);
+    if (!call.settings.scalar)
+      for (; i + 8 <= end; i += 8) surfel_vjp_lanes<Float8>(call.input, camera, saved, i, out);
+    for (; i < end; ++i) surfel_vjp_lanes<float>(call.input, camera, saved, i, out);
   });
 }
 
-void fit_saved(const RasterSettings& settings, ImageSize size, RasterSaved& saved) {
-  fit(saved.final_transmittance, size, 1);
-  if (!settings.with_distortion) return;
-  for (Image* image : {&saved.first_depth, &saved.moment1, &saved.moment2}) fit(*image, size, 1);
+void fit_saved(const RasterCall& call, RasterSaved& saved) {
+  saved.pair_visibility.resize(saved.lists.num_pairs());
+  saved.pair_blocks.resize(saved.lists.num_pairs());
+  for_each_kept_map(
+      call.maps(),
+      [&](int channels, float, Image& map) {
+        if (channels > 0) fit(map, call.camera.size(), channels);
+      },
+      saved.kept
+  );
 }
 
-}  // namespace
-
-void rasterize_forward_cpu(
-    const RasterInput& input,
-    const Camera& camera,
-    const RasterSettings& settings,
-    RasterOutput& output,
-    bool scalar,
-    RasterSaved& saved
-) {
-  TileLists& lists = saved.lists;
-  build_tile_lists(input, camera, settings.near_plane, scalar, lists);
-  fit_saved(settings, camera.size(), saved);
-  saved.pair_visibility.resize(lists.num_pairs());
-  saved.pair_blocks.resize(lists.num_pairs());
-  dispatch(scalar, input.channels, [&]<class T, int kChannels>() {
-    for_each_tile(input, lists, camera.size(), settings.near_plane, [&](const TileContext& tile) {
-      forward_tile<T, kChannels>(tile, settings, saved, output);
-    });
-  });
-  parallel_for(input.count, 2048, [&](std::size_t i) {
+// Per surfel, in the order of its pairs.
+void sum_visibility(const RasterSaved& saved, RasterOutput& output) {
+  const TileLists& lists = saved.lists;
+  parallel_for(lists.boxes.size(), 2048, [&](std::size_t i) {
     float sum = 0;
     for (std::uint32_t pair = lists.pair_begin[i]; pair < lists.pair_begin[i + 1]; ++pair)
       sum += saved.pair_visibility[pair];
@@ -329,30 +309,42 @@ void rasterize_forward_cpu(
   });
 }
 
-void rasterize_backward_cpu(
-    const RasterInput& input,
-    const Camera& camera,
-    const RasterSettings& settings,
-    const RasterOutput& output,
-    const RasterOutputGradient& dL_doutput,
-    RasterGradient& gradient,
-    bool scalar,
-    RasterSaved& saved
-) {
-  const TileLists& lists = saved.lists;
-  saved.pair_gradients.resize(lists.num_pairs() * splat_sums(input.channels));
-  dispatch(scalar, input.channels, [&]<class T, int kChannels>() {
-    for_each_tile(input, lists, camera.size(), settings.near_plane, [&](const TileContext& tile) {
-      backward_tile<T, kChannels>(tile, settings, saved, output, dL_doutput);
+class RasterOnCpu final : public RasterBackend {
+ public:
+  void forward(const RasterCall& call, RasterOutput& output) override {
+    build_tile_lists(call, saved_.lists);
+    fit_saved(call, saved_);
+    for_each_tile(call, saved_.lists, [&]<class T, int kChannels>(const TileContext& tile) {
+      forward_tile<T, kChannels>(tile, saved_, output);
     });
-  });
-  surfel_vjp(input, camera, settings.near_plane, saved, scalar, gradient);
-}
+    sum_visibility(saved_, output);
+  }
+  void backward(
+      const RasterCall& call,
+      const RasterOutput& output,
+      const RasterOutputGradient& dL_doutput,
+      RasterGradient& gradient
+  ) override {
+    const std::size_t pairs = saved_.lists.num_pairs();
+    saved_.pair_gradients.resize(pairs * splat_sums(call.input.channels));
+    for_each_tile(call, saved_.lists, [&]<class T, int kChannels>(const TileContext& tile) {
+      backward_tile<T, kChannels>(tile, saved_, output, dL_doutput);
+    });
+    surfel_vjp(call, saved_, gradient);
+  }
+  std::size_t num_pairs() override { return saved_.lists.num_pairs(); }
+  std::size_t num_pixel_pairs() override {
+    std::size_t sum = 0;
+    for (const PixelBox& box : saved_.lists.boxes) sum += box.num_pixels();
+    return sum;
+  }
 
-std::size_t raster_pixel_pairs(const RasterSaved& saved) {
-  std::size_t sum = 0;
-  for (const PixelBox& box : saved.lists.boxes) sum += box.num_pixels();
-  return sum;
-}
+ private:
+  RasterSaved saved_;
+};
+
+}  // namespace
+
+std::unique_ptr<RasterBackend> raster_on_cpu() { return std::make_unique<RasterOnCpu>(); }
 
 }  // namespace glint

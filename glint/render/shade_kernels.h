@@ -3,6 +3,7 @@
 // Kernels of both devices.
 #pragma once
 
+#include "glint/core/kernel.h"
 #include "glint/render/activations.h"
 #include "glint/render/spherical_harmonics.h"
 
@@ -184,5 +185,7 @@ struct TraceActivateVjp {
     for (std::size_t k = i * width; k < (i + 1) * width; ++k) to[k] += from[k];
   }
 };
+
+using ShadeKernels = KernelList<ActivateGeometry, ActivateFeatures, ActivateVjp, TraceActivateVjp>;
 
 }  // namespace glint

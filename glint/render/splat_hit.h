@@ -6,17 +6,9 @@
 #include <cstdint>
 
 #include "glint/render/blend.h"
-#include "glint/render/project.h"
+#include "glint/render/splat.h"
 
 namespace glint {
-
-// One projected surfel as the pixel loops read it.
-struct Splat {
-  PixelPlaneMap<float> map;
-  float x_ref, y_ref, center_x, center_y;
-  float opacity, z_center;
-  Vec3f normal;
-};
 
 inline constexpr int kTileSize = 8;  // pixels, of the CPU's tiles
 

@@ -6,7 +6,6 @@
 #include <bit>
 
 #include "glint/core/simd.h"
-#include "glint/render/pixel_pass.h"
 #include "glint/render/raster_tiles.h"
 
 namespace glint {
@@ -42,11 +41,14 @@ Vec2<T> lane_offsets() {
 }
 
 struct TileContext {
-  const RasterInput& input;
+  const RasterCall& call;
   const TileLists& lists;
   ImageSize size;
-  float near_plane;
   int tile_x, tile_y;
+
+  const float* feature(std::uint32_t surfel) const {
+    return &call.input.features[static_cast<std::size_t>(surfel) * call.input.channels];
+  }
 
   int x0() const { return tile_x * kTileSize; }
   int y0() const { return tile_y * kTileSize; }
@@ -98,9 +100,9 @@ struct TilePixels {
       const auto inside = (x[g] < T(static_cast<float>(tile.size.width))) &
                           (y[g] < T(static_cast<float>(tile.size.height)));
       transmittance[g] = select(inside, T(1), T(0));
-      nearest[g] = T(tile.near_plane);
-      if (!tile.input.near_limit.empty())
-        nearest[g] = max_of(nearest[g], load_pixels<T>(tile, tile.input.near_limit, g, 0, 0.0f));
+      nearest[g] = T(tile.call.settings.near_plane);
+      const ImageView& limit = tile.call.input.near_limit;
+      if (!limit.empty()) nearest[g] = max_of(nearest[g], load_pixels<T>(tile, limit, g, 0, 0.0f));
     }
   }
   T final_transmittance(int g) const { return abs_of(transmittance[g]); }

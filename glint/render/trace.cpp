@@ -1,25 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "glint/render/trace.h"
 
+#include <optional>
+
 #include "glint/core/error.h"
-#include "glint/render/gpu_ops.h"
-#include "glint/render/trace_saved.h"
+#include "glint/render/op_backends.h"
 
 namespace glint {
 
-struct Tracer::Backends {
-  TraceSaved cpu;
-  std::unique_ptr<GpuTracer> gpu;  // once the GPU was in use
+struct Tracer::State {
+  std::optional<TraceCall> call;
+  TraceOutput output;
+  TraceGradient gradient;
+  DeviceChoice<TraceBackend> devices;
 
-  GpuTracer& on_gpu() {
-    if (gpu == nullptr) gpu = gpu_ops.tracer();
-    return *gpu;
+  TraceBackend& device() { return devices.on(on_gpu(), trace_on_cpu, gpu_ops.tracer); }
+  const TraceCall& last_call() const {
+    GLINT_CHECK(call.has_value(), kUsage, "trace: nothing was traced before");
+    return *call;
   }
 };
 
 namespace {
 
-void check_arguments(const TraceInput& input, const Rays& rays) {
+void check_call(const TraceCall& call) {
+  const TraceInput& input = call.input;
+  const Rays& rays = call.rays;
   const std::size_t n = input.count;
   const bool sizes_agree = input.means.size() == 3 * n && input.scales.size() == 2 * n &&
                            input.rotations.size() == 4 * n && input.opacities.size() == n &&
@@ -62,40 +68,28 @@ void fit_gradient(const TraceInput& input, ImageSize size, TraceGradient& out) {
 
 }  // namespace
 
-Tracer::Tracer() : backends_(std::make_unique<Backends>()) {}
+Tracer::Tracer() : state_(std::make_unique<State>()) {}
 Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;
 Tracer& Tracer::operator=(Tracer&&) noexcept = default;
 
-std::size_t Tracer::num_hits() const {
-  return on_gpu() ? backends_->on_gpu().num_hits() : trace_num_hits(backends_->cpu);
+const TraceCall& Tracer::call() const { return state_->last_call(); }
+const TraceOutput& Tracer::output() const { return state_->output; }
+std::size_t Tracer::num_hits() const { return state_->device().num_hits(); }
+
+const TraceOutput& Tracer::forward(const TraceCall& call) {
+  check_call(call);
+  state_->call.emplace(call);
+  fit_output(call.rays.origins.size(), state_->output);
+  state_->device().forward(call, state_->output);
+  return state_->output;
 }
 
-void Tracer::forward(
-    const TraceInput& input, const Rays& rays, const TraceSettings& settings, TraceOutput& output
-) {
-  check_arguments(input, rays);
-  fit_output(rays.origins.size(), output);
-  if (on_gpu())
-    backends_->on_gpu().forward(input, rays, settings, output);
-  else
-    trace_forward_cpu(input, rays, settings, output, backends_->cpu);
-}
-
-void Tracer::backward(
-    const TraceInput& input,
-    const Rays& rays,
-    const TraceSettings& settings,
-    const TraceOutput& output,
-    const TraceOutputGradient& dL_doutput,
-    TraceGradient& gradient
-) {
-  check_arguments(input, rays);
-  fit_gradient(input, rays.origins.size(), gradient);
-  if (on_gpu())
-    backends_->on_gpu().backward(input, rays, settings, output, dL_doutput, gradient);
-  else
-    trace_backward_cpu(input, rays, output, dL_doutput, gradient, backends_->cpu);
+const TraceGradient& Tracer::backward(const TraceOutputGradient& dL_doutput) {
+  const TraceCall& call = state_->last_call();
+  fit_gradient(call.input, call.rays.origins.size(), state_->gradient);
+  state_->device().backward(call, state_->output, dL_doutput, state_->gradient);
+  return state_->gradient;
 }
 
 }  // namespace glint

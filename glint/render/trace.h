@@ -58,6 +58,13 @@ struct Rays {
   Image directions;  // [H][W][3]
 };
 
+// Borrowed arrays and rays must stay where and what they are until the call's backward().
+struct TraceCall {
+  TraceInput input;
+  const Rays& rays;
+  TraceSettings settings;
+};
+
 struct TraceOutput {
   Image color;      // [H][W][3] sum w c; no background is added
   Image alpha;      // [H][W][1]
@@ -83,24 +90,20 @@ class Tracer {
   Tracer(Tracer&&) noexcept;
   Tracer& operator=(Tracer&&) noexcept;
 
-  // Both are deterministic: the same bytes for any number of threads.
-  void forward(
-      const TraceInput& input, const Rays& rays, const TraceSettings& settings, TraceOutput& output
-  );
-  // Gradients of the last forward call; input, rays and settings must be the same.
-  void backward(
-      const TraceInput& input,
-      const Rays& rays,
-      const TraceSettings& settings,
-      const TraceOutput& output,
-      const TraceOutputGradient& dL_doutput,
-      TraceGradient& gradient
-  );
-  std::size_t num_hits() const;  // contributors of all rays of the last forward call
+  // What both return stays valid until the next call of the same. Both are deterministic: the same
+  // bytes for any number of threads. Errors (kUsage): sizes that do not match; backward() without a
+  // forward().
+  const TraceOutput& forward(const TraceCall& call);
+  // Gradients of the last forward call.
+  const TraceGradient& backward(const TraceOutputGradient& dL_doutput);
+
+  const TraceCall& call() const;      // the last one; errors (kUsage): there was none
+  const TraceOutput& output() const;  // of it
+  std::size_t num_hits() const;       // contributors of all its rays
 
  private:
-  struct Backends;
-  std::unique_ptr<Backends> backends_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 // Adds dL/d(raw parameters) to `dL_dcloud`.

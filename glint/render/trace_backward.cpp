@@ -4,7 +4,6 @@
 #include "glint/core/parallel.h"
 #include "glint/render/activations.h"
 #include "glint/render/spherical_harmonics.h"
-#include "glint/render/trace.h"
 #include "glint/render/trace_saved.h"
 
 namespace glint {
@@ -272,15 +271,13 @@ void backward_ray(
 }
 
 // Everything a pass reads.
-struct BackwardCall {
-  const TraceInput& input;
-  const Rays& rays;
+struct BackwardPass : TraceCall {
   const TraceOutput& output;
   const TraceOutputGradient& dL_doutput;
 };
 
 void backward_block(
-    const BackwardCall& call,
+    const BackwardPass& call,
     std::size_t block,
     const TraceSaved& saved,
     GradientSlice& slice,
@@ -320,7 +317,7 @@ std::vector<std::size_t> slice_ends(const TraceSaved& saved, std::size_t num_hit
 }
 
 void backward_blocks(
-    const BackwardCall& call,
+    const BackwardPass& call,
     std::size_t begin,
     std::size_t end,
     const TraceSaved& saved,
@@ -380,26 +377,26 @@ void surfel_vjp(
 
 }  // namespace
 
-void trace_backward_cpu(
-    const TraceInput& input,
-    const Rays& rays,
+void trace_backward(
+    const TraceCall& call,
     const TraceOutput& output,
     const TraceOutputGradient& dL_doutput,
     TraceGradient& gradient,
     TraceSaved& saved
 ) {
-  const BackwardCall call{input, rays, output, dL_doutput};
+  const BackwardPass pass{{call}, output, dL_doutput};
   const std::vector<std::size_t> ends = slice_ends(saved, trace_num_hits(saved));
   saved.slices.resize(ends.size());
   parallel_for(ends.size(), 1, [&](std::size_t i) {
     const std::size_t begin = i == 0 ? 0 : ends[i - 1];
-    backward_blocks(call, begin, ends[i], saved, saved.slices[i], gradient);
+    backward_blocks(pass, begin, ends[i], saved, saved.slices[i], gradient);
   });
-  parallel_for(input.count, kSurfelGrain, [&](std::size_t i) {
+  const std::size_t count = call.input.count;
+  parallel_for(count, kSurfelGrain, [&](std::size_t i) {
     const auto& slots = saved.slot_of_surfel;
-    const std::uint32_t ahead = slots[std::min(i + kSurfelsAhead, input.count - 1)];
+    const std::uint32_t ahead = slots[std::min(i + kSurfelsAhead, count - 1)];
     for (const GradientSlice& slice : saved.slices) prefetch_sum(slice, ahead);
-    surfel_vjp(input, i, collect(slots[i], saved.slices), gradient);
+    surfel_vjp(call.input, i, collect(slots[i], saved.slices), gradient);
   });
   for (GradientSlice& slice : saved.slices) slice.rows.clear();
 }

@@ -6,8 +6,8 @@
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
 #include "glint/render/activations.h"
+#include "glint/render/op_backends.h"
 #include "glint/render/spherical_harmonics.h"
-#include "glint/render/trace.h"
 #include "glint/render/trace_saved.h"
 
 namespace glint {
@@ -170,10 +170,7 @@ constexpr double kCullShare = 1.0 / 4, kSearchShare = 1;
 constexpr std::size_t kProbes = 8;
 
 // Everything the forward pass reads and its outputs.
-struct ForwardCall {
-  const TraceInput& input;
-  const Rays& rays;
-  const TraceSettings& settings;
+struct ForwardPass : TraceCall {
   TraceSaved& saved;
   TraceOutput& output;
 };
@@ -186,7 +183,7 @@ bool is_ray(const RayState& ray) {
 }
 
 template <class Search>
-void forward_ray(const ForwardCall& call, Search& search, std::size_t i, TraceScratch& scratch) {
+void forward_ray(const ForwardPass& call, Search& search, std::size_t i, TraceScratch& scratch) {
   const std::size_t before = scratch.slots.size();
   RayState ray = ray_at(call.rays, call.input.sh_degree, i);
   RaySums sums;
@@ -202,7 +199,7 @@ void forward_ray(const ForwardCall& call, Search& search, std::size_t i, TraceSc
 
 template <class Search>
 void forward_rays(
-    const ForwardCall& call,
+    const ForwardPass& call,
     Search& search,
     std::span<const std::uint32_t> rays,
     TraceScratch& scratch
@@ -256,7 +253,7 @@ void narrow(
 // Halves the rays until few and alike are left, whose surfels are few as well; or until sharing
 // does not pay.
 void trace_beam(
-    const ForwardCall& call,
+    const ForwardPass& call,
     std::span<std::uint32_t> rays,
     BeamNode node,
     std::size_t splits,
@@ -292,7 +289,7 @@ void save_hits(const TraceScratch& scratch, std::size_t begin, std::size_t end, 
 
 // What a ray costs that goes through the tree. Tells from a few rays from all over the tile, which
 // come to the front; returns their number.
-std::size_t probe(const ForwardCall& call, std::span<std::uint32_t> rays, TraceScratch& scratch) {
+std::size_t probe(const ForwardPass& call, std::span<std::uint32_t> rays, TraceScratch& scratch) {
   const TraceSettings& settings = call.settings;
   const bool beams = settings.search == TraceSearch::kBeams && !settings.triangles;
   scratch.clusters_per_ray = beams ? std::numeric_limits<double>::infinity() : 0.0;
@@ -308,7 +305,7 @@ std::size_t probe(const ForwardCall& call, std::span<std::uint32_t> rays, TraceS
 }
 
 void forward_tile(
-    const ForwardCall& call, std::size_t begin, std::size_t end, TraceScratch& scratch
+    const ForwardPass& call, std::size_t begin, std::size_t end, TraceScratch& scratch
 ) {
   scratch.slots.clear();
   scratch.first_hit.resize(kRaysPerTile);
@@ -331,9 +328,8 @@ void forward_tile(
 // ---- preparation
 // --------------------------------------------------------------------------
 
-void prepare(
-    const TraceInput& input, const TraceSettings& settings, std::size_t num_rays, TraceSaved& saved
-) {
+void prepare(const TraceCall& call, std::size_t num_rays, TraceSaved& saved) {
+  const TraceInput& input = call.input;
   const std::size_t n = input.count;
   const bool refit = saved.surfels.size() == n && ++saved.updates % kRebuildInterval != 0;
   if (!refit) {
@@ -345,10 +341,10 @@ void prepare(
   parallel_for(n, kSurfelGrain, [&](std::size_t i) {
     prefetch_hit(saved, saved.slot_of_surfel[std::min(i + kSurfelsAhead, n - 1)]);
     const std::uint32_t slot = saved.slot_of_surfel[i];
-    saved.surfels[slot] = traced_surfel(input, settings, i);
+    saved.surfels[slot] = traced_surfel(input, call.settings, i);
     saved.sh[slot] = ShRow::pack(&input.sh_dc[3 * i], &input.sh_rest[45 * i]);
   });
-  if (n > 0) saved.bvh.update(saved.surfels, settings.triangles, refit);
+  if (n > 0) saved.bvh.update(saved.surfels, call.settings.triangles, refit);
   saved.blocks.resize((num_rays + kRaysPerBlock - 1) / kRaysPerBlock);
   saved.counts.resize(num_rays);
 }
@@ -373,21 +369,40 @@ std::size_t trace_num_hits(const TraceSaved& saved) {
   return hits;
 }
 
-void trace_forward_cpu(
-    const TraceInput& input,
-    const Rays& rays,
-    const TraceSettings& settings,
-    TraceOutput& output,
-    TraceSaved& saved
-) {
-  const std::size_t num_rays = rays.origins.num_pixels();
-  prepare(input, settings, num_rays, saved);
-  const ForwardCall call{input, rays, settings, saved, output};
+void trace_forward(const TraceCall& call, TraceOutput& output, TraceSaved& saved) {
+  const std::size_t num_rays = call.rays.origins.num_pixels();
+  prepare(call, num_rays, saved);
+  const ForwardPass pass{{call}, saved, output};
   parallel_for_blocks(num_rays, kRaysPerTile, [&](std::size_t begin, std::size_t end) {
     auto scratch = saved.scratch.take();
-    forward_tile(call, begin, end, *scratch);
+    forward_tile(pass, begin, end, *scratch);
     saved.scratch.give_back(std::move(scratch));
   });
 }
+
+namespace {
+
+class TraceOnCpu final : public TraceBackend {
+ public:
+  void forward(const TraceCall& call, TraceOutput& output) override {
+    trace_forward(call, output, saved_);
+  }
+  void backward(
+      const TraceCall& call,
+      const TraceOutput& output,
+      const TraceOutputGradient& dL_doutput,
+      TraceGradient& gradient
+  ) override {
+    trace_backward(call, output, dL_doutput, gradient, saved_);
+  }
+  std::size_t num_hits() override { return trace_num_hits(saved_); }
+
+ private:
+  TraceSaved saved_;
+};
+
+}  // namespace
+
+std::unique_ptr<TraceBackend> trace_on_cpu() { return std::make_unique<TraceOnCpu>(); }
 
 }  // namespace glint

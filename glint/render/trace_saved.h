@@ -109,17 +109,10 @@ inline void prefetch_hit(const TraceSaved& saved, std::uint32_t slot) {
   for (const auto& color : saved.sh[slot].colors) __builtin_prefetch(color);
 }
 
-// Tracer on the CPU. Arguments are checked, outputs and gradients have their shapes.
-void trace_forward_cpu(
-    const TraceInput& input,
-    const Rays& rays,
-    const TraceSettings& settings,
-    TraceOutput& output,
-    TraceSaved& saved
-);
-void trace_backward_cpu(
-    const TraceInput& input,
-    const Rays& rays,
+// The passes of Tracer on the CPU.
+void trace_forward(const TraceCall& call, TraceOutput& output, TraceSaved& saved);
+void trace_backward(
+    const TraceCall& call,
     const TraceOutput& output,
     const TraceOutputGradient& dL_doutput,
     TraceGradient& gradient,

@@ -66,7 +66,7 @@ std::vector<float> neighbor_distances(std::span<const Vec3f> points) {
 SurfelCloud surfels_from_points(const PointCloud& points, const InitialSurfels& options) {
   const std::vector<float> spacing = neighbor_distances(points.positions);
   SurfelCloud cloud;
-  cloud.extra_names = options.extra_names;
+  for (const ExtraChannel& extra : options.extra) cloud.extra_names.push_back(extra.name);
   cloud.resize(points.positions.size());
   std::fill(cloud.opacity_logits.begin(), cloud.opacity_logits.end(), logit(options.opacity));
   Rng rng(options.seed, hash_name("surfel rotations"));
@@ -79,7 +79,7 @@ SurfelCloud surfels_from_points(const PointCloud& points, const InitialSurfels& 
       cloud.sh_dc[at] = (points.colors[i][c] - 0.5f) / kSh0;
     }
     for (std::size_t e = 0; e < cloud.num_extra(); ++e)
-      cloud.extra_logits[i * cloud.num_extra() + e] = logit(options.extra_values.at(e));
+      cloud.extra_logits[i * cloud.num_extra() + e] = logit(options.extra[e].initial);
   }
   return cloud;
 }

@@ -63,11 +63,17 @@ struct PointCloud {
   std::vector<Vec3f> normals;    // unit, or empty
 };
 
+// A channel that a set has beside its colour, in (0, 1).
+struct ExtraChannel {
+  std::string name;
+  float initial;  // activated
+  float rate;     // learning rate of its logit
+};
+
 struct InitialSurfels {
   float opacity = 0.1f;
-  std::vector<std::string> extra_names;
-  std::vector<float> extra_values;  // activated, one per name
-  std::uint64_t seed = 0;           // random rotations
+  std::vector<ExtraChannel> extra;
+  std::uint64_t seed = 0;  // random rotations
 };
 
 // Surfels at the points: isotropic scale = root mean squared distance to the 3 nearest neighbours,

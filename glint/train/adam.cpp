@@ -9,7 +9,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
-#include "glint/train/adam_kernel.h"
+#include "glint/train/adam_kernels.h"
 
 namespace glint {
 
@@ -31,11 +31,15 @@ std::vector<float> rates_of(
     std::string_view array, const SurfelCloud& cloud, const SurfelRates& rates, float position
 ) {
   if (array != "extra_logits") return {rate_of(array, rates, position)};
-  std::vector<float> columns;
-  for (const std::string& name : cloud.extra_names)
-    columns.push_back(name == "transparency" ? rates.transparency : rates.specular);
-  GLINT_CHECK(columns.size() <= kMaxRates, kUsage, "Adam: {} extra channels", columns.size());
-  return columns;
+  GLINT_CHECK(
+      rates.extra.size() == cloud.num_extra() && cloud.num_extra() <= kMaxRates,
+      kUsage,
+      "Adam: {} rates for {} extra channels, expected one each and at most {}",
+      rates.extra.size(),
+      cloud.num_extra(),
+      kMaxRates
+  );
+  return rates.extra;
 }
 
 // The parts of one array.

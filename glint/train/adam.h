@@ -2,11 +2,13 @@
 // Adam [Kingma15] over the arrays of a surfel cloud, one rate per array, and the position schedule.
 #pragma once
 
+#include <vector>
+
 #include "glint/scene/surfels.h"
 
 namespace glint {
 
-// Learning rates of the parameter arrays [Huang24, Kerbl23], extra channels by name. Positions:
+// Learning rates of the parameter arrays [Huang24, Kerbl23]. Positions:
 // log-linear from `means` to `means_final` over `means_steps` steps, both times the scene's extent.
 struct SurfelRates {
   float means = 1.6e-4f, means_final = 1.6e-6f;
@@ -16,8 +18,7 @@ struct SurfelRates {
   float opacity = 0.05f;
   float scale = 0.005f;
   float rotation = 0.001f;
-  float transparency = 0.05f;  // [GLINT's release]
-  float specular = 0.01f;      // [Xie25; GLINT's release]
+  std::vector<float> extra;  // of the set's extra channels, in their order
 
   template <class V>
   void visit(V&& v) {
@@ -29,8 +30,6 @@ struct SurfelRates {
     v("rate_opacity", opacity, "learning rate of opacity");
     v("rate_scale", scale, "learning rate of log scales");
     v("rate_rotation", rotation, "learning rate of quaternions");
-    v("rate_transparency", transparency, "learning rate of transparency, where a set has it");
-    v("rate_specular", specular, "learning rate of specularity, where a set has it");
   }
 
   // Rates of a run that is `shortening` times shorter than the published one: position_steps
@@ -45,7 +44,8 @@ float position_rate(const SurfelRates& rates, int step);
 
 class SurfelAdam {
  public:
-  // One step; sets `gradient` back to zero. All clouds have the same size.
+  // One step; sets `gradient` back to zero. All clouds have the same size. Errors (kUsage): not one
+  // rate for every extra channel, or too many of them.
   void step(SurfelCloud& cloud, SurfelCloud& gradient, const SurfelRates& rates, float extent);
 
   // Rows follow those of the cloud: moments of kept rows stay, new rows start at zero.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "glint/core/kernel.h"
 #include "glint/core/vec.h"
 
 namespace glint {
@@ -50,5 +51,7 @@ struct ObserveTrace {
     statistics.add(i, scale * safe_length({g[0], g[1], g[2]}));
   }
 };
+
+using DensifyKernels = KernelList<ObserveRaster, ObserveTrace>;
 
 }  // namespace glint

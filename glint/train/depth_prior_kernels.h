@@ -2,6 +2,7 @@
 // The depth prior (depth_prior.h), pixel by pixel.
 #pragma once
 
+#include "glint/core/kernel.h"
 #include "glint/train/pixel_access.h"
 
 namespace glint {
@@ -123,5 +124,12 @@ struct DepthPriorAt {
     return static_cast<double>(m * residual * residual);
   }
 };
+
+using DepthPriorKernels = KernelList<
+    DepthMomentsAt<float>,
+    StridedWeight<float>,
+    MatchGradients<float>,
+    MatchingScaleVjp<float>,
+    DepthPriorAt<float>>;
 
 }  // namespace glint

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "glint/train/surfel_set.h"
+#include "glint/render/map_ops.h"
 #include "glint/train/trainer.h"
 
 namespace glint {
@@ -36,11 +36,11 @@ void require_prior(
 
 Json prior_control(int published_iterations) {
   Json overrides = Json::object();
-  overrides["lambda_depth"] = GlintPriors::kLambdaDepth;
-  overrides["lambda_normal"] = GlintPriors::kLambdaNormal;
-  overrides["min_cosine"] = GlintPriors::kMinCosine;
+  overrides["lambda_depth"] = PriorLosses::kLambdaDepth;
+  overrides["lambda_normal"] = PriorLosses::kLambdaNormal;
+  overrides["min_cosine"] = PriorLosses::kMinCosine;
   overrides["gate_from"] =
-      scaled_step(GlintPriors::kGateFrom, published_iterations, 1, GlintPriors::kIterations);
+      scaled_step(PriorLosses::kGateFrom, published_iterations, 1, PriorLosses::kIterations);
   overrides["normal_l1"] = 0;
   overrides["near_first"] = false;
   return overrides;

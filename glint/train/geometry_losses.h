@@ -46,9 +46,9 @@ struct GeometryLossConfig {
   }
 };
 
-// GLINT's priors [Na26 Sec. 4]. Weights and starts that the paper does not give:
-// docs/GLINT_NOTES.md.
-struct GlintPriors {
+// Depth and normal priors as [Na26 Sec. 4] uses them, and as prior_control() gives them to others.
+// Weights and starts that the paper does not give: docs/GLINT_NOTES.md.
+struct PriorLosses {
   static constexpr float kLambdaDepth = 0.1f, kLambdaNormal = 0.1f, kMinCosine = 0.3f;
   static constexpr int kGateFrom = 10000, kIterations = 60000;
 };
@@ -88,8 +88,8 @@ class GeometryLosses {
   Image dL_ddepth_;
 };
 
-// Overrides that give a baseline of so many published iterations the priors of GLINT: same losses,
-// weights and gate, at the same share of the run.
+// Overrides that give a baseline of so many published iterations these priors: same losses, weights
+// and gate, at the same share of the run.
 Json prior_control(int published_iterations);
 
 // Warns, and sets `weight` to 0, where it is not 0 and a training view lacks the prior.

@@ -3,6 +3,7 @@
 // consistency with the depth map (normal_consistency.h).
 #pragma once
 
+#include "glint/core/kernel.h"
 #include "glint/render/depth_normal.h"
 #include "glint/train/pixel_access.h"
 
@@ -132,5 +133,12 @@ struct ConsistencyDepthVjp {
     dL_ddepth.at(x, y) += dot(g, unproject.ray(x, y));
   }
 };
+
+using NormalKernels = KernelList<
+    ConsistencyDepthVjp,
+    CountNormals,
+    NormalPriorAt<float>,
+    NormalSmoothnessAt<float>,
+    NormalConsistencyAt>;
 
 }  // namespace glint

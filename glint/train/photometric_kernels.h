@@ -5,6 +5,7 @@
 #pragma once
 
 #include "glint/core/image.h"
+#include "glint/core/kernel.h"
 #include "glint/train/pixel_losses.h"
 #include "metrics/ssim_formula.h"
 
@@ -152,5 +153,7 @@ struct PhotometricAt {
     return sum;
   }
 };
+
+using PhotometricKernels = KernelList<BlurMomentRows, BlurGradientColumns, SsimAt, PhotometricAt>;
 
 }  // namespace glint

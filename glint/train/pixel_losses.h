@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What the losses with priors say about one pixel, each formula with its vjp below it. Sums over
-// an image: pixel_sums.h and the losses' own files.
+// What losses say about one pixel, each formula with its vjp below it. Loops and sums over an image
+// are the losses' own (*_kernels.h).
 #pragma once
 
 #include <cmath>
 
 #include "glint/core/vec.h"
+#include "glint/render/depth_normal.h"
 
 namespace glint {
 
@@ -15,23 +16,6 @@ GLINT_HD double sign_of(double a) { return static_cast<double>(int(a > 0) - int(
 template <class T>
 GLINT_HD T l1_norm(Vec3<T> a) {
   return abs_of(a.x) + abs_of(a.y) + abs_of(a.z);
-}
-
-// n = N / |N| of a composited normal. A shorter N counts as no normal and gives zero: one surfel
-// that counts leaves at least its alpha, 1/255.
-inline constexpr float kMinNormalLength = 1e-6f;
-template <class T>
-GLINT_HD Vec3<T> unit_normal(Vec3<T> composited) {
-  const T norm = length(composited);
-  const T at_least = max_of(norm, T(kMinNormalLength));
-  return select(norm > T(kMinNormalLength), (T(1) / at_least) * composited, Vec3<T>{});
-}
-template <class T>
-GLINT_HD void unit_normal_vjp(Vec3<T> composited, Vec3<T> dL_dunit, Vec3<T>& dL_dcomposited) {
-  const T norm = length(composited);
-  const T at_least = max_of(norm, T(kMinNormalLength));
-  const Vec3<T> g = normalize_vjp(unit_normal(composited), at_least, dL_dunit);
-  dL_dcomposited += select(norm > T(kMinNormalLength), g, Vec3<T>{});
 }
 
 // 1 - <n, prior> + l1 |n - prior|_1, or 0 where the cosine is below the gate. The gate is a

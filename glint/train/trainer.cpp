@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "glint/core/rng.h"
 
@@ -74,6 +75,7 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
   Progress progress(options.title, static_cast<std::size_t>(options.run.iterations));
   TrainReport report;
   for (int i = 0; i < options.run.iterations; ++i) {
+    throw_if_interrupted();
     const auto start = std::chrono::steady_clock::now();
     const StepStats stats = method.step(i);
     report.seconds +=

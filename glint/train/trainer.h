@@ -27,7 +27,7 @@ struct TrainReport {
 
 // Initialises and trains. Errors: what the method throws; kBadPrediction when the loss or a
 // parameter stops being finite (names the term or parameter and the iteration; the last good state
-// is in folder/checkpoint).
+// is in folder/checkpoint); Interrupted before the next step after Ctrl-C.
 TrainReport train(Method& method, const Scene& scene, const TrainOptions& options);
 
 // Random order of the training views without replacement, reshuffled when all were seen.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glint/core/error.h"
+#include "glint/render/map_ops.h"
 
 namespace glint {
 
@@ -61,10 +62,9 @@ void TransmissionLosses::add_plausible(
 void TransmissionLosses::add_direct(
     const View& view,
     int iteration,
-    int sh_degree,
     PhotometricWeights weights,
     const GlassBuffer& buffer,
-    SurfelSet& transmission,
+    TrainableSet& transmission,
     StepStats& stats
 ) {
   const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
@@ -73,12 +73,13 @@ void TransmissionLosses::add_direct(
   if (config_.lambda_direct > 0) {
     const PhotometricWeights direct{
         config_.lambda_direct * weights.l1, config_.lambda_direct * weights.ssim};
-    const PhotometricTerms terms =
-        photometric_.evaluate(pass_.output.features, view.rgb, direct, dL_ddirect_.features);
+    const PhotometricTerms terms = photometric_.evaluate(
+        pass_.rasterizer.output().features, view.rgb, direct, dL_ddirect_.features
+    );
     stats.terms["direct"] = terms.weighted(direct);
   }
-  if (plausible) add_plausible(view, pass_.output, buffer, stats);
-  transmission.backward(view.camera, sh_degree, {}, dL_ddirect_, {}, pass_);
+  if (plausible) add_plausible(view, pass_.rasterizer.output(), buffer, stats);
+  transmission.backward(dL_ddirect_, pass_);
 }
 
 void TransmissionLosses::add(
@@ -88,16 +89,16 @@ void TransmissionLosses::add(
     PhotometricWeights weights,
     const RasterOutput& interface,
     const GlassBuffer& buffer,
-    SurfelSet& transmission,
+    TrainableSet& transmission,
     Image& dL_dtransparency,
     StepStats& stats
 ) {
   const bool guided = config_.lambda_transparency > 0 && iteration >= config_.transparency_from;
   const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
   if (guided || plausible || config_.lambda_direct > 0) {
-    expected_depth_map(transmission.forward(view.camera, sh_degree, {}, {}, pass_), direct_depth_);
+    expected_depth_map(transmission.forward(pass_, view.camera, sh_degree), direct_depth_);
     if (guided || plausible) guidance_.label(cues(view, interface, buffer), masks_);
-    add_direct(view, iteration, sh_degree, weights, buffer, transmission, stats);
+    add_direct(view, iteration, weights, buffer, transmission, stats);
   }
   if (guided)
     stats.terms["transparency"] =

@@ -6,10 +6,10 @@
 
 #include <string>
 
+#include "glint/render/glass_transport.h"
 #include "glint/train/geometry_losses.h"
-#include "glint/train/glass_transport.h"
 #include "glint/train/photometric.h"
-#include "glint/train/surfel_set.h"
+#include "glint/train/trainable_set.h"
 #include "glint/train/transparency_guidance.h"
 #include "glint/train/transparency_prior.h"
 
@@ -58,7 +58,7 @@ class TransmissionLosses {
       PhotometricWeights weights,
       const RasterOutput& interface,
       const GlassBuffer& buffer,
-      SurfelSet& transmission,
+      TrainableSet& transmission,
       Image& dL_dtransparency,
       StepStats& stats
   );
@@ -68,10 +68,9 @@ class TransmissionLosses {
   void add_direct(
       const View& view,
       int iteration,
-      int sh_degree,
       PhotometricWeights weights,
       const GlassBuffer& buffer,
-      SurfelSet& transmission,
+      TrainableSet& transmission,
       StepStats& stats
   );
   void add_plausible(

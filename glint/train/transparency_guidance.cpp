@@ -2,8 +2,8 @@
 #include "glint/train/transparency_guidance.h"
 
 #include "glint/core/kernel.h"
+#include "glint/render/glass_transport.h"
 #include "glint/train/check_fits.h"
-#include "glint/train/glass_transport.h"
 #include "glint/train/transparency_kernels.h"
 
 namespace glint {

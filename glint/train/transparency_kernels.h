@@ -3,8 +3,9 @@
 // (transparency_prior.h).
 #pragma once
 
-#include "glint/train/glass_kernels.h"
-#include "glint/train/map_kernels.h"
+#include "glint/core/kernel.h"
+#include "glint/render/glass_kernels.h"
+#include "glint/render/map_kernels.h"
 #include "glint/train/pixel_access.h"
 
 namespace glint {
@@ -140,5 +141,14 @@ struct TransparencyPriorAt {
            static_cast<double>(w_smoothness) * smooth.loss;
   }
 };
+
+using TransparencyKernels = KernelList<
+    LabelL1,
+    LabelBce,
+    ErodeAndWeigh,
+    ViewingCosine,
+    GuideL1<float>,
+    GuideBce<float>,
+    TransparencyPriorAt<float>>;
 
 }  // namespace glint

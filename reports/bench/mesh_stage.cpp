@@ -57,7 +57,7 @@ fs::path mesh_of(const fs::path& run, const MeshLayer& layer) {
   return fs::exists(path) ? path : run / kMeshLayers[0].mesh;
 }
 
-void render_train_stage(const RunSpec& spec, const Scene& scene, const Method& method) {
+void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method) {
   Progress progress("render training views", scene.train.size());
   for (const View& view : scene.train) {
     throw_if_interrupted();
@@ -97,7 +97,7 @@ Json fuse_stage(const RunSpec& spec, const Scene& scene, TsdfOptions options) {
 Json mesh_stage(
     const RunSpec& spec,
     const Scene& scene,
-    const Method& method,
+    Method& method,
     const TsdfOptions& options,
     bool keep_renders
 ) {

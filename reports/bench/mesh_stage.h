@@ -27,7 +27,7 @@ fs::path mesh_of(const fs::path& run, const MeshLayer& layer);
 
 // rgb.png, depth.exr and, of methods that look behind glass, behind_depth.exr (of the first surface
 // where t is at most a half) of every training view.
-void render_train_stage(const RunSpec& spec, const Scene& scene, const Method& method);
+void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method);
 
 // Fuses renders_train/; bounds that are not set are the scene's, grown by a tenth. Writes the
 // meshes and mesh.json: options, what was fused, per mesh. Errors: kBadPrediction (no
@@ -38,7 +38,7 @@ Json fuse_stage(const RunSpec& spec, const Scene& scene, TsdfOptions options);
 Json mesh_stage(
     const RunSpec& spec,
     const Scene& scene,
-    const Method& method,
+    Method& method,
     const TsdfOptions& options,
     bool keep_renders = false
 );

@@ -130,7 +130,7 @@ Record run_cell(const PlanCell& cell, const RunnerOptions& options, const Loaded
 
 // Makes the meshes. A run whose depth gives none has its other numbers all the same; empty: made.
 std::string why_no_mesh(
-    const RunSpec& spec, const Scene& scene, const Method& method, const TsdfOptions& options
+    const RunSpec& spec, const Scene& scene, Method& method, const TsdfOptions& options
 ) {
   if (!has_tsdf_volume()) return "no Open3D";
   try {
@@ -229,7 +229,7 @@ class Runner {
 RunSummary run_profile(const RunnerOptions& options) { return Runner(options).run(); }
 
 RunScores render_and_score(
-    const RunSpec& spec, const Scene& scene, const Method& method, const Profile& profile
+    const RunSpec& spec, const Scene& scene, Method& method, const Profile& profile
 ) {
   RunScores scores;
   scores.not_measured = missing_metrics();

@@ -37,7 +37,7 @@ struct RunScores {
 };
 // Everything behind training: renders, strip, FPS, meshes, metrics.
 RunScores render_and_score(
-    const RunSpec& spec, const Scene& scene, const Method& method, const Profile& profile
+    const RunSpec& spec, const Scene& scene, Method& method, const Profile& profile
 );
 
 // Of a failure in `stage`: "bad-input", "usage", "environment", "not-finite" (training diverged),

@@ -50,7 +50,7 @@ std::unique_ptr<Method> load_trained(const RunSpec& spec) {
   return method;
 }
 
-void render_stage(const RunSpec& spec, const Scene& scene, const Method& method) {
+void render_stage(const RunSpec& spec, const Scene& scene, Method& method) {
   std::error_code code;
   fs::remove_all(spec.folder / "renders", code);
   for (const View& view : scene.test) {
@@ -74,7 +74,7 @@ void render_stage(const RunSpec& spec, const Scene& scene, const Method& method)
   write_strips(spec.folder, scene.test);
 }
 
-double measure_fps(const Method& method, const Scene& scene, const TimingOptions& options) {
+double measure_fps(Method& method, const Scene& scene, const TimingOptions& options) {
   const auto render = [&](int frame) {
     method.draw(scene.test[static_cast<std::size_t>(frame) % scene.test.size()].camera);
     synchronize();

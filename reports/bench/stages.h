@@ -23,11 +23,11 @@ std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene);
 std::unique_ptr<Method> load_trained(const RunSpec& spec);
 
 // Renders the test views into renders/, and strips of them for people (strip.h).
-void render_stage(const RunSpec& spec, const Scene& scene, const Method& method);
+void render_stage(const RunSpec& spec, const Scene& scene, Method& method);
 
 // Frames a second over the test cameras: the inverse of the mean frame time. Nothing is written or
 // converted inside the clock.
-double measure_fps(const Method& method, const Scene& scene, const TimingOptions& options);
+double measure_fps(Method& method, const Scene& scene, const TimingOptions& options);
 
 // Scores renders/ against the scene's test views and the run's meshes against the dataset's, and
 // writes metrics.json (means, per-view values with names, protocols). `cost` joins the means:

@@ -14,9 +14,8 @@ struct RasterState {
   ActivatedSurfels activated;
   RasterInput input;
   Rasterizer rasterizer;
-  RasterOutput output;
   RasterOutputGradient dL_doutput;
-  RasterGradient gradient;
+  const RasterGradient* gradient = nullptr;
   SurfelCloud dL_dcloud;
 
   explicit RasterState(const PerfOptions& options)
@@ -32,12 +31,14 @@ struct RasterState {
   }
   void shade() { activate(cloud, cast<float>(view.camera.center()), 3, activated); }
   void shade_vjp() {
-    activate_vjp(cloud, cast<float>(view.camera.center()), 3, activated, gradient, dL_dcloud);
+    activate_vjp(cloud, cast<float>(view.camera.center()), 3, activated, *gradient, dL_dcloud);
   }
-  void forward(bool scalar) { rasterizer.forward(input, view.camera, {}, output, scalar); }
-  void backward(bool scalar) {
-    rasterizer.backward(input, view.camera, {}, output, dL_doutput, gradient, scalar);
+  void forward(bool scalar) {
+    RasterSettings settings;
+    settings.scalar = scalar;
+    rasterizer.forward({input, view.camera, settings});
   }
+  void backward() { gradient = &rasterizer.backward(dL_doutput); }
   // Parameters and gradients of the surfels (12 geometry and feature values each), maps.
   double bytes(int surfel_moves, int map_moves) const {
     const double floats = 12.0 * static_cast<double>(cloud.size()) * surfel_moves +
@@ -53,7 +54,7 @@ struct RasterState {
 std::vector<PerfCase> raster_cases(const PerfOptions& options) {
   const auto s = std::make_shared<RasterState>(options);
   s->forward(false);
-  s->backward(false);
+  s->backward();
   const auto pairs = [s] { return s->pairs(); };
   const auto surfels = [s] { return static_cast<double>(s->cloud.size()); };
   return {
@@ -66,8 +67,8 @@ std::vector<PerfCase> raster_cases(const PerfOptions& options) {
       {"rasterize forward + backward",
        "pairs",
        pairs,
-       [s] { s->forward(false), s->backward(false); },
-       [s] { s->forward(true), s->backward(true); },
+       [s] { s->forward(false), s->backward(); },
+       [s] { s->forward(true), s->backward(); },
        [s] { return s->bytes(3, 3); }},
       {"activate + SH degree 3", "surfels", surfels, [s] { s->shade(); }, {}},
       {"activate + SH degree 3, backward", "surfels", surfels, [s] { s->shade_vjp(); }, {}}};

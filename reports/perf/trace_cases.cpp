@@ -102,9 +102,7 @@ struct TraceState {
   TraceScene scene;
   ActivatedSurfels activated;
   Tracer tracer;
-  TraceOutput output;
   TraceOutputGradient dL_doutput;
-  TraceGradient gradient;
   TraceSettings settings;
 
   TraceState(TraceScene traced, bool triangles) : scene(std::move(traced)) {
@@ -115,8 +113,8 @@ struct TraceState {
     forward();  // for hits_per_ray() and backward()
   }
   TraceInput input() const { return trace_input(scene.cloud, activated, 3); }
-  void forward() { tracer.forward(input(), scene.rays, settings, output); }
-  void backward() { tracer.backward(input(), scene.rays, settings, output, dL_doutput, gradient); }
+  void forward() { tracer.forward({input(), scene.rays, settings}); }
+  void backward() { tracer.backward(dL_doutput); }
   double hits() const { return static_cast<double>(tracer.num_hits()); }
   double hits_per_ray() const {
     return hits() / static_cast<double>(scene.rays.origins.num_pixels());

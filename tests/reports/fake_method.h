@@ -40,7 +40,7 @@ class FakeMethod final : public Method {
     stats.terms["photometric"] = stats.loss;
     return stats;
   }
-  RenderOutput render(const Camera& camera) const override {
+  RenderOutput render(const Camera& camera) override {
     fail_at("render");
     RenderOutput output;
     output.rgb = Image(camera.width, camera.height, 3, config_.grey);

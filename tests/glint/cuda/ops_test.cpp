@@ -5,10 +5,11 @@
 
 #include <catch2/catch.hpp>
 
+#include "glint/render/glass_transport.h"
+#include "glint/render/map_ops.h"
 #include "glint/train/geometry_losses.h"
-#include "glint/train/glass_transport.h"
 #include "glint/train/photometric.h"
-#include "glint/train/surfel_set.h"
+#include "glint/train/trainable_set.h"
 #include "glint/train/transparency_guidance.h"
 #include "glint/train/transparency_prior.h"
 #include "tests/support/gpu_backends.h"
@@ -57,7 +58,12 @@ SurfelCloud test_cloud(std::size_t count = 300) {
   for (float& v : cloud.extra_logits) v = rng.normal();
   return cloud;
 }
-SurfelSet test_set() { return SurfelSet(test_cloud(), {}, {}, 2, 7); }
+SetTraining training(const DensifyConfig& densify = {}) {
+  SetTraining training{.densify = densify, .extent = 2, .seed = 7};
+  training.rates.extra = {0.05f, 0.01f};
+  return training;
+}
+TrainableSet test_set() { return TrainableSet(test_cloud(), training()); }
 
 void add_arrays(const std::string& prefix, const SurfelCloud& cloud, Results& results) {
   cloud.for_each_array([&](const char* name, const FloatArray& array, std::size_t) {
@@ -78,10 +84,10 @@ RasterOutputGradient raster_gradient() {
 
 TEST_CASE("A rasterised set is the same on a GPU, forward and backward") {
   check_same_as_cpu(kReordered, [] {
-    SurfelSet set = test_set();
+    TrainableSet set = test_set();
     Image near(kSize.width, kSize.height, 1, 2.6f);
     const RasterOutput& out = set.forward(test_camera(), 3, {}, near);
-    set.backward(test_camera(), 3, {}, raster_gradient(), near);
+    set.backward(raster_gradient());
     Image depth;
     expected_depth_map(out, depth);
     Results results{
@@ -99,12 +105,12 @@ TEST_CASE("A rasterised set is the same on a GPU, forward and backward") {
 
 TEST_CASE("A traced set is the same on a GPU, forward and backward") {
   check_same_as_cpu(kReordered, [] {
-    SurfelSet set = test_set();
+    TrainableSet set = test_set();
     Rays rays;
     camera_rays(test_camera(), rays);
     TraceOutputGradient g{noise(3, 1, -1, 1), noise(1, 2, -1, 1), noise(1, 3, -1, 1), {}};
-    const TraceOutput& out = set.trace(rays, 2, {});
-    const Rays& dL_drays = set.trace_backward(rays, 2, {}, g);
+    const TraceOutput& out = set.trace(rays, 2);
+    const Rays& dL_drays = set.trace_backward(g);
     Results results{
         {"color", read(out.color)},
         {"alpha", read(out.alpha)},
@@ -124,10 +130,10 @@ TEST_CASE("The optimiser and density control do the same on a GPU") {
     densify.interval = 4;
     densify.reset_interval = 5;
     densify.gradient_threshold = 1e-3f;
-    SurfelSet set(test_cloud(), {}, densify, 2, 7);
+    TrainableSet set(test_cloud(), training(densify));
     for (int step = 1; step <= 6; ++step) {
-      set.forward(test_camera(), 3, {});
-      set.backward(test_camera(), 3, {}, raster_gradient());
+      set.forward(test_camera(), 3);
+      set.backward(raster_gradient());
       set.update(step);
     }
     Results results;
@@ -139,9 +145,9 @@ TEST_CASE("The optimiser and density control do the same on a GPU") {
 
 TEST_CASE("Transport between the sets is the same on a GPU") {
   check_same_as_cpu(kRounding, [] {
-    SurfelSet set = test_set();
-    const RasterOutput& out = set.forward(test_camera(), 3, {});
-    GlassTransport transport;
+    TrainableSet set = test_set();
+    const RasterOutput& out = set.forward(test_camera(), 3);
+    GlassTransport transport({.channels = interface_channels(set.cloud())});
     const GlassBuffer& buffer = transport.read_interface(test_camera(), out);
     GlassLayers layers{{}, noise(3, 5, 0, 1), noise(3, 6, 0, 1)};
     copy_color(out.features, layers.interface);
@@ -149,7 +155,7 @@ TEST_CASE("Transport between the sets is the same on a GPU") {
     const GlassLayers& dL_dlayers = transport.compose_vjp(layers, noise(3, 7, -1, 1));
     const Rays dL_drays{noise(3, 8, -1, 1), noise(3, 9, -1, 1)};
     RasterOutputGradient g;
-    clear_gradient(kSize, kInterfaceChannels, g);
+    clear_gradient(kSize, out.features.channels(), g);
     transport.interface_vjp(test_camera(), out, &dL_drays, noise(1, 10, -1, 1), g);
     return Results{
         {"image", read(image)},

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The GPU's rasteriser, its kernels run on the host, against the CPU's.
-#include "glint/cuda/raster_pipeline.h"
-
 #include <catch2/catch.hpp>
 
-#include "glint/render/raster_tiles.h"
+#include "glint/cuda/ops.h"
 #include "tests/support/host_exec.h"
 #include "tests/support/random_scene.h"
 
@@ -14,67 +12,15 @@ using namespace glint::gpu;
 
 namespace {
 
-// Images of a view with room for everything, and pointers to them.
-struct Maps {
-  Image features, alpha, depth_sum, depth_median, normal, distortion;
-  std::vector<float> visible;
-  std::vector<std::uint8_t> in_view;
-
-  Maps(ImageSize size, int channels)
-      : features(size.width, size.height, channels),
-        alpha(size.width, size.height, 1),
-        depth_sum(alpha),
-        depth_median(alpha),
-        normal(size.width, size.height, 3),
-        distortion(alpha) {}
-  float* visibility(std::size_t surfels) {
-    visible.resize(surfels);
-    return visible.data();
-  }
-  std::uint8_t* seen(std::size_t surfels) {
-    in_view.resize(surfels);
-    return in_view.data();
-  }
-  DeviceImages pointers() {
-    return {
-        features.data(),
-        alpha.data(),
-        depth_sum.data(),
-        depth_median.data(),
-        normal.data(),
-        distortion.data()};
-  }
-};
-
-DeviceSurfels pointers(const SurfelArrays& a) {
-  return {
-      a.count(),
-      a.channels,
-      a.means.data(),
-      a.scales.data(),
-      a.rotations.data(),
-      a.opacities.data(),
-      a.features.data()};
-}
-
-RasterGradient sized_gradient(const SurfelArrays& a) {
-  RasterGradient g;
-  g.means.resize(3 * a.count());
-  g.scales.resize(2 * a.count());
-  g.rotations.resize(4 * a.count());
-  g.opacities.resize(a.count());
-  g.features.resize(a.features.size());
-  g.screen.resize(2 * a.count());
-  return g;
-}
-DeviceGradients pointers(RasterGradient& g) {
-  return {
-      g.means.data(),
-      g.scales.data(),
-      g.rotations.data(),
-      g.opacities.data(),
-      g.features.data(),
-      g.screen.data()};
+// Maps of a view with room for everything.
+RasterOutput room(ImageSize size, int channels, std::size_t surfels) {
+  RasterOutput out;
+  for_each_map(
+      {channels, true}, [&](const char*, int width, Image& map) { fit(map, size, width); }, out
+  );
+  out.visibility.resize(surfels);
+  out.in_view.resize(surfels);
+  return out;
 }
 
 // Largest difference, relative to the largest value.
@@ -122,13 +68,11 @@ struct Fixture {
       for (float& z : near_limit.values()) z = rng.uniform(0.2f, 4);
     }
     settings.with_distortion = c.distortion;
+    settings.scalar = true;
     input = arrays.view();
     if (c.near_limit) input.near_limit = near_limit;
   }
-  DistortionRange range() const {
-    return {settings.with_distortion, settings.distortion_near, settings.distortion_far};
-  }
-  const float* limit() const { return near_limit.empty() ? nullptr : near_limit.data(); }
+  RasterCall call() const { return {input, camera, settings}; }
 };
 
 }  // namespace
@@ -137,32 +81,24 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's maps") {
   std::uint64_t seed = 1;
   for (const Case& c : kCases) {
     CAPTURE(c.size.width, c.surfels);
-    Fixture f(c, seed++);
+    const Fixture f(c, seed++);
     Rasterizer cpu;
-    RasterOutput expected;
-    cpu.forward(f.input, f.camera, f.settings, expected, true);
+    const RasterOutput& expected = cpu.forward(f.call());
     HostExec exec;
     RasterPipeline<HostExec> gpu(exec);
-    Maps maps(c.size, c.channels);
-    const CameraOf<float> camera = camera_of(f.camera, f.settings.near_plane);
-    gpu.forward(
-        pointers(f.arrays),
-        camera,
-        f.limit(),
-        f.range(),
-        maps.pointers(),
-        maps.visibility(f.arrays.count()),
-        maps.seen(f.arrays.count())
-    );
+    RasterOutput actual = room(c.size, c.channels, f.arrays.count());
+    gpu.forward(device_call(f.call(), actual));
     // The same text in the same order: the same bytes.
-    CHECK(difference(maps.features.values(), expected.features.values()) == 0);
-    CHECK(difference(maps.alpha.values(), expected.alpha.values()) == 0);
-    CHECK(difference(maps.depth_sum.values(), expected.depth_sum.values()) == 0);
-    CHECK(difference(maps.depth_median.values(), expected.depth_median.values()) == 0);
-    CHECK(difference(maps.normal.values(), expected.normal.values()) == 0);
-    if (c.distortion)
-      CHECK(difference(maps.distortion.values(), expected.distortion.values()) == 0);
-    CHECK(difference(maps.visible, expected.visibility) < 1e-5);
+    for_each_map(
+        f.call().maps(),
+        [](const char* name, int channels, const Image& a, const Image& b) {
+          INFO(name);
+          if (channels > 0) CHECK(difference(a.values(), b.values()) == 0);
+        },
+        actual,
+        expected
+    );
+    CHECK(difference(actual.visibility, expected.visibility) < 1e-5);
   }
 }
 
@@ -170,57 +106,50 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
   std::uint64_t seed = 11;
   for (const Case& c : kCases) {
     CAPTURE(c.size.width, c.surfels);
-    Fixture f(c, seed++);
-    Rasterizer cpu;
-    RasterOutput output;
-    cpu.forward(f.input, f.camera, f.settings, output, true);
+    const Fixture f(c, seed++);
     Rng rng(seed);
-    Maps g(c.size, c.channels), maps(c.size, c.channels);
-    for (Image* image :
-         {&g.features, &g.alpha, &g.depth_sum, &g.depth_median, &g.normal, &g.distortion})
-      for (float& value : image->values()) value = rng.normal();
-    RasterOutputGradient dL_doutput{
-        g.features, g.alpha, g.depth_sum, g.depth_median, g.normal, g.distortion};
-    RasterGradient expected, actual = sized_gradient(f.arrays);
-    cpu.backward(f.input, f.camera, f.settings, output, dL_doutput, expected, true);
+    RasterOutput maps = room(c.size, c.channels, f.arrays.count());
+    RasterOutputGradient dL_doutput = maps;
+    for_each_map(
+        {c.channels, true},
+        [&](const char*, int, Image& map) {
+          for (float& value : map.values()) value = rng.normal();
+        },
+        dL_doutput
+    );
+    Rasterizer cpu;
+    cpu.forward(f.call());
+    const RasterGradient& expected = cpu.backward(dL_doutput);
+    RasterGradient actual = expected;
+    RasterGradient::for_each_array(
+        0,
+        [](const char*, std::size_t, FloatArray& values) {
+          std::fill(values.begin(), values.end(), -1.0f);
+        },
+        actual
+    );
     HostExec exec;
     RasterPipeline<HostExec> gpu(exec);
-    const CameraOf<float> camera = camera_of(f.camera, f.settings.near_plane);
-    gpu.forward(
-        pointers(f.arrays),
-        camera,
-        f.limit(),
-        f.range(),
-        maps.pointers(),
-        maps.visibility(f.arrays.count()),
-        maps.seen(f.arrays.count())
+    gpu.forward(device_call(f.call(), maps));
+    gpu.backward(device_maps(dL_doutput), device_gradients(actual));
+    RasterGradient::for_each_array(
+        0,
+        [](const char* name, std::size_t, const FloatArray& a, const FloatArray& b) {
+          INFO(name);
+          CHECK(difference(a, b) < 2e-5);  // sums over pixels in another order
+        },
+        actual,
+        expected
     );
-    gpu.backward(pointers(f.arrays), camera, maps.pointers(), g.pointers(), pointers(actual));
-    // Sums over pixels in another order.
-    CHECK(difference(actual.means, expected.means) < 2e-5);
-    CHECK(difference(actual.scales, expected.scales) < 2e-5);
-    CHECK(difference(actual.rotations, expected.rotations) < 2e-5);
-    CHECK(difference(actual.opacities, expected.opacities) < 2e-5);
-    CHECK(difference(actual.features, expected.features) < 2e-5);
-    CHECK(difference(actual.screen, expected.screen) < 2e-5);
   }
 }
 
 TEST_CASE("The GPU's rasteriser on the host does without surfels") {
-  Fixture f({{20, 10}, 0, 3, false, false}, 3);
+  const Fixture f({{20, 10}, 0, 3, false, false}, 3);
   HostExec exec;
   RasterPipeline<HostExec> gpu(exec);
-  Maps maps({20, 10}, 3);
-  const CameraOf<float> camera = camera_of(f.camera, f.settings.near_plane);
-  gpu.forward(
-      pointers(f.arrays),
-      camera,
-      nullptr,
-      {},
-      maps.pointers(),
-      maps.visibility(f.arrays.count()),
-      maps.seen(f.arrays.count())
-  );
+  RasterOutput maps = room({20, 10}, 3, 0);
+  gpu.forward(device_call(f.call(), maps));
   for (const float alpha : maps.alpha.values()) CHECK(alpha == 0.0f);
   CHECK(gpu.num_pairs() == 0);
 }

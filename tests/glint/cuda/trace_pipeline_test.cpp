@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The GPU's tracer, its kernels run on the host, against the CPU's.
-#include "glint/cuda/trace_pipeline.h"
-
 #include <catch2/catch.hpp>
 
-#include "glint/render/trace.h"
+#include "glint/cuda/ops.h"
 #include "tests/support/host_exec.h"
 #include "tests/support/random_scene.h"
 
@@ -30,17 +28,6 @@ struct Arrays {
     input.sh_dc = sh_dc;
     input.sh_rest = sh_rest;
     return input;
-  }
-  DeviceTraceInput device() const {
-    return {
-        count(),
-        sh_degree,
-        means.data(),
-        scales.data(),
-        rotations.data(),
-        opacities.data(),
-        sh_dc.data(),
-        sh_rest.data()};
   }
 };
 
@@ -79,17 +66,10 @@ Rays random_rays(int width, int height, Rng& rng) {
   return rays;
 }
 
-struct Outputs {
-  Image color, alpha, depth_sum, normal;
-  explicit Outputs(ImageSize size)
-      : color(size.width, size.height, 3),
-        alpha(size.width, size.height, 1),
-        depth_sum(alpha),
-        normal(color) {}
-  DeviceTraceOutput pointers() {
-    return {color.data(), alpha.data(), depth_sum.data(), normal.data()};
-  }
-};
+TraceOutput room(ImageSize size) {
+  const Image one(size.width, size.height, 1), three(size.width, size.height, 3);
+  return {.color = three, .alpha = one, .depth_sum = one, .normal = three};
+}
 
 double difference(std::span<const float> a, std::span<const float> b) {
   REQUIRE(a.size() == b.size());
@@ -102,27 +82,16 @@ double difference(std::span<const float> a, std::span<const float> b) {
   return largest / scale;
 }
 
-TraceCutoffs cutoffs_of(const TraceSettings& s) {
-  return {s.near, s.max_rho, s.min_alpha, s.min_transmittance, s.max_hits};
-}
-
 constexpr ImageSize kSize{23, 17};
-constexpr auto kNumRays = static_cast<std::size_t>(kSize.width * kSize.height);
 
 void check_forward(const Arrays& arrays, const Rays& rays, const TraceSettings& settings) {
+  const TraceCall call{arrays.host(), rays, settings};
   Tracer cpu;
-  TraceOutput expected;
-  cpu.forward(arrays.host(), rays, settings, expected);
+  const TraceOutput& expected = cpu.forward(call);
   HostExec exec;
   TracePipeline<HostExec> gpu(exec);
-  Outputs out(kSize);
-  gpu.forward(
-      arrays.device(),
-      {rays.origins.data(), rays.directions.data()},
-      kNumRays,
-      cutoffs_of(settings),
-      out.pointers()
-  );
+  TraceOutput out = room(kSize);
+  gpu.forward(device_call(call, out));
   CHECK(difference(out.color.values(), expected.color.values()) < 1e-5);
   CHECK(difference(out.alpha.values(), expected.alpha.values()) < 1e-5);
   CHECK(difference(out.depth_sum.values(), expected.depth_sum.values()) < 1e-5);
@@ -157,43 +126,24 @@ TEST_CASE("The GPU's tracer on the host makes the CPU's gradients") {
   Rng rng(7);
   const Arrays arrays = random_arrays(600, rng);
   const Rays rays = random_rays(kSize.width, kSize.height, rng);
-  Outputs g(kSize);
+  const TraceCall call{arrays.host(), rays, {}};
+  const TraceOutput noise = room(kSize);
+  TraceOutputGradient g{noise.color, noise.alpha, noise.depth_sum, noise.normal};
   for (Image* image : {&g.color, &g.alpha, &g.depth_sum, &g.normal})
     for (float& value : image->values()) value = rng.normal();
   Tracer cpu;
-  TraceOutput output;
-  TraceGradient expected;
-  cpu.forward(arrays.host(), rays, {}, output);
-  cpu.backward(
-      arrays.host(), rays, {}, output, {g.color, g.alpha, g.depth_sum, g.normal}, expected
-  );
+  cpu.forward(call);
+  const TraceGradient& expected = cpu.backward(g);
 
   HostExec exec;
   TracePipeline<HostExec> gpu(exec);
-  Outputs out(kSize);
-  const DeviceRays device_rays{rays.origins.data(), rays.directions.data()};
-  gpu.forward(arrays.device(), device_rays, kNumRays, cutoffs_of({}), out.pointers());
+  TraceOutput out = room(kSize);
+  gpu.forward(device_call(call, out));
   TraceGradient actual = expected;
   for (FloatArray* values :
        {&actual.means, &actual.scales, &actual.rotations, &actual.sh_dc, &actual.sh_rest})
     std::fill(values->begin(), values->end(), -1.0f);
-  gpu.backward(
-      arrays.device(),
-      device_rays,
-      cutoffs_of({}),
-      out.pointers(),
-      g.pointers(),
-      actual.rays.origins.data(),
-      actual.rays.directions.data(),
-      {actual.means.data(),
-       actual.scales.data(),
-       actual.rotations.data(),
-       actual.opacities.data(),
-       actual.sh_dc.data(),
-       actual.sh_rest.data(),
-       actual.visibility.data(),
-       actual.half_depths.data()}
-  );
+  gpu.backward(device_output(g), device_gradients(actual));
   constexpr double kSumsInAnotherOrder = 5e-5;
   CHECK(difference(actual.means, expected.means) < kSumsInAnotherOrder);
   CHECK(difference(actual.scales, expected.scales) < kSumsInAnotherOrder);
@@ -218,12 +168,12 @@ TEST_CASE("A refitted tree finds surfels where they moved to") {
   const Rays rays = random_rays(kSize.width, kSize.height, rng);
   HostExec exec;
   TracePipeline<HostExec> refitted(exec), fresh(exec);
-  Outputs a(kSize), b(kSize);
-  const DeviceRays device_rays{rays.origins.data(), rays.directions.data()};
-  refitted.forward(arrays.device(), device_rays, kNumRays, cutoffs_of({}), a.pointers());
+  TraceOutput a = room(kSize), b = room(kSize);
+  const TraceCall call{arrays.host(), rays, {}};
+  refitted.forward(device_call(call, a));
   for (float& value : arrays.means) value += 0.5f * rng.normal();
-  refitted.forward(arrays.device(), device_rays, kNumRays, cutoffs_of({}), a.pointers());
-  fresh.forward(arrays.device(), device_rays, kNumRays, cutoffs_of({}), b.pointers());
+  refitted.forward(device_call(call, a));
+  fresh.forward(device_call(call, b));
   CHECK(difference(a.color.values(), b.color.values()) == 0);
   CHECK(difference(a.depth_sum.values(), b.depth_sum.values()) == 0);
 }

@@ -100,11 +100,8 @@ RandomSurfels smooth_surfels() {
 
 RasterGradient backward(const Case& c) {
   Rasterizer rasterizer;
-  RasterOutput output;
-  RasterGradient gradient;
-  rasterizer.forward(c.input(), c.camera, c.settings, output);
-  rasterizer.backward(c.input(), c.camera, c.settings, output, c.dL_doutput, gradient);
-  return gradient;
+  rasterizer.forward({c.input(), c.camera, c.settings});
+  return rasterizer.backward(c.dL_doutput);
 }
 
 // An input array, its float gradient, and the step for its differences.
@@ -316,10 +313,8 @@ TEST_CASE("A surfel that reaches no tile has exactly zero gradient, even when it
   Case c = random_case(smooth_surfels(), Map::kAll, 3);
   c.surfels.means[0] = std::numeric_limits<float>::quiet_NaN();
   Rasterizer rasterizer;
-  RasterOutput output;
-  RasterGradient gradient;
-  rasterizer.forward(c.input(), c.camera, c.settings, output);
-  rasterizer.backward(c.input(), c.camera, c.settings, output, c.dL_doutput, gradient);
+  const RasterOutput output = rasterizer.forward({c.input(), c.camera, c.settings});
+  const RasterGradient gradient = rasterizer.backward(c.dL_doutput);
   REQUIRE(output.in_view[0] == 0);
   for (int k = 0; k < 3; ++k) CHECK(gradient.means[k] == 0.0f);
   for (int k = 0; k < 4; ++k) CHECK(gradient.rotations[k] == 0.0f);

@@ -23,6 +23,11 @@ constexpr double kTolerance = 1e-3;
 // Where planes are seen under angles down to 0.05 degrees, that angle multiplies every rounding.
 constexpr double kGrazingTolerance = 1e-2;
 
+RasterSettings with_scalar(RasterSettings settings, bool scalar) {
+  settings.scalar = scalar;
+  return settings;
+}
+
 RasterOutput rasterize(
     const RasterInput& input,
     const Camera& camera,
@@ -30,9 +35,7 @@ RasterOutput rasterize(
     bool scalar = false
 ) {
   Rasterizer rasterizer;
-  RasterOutput output;
-  rasterizer.forward(input, camera, settings, output, scalar);
-  return output;
+  return rasterizer.forward({input, camera, with_scalar(settings, scalar)});
 }
 
 RasterOutput rasterize(const SurfelArrays& surfels, const Camera& camera) {
@@ -113,10 +116,8 @@ ForwardBackward forward_backward(
       three(camera.width, camera.height, 3, 1.0f);
   const RasterOutputGradient ones{
       Image(camera.width, camera.height, surfels.channels, 1.0f), one, one, one, three, one};
-  rasterizer.forward(surfels.view(), camera, kAllMaps, result.output, scalar);
-  rasterizer.backward(
-      surfels.view(), camera, kAllMaps, result.output, ones, result.gradient, scalar
-  );
+  result.output = rasterizer.forward({surfels.view(), camera, with_scalar(kAllMaps, scalar)});
+  result.gradient = rasterizer.backward(ones);
   return result;
 }
 
@@ -283,13 +284,11 @@ TEST_CASE("The distortion of thin layers and its gradients keep their digits") {
   add_facing(surfels, {0, 0, 4 + gap}, 4, 0.5, 1);
   const Camera camera = small_camera();
   Rasterizer rasterizer;
-  RasterOutput output;
-  RasterGradient gradient;
   RasterOutputGradient dL_doutput;
   dL_doutput.distortion = Image(21, 21, 1);
   dL_doutput.distortion.at(10, 10) = 1;
-  rasterizer.forward(surfels.view(), camera, kAllMaps, output);
-  rasterizer.backward(surfels.view(), camera, kAllMaps, output, dL_doutput, gradient);
+  const RasterOutput output = rasterizer.forward({surfels.view(), camera, kAllMaps});
+  const RasterGradient gradient = rasterizer.backward(dL_doutput);
 
   // Both are met in their middle: L = w1 w2 (m2 - m1)^2 with w1 = o1, w2 = o2 (1 - o1), and
   // dL/do1 = 0 at o1 = 1/2. A depth of 4 m is rounded by 2.4e-7 m: 1e-4 of L at a gap of 1 cm.

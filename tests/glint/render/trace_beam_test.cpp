@@ -92,8 +92,8 @@ Traced trace(const BeamScene& scene, TraceSearch search, bool triangles = false)
       Image(48, 40, 3, 0.2f)};
   Tracer tracer;
   Traced traced;
-  tracer.forward(scene.view(), scene.rays, settings, traced.out);
-  tracer.backward(scene.view(), scene.rays, settings, traced.out, g, traced.gradient);
+  traced.out = tracer.forward({scene.view(), scene.rays, settings});
+  traced.gradient = tracer.backward(g);
   traced.hits = tracer.num_hits();
   return traced;
 }
@@ -208,7 +208,7 @@ TEST_CASE("beams give the same bytes for any number of threads") {
   TraceOutput out[2];
   for (const int i : {0, 1}) {
     set_num_threads(1 + 3 * i);
-    Tracer().forward(scene.view(), scene.rays, scene.settings, out[i]);
+    out[i] = Tracer().forward({scene.view(), scene.rays, scene.settings});
   }
   set_num_threads(0);
   CHECK(same_bytes(out[0].color, out[1].color));

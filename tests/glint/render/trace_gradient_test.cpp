@@ -101,10 +101,8 @@ TEST_CASE("every gradient of trace matches central differences") {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Case c = random_case(seed);
     Tracer tracer;
-    TraceOutput out;
-    TraceGradient g;
-    tracer.forward(c.view(), c.rays, c.settings, out);
-    tracer.backward(c.view(), c.rays, c.settings, out, c.dL_doutput, g);
+    const TraceOutput out = tracer.forward({c.view(), c.rays, c.settings});
+    const TraceGradient g = tracer.backward(c.dL_doutput);
     INFO("seed " << seed);
     check(c, g.means, &ReferenceTraceInput::means, "means");
     check(c, g.scales, &ReferenceTraceInput::scales, "scales");
@@ -123,10 +121,8 @@ TEST_CASE("every gradient of trace matches central differences") {
 TEST_CASE("visibility sums to alpha, and the densification statistic is half the depth") {
   const Case c = random_case(4);
   Tracer tracer;
-  TraceOutput out;
-  TraceGradient g;
-  tracer.forward(c.view(), c.rays, c.settings, out);
-  tracer.backward(c.view(), c.rays, c.settings, out, c.dL_doutput, g);
+  TraceOutput out = tracer.forward({c.view(), c.rays, c.settings});
+  TraceGradient g = tracer.backward(c.dL_doutput);
   double visible = 0, alpha = 0;
   for (const float value : g.visibility) visible += static_cast<double>(value);
   for (const float value : out.alpha.values()) alpha += static_cast<double>(value);
@@ -140,8 +136,8 @@ TEST_CASE("visibility sums to alpha, and the densification statistic is half the
   one.rays = {Image(1, 1, 3), Image(1, 1, 3)};
   one.rays.directions.data()[2] = 1;
   one.dL_doutput.color = Image(1, 1, 3, 1.0f);
-  tracer.forward(one.view(), one.rays, {}, out);
-  tracer.backward(one.view(), one.rays, {}, out, one.dL_doutput, g);
+  out = tracer.forward({one.view(), one.rays, {}});
+  g = tracer.backward(one.dL_doutput);
   CHECK(g.means[0] != 0.0f);
   for (int k = 0; k < 3; ++k) CHECK(g.half_depths[k] == Approx(g.means[k]).margin(1e-9));
 }

@@ -71,8 +71,7 @@ double compare_with_reference(
     const TraceArrays& arrays, const Rays& rays, const TraceSettings& settings, double tolerance
 ) {
   Tracer tracer;
-  TraceOutput out;
-  tracer.forward(arrays.view(), rays, settings, out);
+  const TraceOutput out = tracer.forward({arrays.view(), rays, settings});
   const ReferenceTraceInput reference = reference_trace_input(arrays.view(), rays);
   std::size_t clean = 0;
   double worst = 0;
@@ -133,8 +132,7 @@ TEST_CASE("coincident surfels count once each, more of them than one traversal r
     TraceSettings settings;
     settings.triangles = triangles;
     Tracer tracer;
-    TraceOutput out;
-    tracer.forward(arrays.view(), rays, settings, out);
+    const TraceOutput out = tracer.forward({arrays.view(), rays, settings});
     CHECK(tracer.num_hits() == kClones);
     CHECK(
         static_cast<double>(out.alpha.data()[0]) == Approx(1 - std::pow(0.98, kClones)).margin(1e-5)
@@ -205,14 +203,12 @@ TEST_CASE("camera rays see what rasterize sees where the low-pass is inactive") 
   const Camera camera = random_camera(rng, {48, 32});
   const TraceArrays arrays = layered_arrays(camera, rng);
   Rasterizer rasterizer;
-  RasterOutput raster;
-  rasterizer.forward(arrays.surfels.view(), camera, {}, raster);
+  const RasterOutput raster = rasterizer.forward({arrays.surfels.view(), camera, {}});
   const Image start(camera.width, camera.height, 1);
   TraceSettings settings;
   settings.near = 0.2f;
   Tracer tracer;
-  TraceOutput out;
-  tracer.forward(arrays.view(), pixel_rays(camera, start), settings, out);
+  const TraceOutput out = tracer.forward({arrays.view(), pixel_rays(camera, start), settings});
   std::size_t covered = 0;
   for (const float alpha : raster.alpha.values()) covered += alpha > 0.1f;
   CHECK(covered > 300);
@@ -228,11 +224,9 @@ TEST_CASE("rasterising behind a depth map is tracing the camera rays on from the
   RasterInput input = arrays.surfels.view();
   input.near_limit = start;
   Rasterizer rasterizer;
-  RasterOutput raster;
-  rasterizer.forward(input, camera, {}, raster);
+  const RasterOutput raster = rasterizer.forward({input, camera, {}});
   Tracer tracer;
-  TraceOutput out;
-  tracer.forward(arrays.view(), pixel_rays(camera, start), {}, out);
+  const TraceOutput out = tracer.forward({arrays.view(), pixel_rays(camera, start), {}});
   CHECK(share_that_agrees(out, raster, start) > 0.97);
 }
 
@@ -245,8 +239,7 @@ TEST_CASE("a mirrored ray sees the surfel in the mirror") {
   set_ray(rays, 0, {0.2, 0, 1}, {0.2, 0, -2});
   set_ray(rays, 1, {0.5, 0, 1}, {0.2, 0, -2});
   Tracer tracer;
-  TraceOutput out;
-  tracer.forward(arrays.view(), rays, {}, out);
+  const TraceOutput out = tracer.forward({arrays.view(), rays, {}});
   CHECK(out.alpha.data()[0] == Approx(0.9f).margin(1e-5));
   CHECK(out.depth_sum.data()[0] == Approx(0.9f).margin(1e-4));  // t = 1 in units of the direction
   CHECK(out.normal.data()[2] == Approx(0.9f).margin(1e-5));     // towards the mirror
@@ -261,8 +254,7 @@ TEST_CASE("a ray that starts on a surfel does not see it, and sees what lies beh
   Rays rays = empty_rays(1, 1);
   set_ray(rays, 0, {0, 0, 1}, {0, 0, 1});
   Tracer tracer;
-  TraceOutput out;
-  tracer.forward(arrays.view(), rays, {}, out);
+  const TraceOutput out = tracer.forward({arrays.view(), rays, {}});
   CHECK(tracer.num_hits() == 1);
   CHECK(out.depth_sum.data()[0] == Approx(0.5f));
 }
@@ -273,14 +265,12 @@ TEST_CASE("no surfels, and rays without direction, give nothing and no gradient"
     const TraceArrays arrays = random_arrays(count, rng);
     const Rays rays = count == 0 ? random_rays(4, 3, rng) : empty_rays(4, 3);
     Tracer tracer;
-    TraceOutput out;
-    tracer.forward(arrays.view(), rays, {}, out);
+    const TraceOutput out = tracer.forward({arrays.view(), rays, {}});
     CHECK(tracer.num_hits() == 0);
     for (const float alpha : out.alpha.values()) CHECK(alpha == 0.0f);
     TraceOutputGradient g;
     g.color = Image(4, 3, 3, 1.0f);
-    TraceGradient gradient;
-    tracer.backward(arrays.view(), rays, {}, out, g, gradient);
+    const TraceGradient gradient = tracer.backward(g);
     for (const float value : gradient.rays.directions.values()) CHECK(value == 0.0f);
     for (const float value : gradient.means) CHECK(value == 0.0f);
   }
@@ -295,18 +285,17 @@ TEST_CASE("rays that are not finite count as none, those beside them as ever") {
     settings.search = search;
     Tracer tracer;
     TraceOutput before, after;
-    tracer.forward(arrays.view(), rays, settings, before);
+    before = tracer.forward({arrays.view(), rays, settings});
     rays.origins.data()[0] = std::numeric_limits<float>::quiet_NaN();
     rays.directions.data()[4] = std::numeric_limits<float>::quiet_NaN();
     rays.directions.data()[7] = std::numeric_limits<float>::infinity();
     rays.origins.data()[10] = 1e30f;
-    tracer.forward(arrays.view(), rays, settings, after);
+    after = tracer.forward({arrays.view(), rays, settings});
     for (std::size_t i = 0; i < 24; ++i)
       CHECK(after.alpha.data()[i] == (i < 4 ? 0.0f : before.alpha.data()[i]));
     TraceOutputGradient g;
     g.color = Image(6, 4, 3, 1.0f);
-    TraceGradient gradient;
-    tracer.backward(arrays.view(), rays, settings, after, g, gradient);
+    const TraceGradient gradient = tracer.backward(g);
     for (const float value : gradient.means) CHECK(std::isfinite(value));
   }
 }
@@ -318,10 +307,10 @@ TEST_CASE("surfels that moved are found where they are, refitted or rebuilt") {
   Tracer kept;
   TraceOutput out, fresh_out;
   for (int step = 0; step < 40; ++step) {
-    kept.forward(arrays.view(), rays, {}, out);
+    out = kept.forward({arrays.view(), rays, {}});
     if (step % 7 == 0) {
       Tracer fresh;
-      fresh.forward(arrays.view(), rays, {}, fresh_out);
+      fresh_out = fresh.forward({arrays.view(), rays, {}});
       CHECK(same_bytes(out.color, fresh_out.color));
     }
     for (float& value : arrays.surfels.means) value += 0.05f * rng.normal();
@@ -340,7 +329,7 @@ TEST_CASE("surfels that are not finite or invisible reach no ray") {
   for (const bool triangles : {false, true}) {
     TraceSettings settings;
     settings.triangles = triangles;
-    tracer.forward(arrays.view(), random_rays(10, 10, rng), settings, out);
+    out = tracer.forward({arrays.view(), random_rays(10, 10, rng), settings});
     CHECK(tracer.num_hits() == 0);
   }
 }
@@ -351,14 +340,12 @@ TEST_CASE("a surfel without extent has no gradient") {
   arrays.surfels.scales[0] = 0;
   const Rays rays = random_rays(10, 10, rng);
   Tracer tracer;
-  TraceOutput out;
-  tracer.forward(arrays.view(), rays, {}, out);
+  const TraceOutput out = tracer.forward({arrays.view(), rays, {}});
   REQUIRE(tracer.num_hits() > 0);
   TraceOutputGradient g;
   g.color = Image(10, 10, 3, 1.0f);
   g.normal = Image(10, 10, 3, 1.0f);
-  TraceGradient gradient;
-  tracer.backward(arrays.view(), rays, {}, out, g, gradient);
+  const TraceGradient gradient = tracer.backward(g);
   for (std::size_t k = 0; k < 4; ++k) CHECK(gradient.rotations[k] == 0.0f);
   CHECK(gradient.opacities[0] == 0.0f);
 }
@@ -375,8 +362,8 @@ TEST_CASE("forward and backward give the same bytes for any number of threads") 
   for (const int i : {0, 1}) {
     set_num_threads(1 + 3 * i);
     Tracer tracer;
-    tracer.forward(arrays.view(), rays, {}, out[i]);
-    tracer.backward(arrays.view(), rays, {}, out[i], g, gradient[i]);
+    out[i] = tracer.forward({arrays.view(), rays, {}});
+    gradient[i] = tracer.backward(g);
   }
   set_num_threads(0);
   CHECK(same_bytes(out[0].color, out[1].color));
@@ -393,9 +380,9 @@ TEST_CASE("wrong sizes are usage errors") {
   TraceOutput out;
   Rays rays = empty_rays(2, 2);
   rays.directions = Image(2, 1, 3);
-  CHECK_THROWS_WITH(tracer.forward(arrays.view(), rays, {}, out), Catch::Contains("2x2"));
+  CHECK_THROWS_WITH(tracer.forward({arrays.view(), rays, {}}), Catch::Contains("2x2"));
   arrays.sh_dc.pop_back();
   CHECK_THROWS_WITH(
-      tracer.forward(arrays.view(), empty_rays(1, 1), {}, out), Catch::Contains("5 surfels")
+      tracer.forward({arrays.view(), empty_rays(1, 1), {}}), Catch::Contains("5 surfels")
   );
 }

@@ -57,8 +57,7 @@ TEST_CASE("three points are too few") {
 TEST_CASE("surfels start at the points with their colour, spacing and a random rotation") {
   const PointCloud points = random_points(50);
   InitialSurfels options;
-  options.extra_names = {"transparency", "specular"};
-  options.extra_values = {0.1f, 0.5f};
+  options.extra = {{"transparency", 0.1f, 0}, {"specular", 0.5f, 0}};
   const SurfelCloud cloud = surfels_from_points(points, options);
   for (std::size_t i = 0; i < 50; ++i) {
     CHECK(cloud.means[3 * i + 1] == points.positions[i].y);

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "glint/train/surfel_set.h"
+#include "glint/render/map_ops.h"
 #include "tests/support/random_scene.h"
 
 using namespace glint;
@@ -122,7 +122,7 @@ TEST_CASE("A prior that a view lacks switches its loss off, with a warning") {
 
 TEST_CASE("The control of a baseline has GLINT's priors at the same share of its run") {
   const Json overrides = prior_control(30000);
-  CHECK(overrides.at("lambda_depth") == GlintPriors::kLambdaDepth);
-  CHECK(overrides.at("lambda_normal") == GlintPriors::kLambdaNormal);
+  CHECK(overrides.at("lambda_depth") == PriorLosses::kLambdaDepth);
+  CHECK(overrides.at("lambda_normal") == PriorLosses::kLambdaNormal);
   CHECK(overrides.at("gate_from") == 5000);
 }

@@ -188,14 +188,19 @@ TEST_CASE("Without opacity resets opacities stay, and large surfels go as they w
   CHECK(densifier.update(3, cloud, adam).pruned == 1);
 }
 
-TEST_CASE("Extra channels have the rates of their names") {
+TEST_CASE("Each extra channel has its own rate") {
   SurfelCloud cloud, gradient;
   for (SurfelCloud* c : {&cloud, &gradient}) {
     c->extra_names = {"transparency", "specular"};
     c->resize(3);
   }
   std::fill(gradient.extra_logits.begin(), gradient.extra_logits.end(), 1.0f);
-  SurfelAdam().step(cloud, gradient, {}, 1);
+  CHECK_THROWS_WITH(
+      SurfelAdam().step(cloud, gradient, {}, 1), Catch::Contains("0 rates for 2 extra channels")
+  );
+  SurfelRates rates;
+  rates.extra = {0.05f, 0.01f};
+  SurfelAdam().step(cloud, gradient, rates, 1);
   for (std::size_t i = 0; i < 3; ++i) {
     CHECK(cloud.extra_logits[2 * i] == Approx(-0.05f));
     CHECK(cloud.extra_logits[2 * i + 1] == Approx(-0.01f));

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "glint/core/error.h"
+#include "glint/render/map_ops.h"
 #include "tests/support/random_scene.h"
 
 using namespace glint;
@@ -23,7 +24,7 @@ struct Fixture {
   Scene scene;
   RasterOutput interface;
   GlassBuffer buffer;
-  SurfelSet transmission;
+  TrainableSet transmission;
   Image dL_dtransparency = constant(1, 0);
 
   explicit Fixture(float behind = 3) {
@@ -43,7 +44,7 @@ struct Fixture {
     wall.log_scales = {3, 3};
     wall.rotations = {1, 0, 0, 0};
     wall.opacity_logits = {3};
-    transmission = SurfelSet(wall, {}, {}, 1, 0);
+    transmission = TrainableSet(wall, SetTraining{});
   }
   StepStats add(const TransmissionLossConfig& config, int iteration) {
     TransmissionLosses losses;
@@ -103,11 +104,11 @@ TEST_CASE("Direct supervision is the photometric loss of the set on its own, tim
   RasterOutputGradient g;
   clear_gradient(kSize, 3, g);
   Fixture other;
-  const RasterOutput& out = other.transmission.forward(other.scene.train[0].camera, 0, {});
+  const RasterOutput& out = other.transmission.forward(other.scene.train[0].camera, 0);
   const PhotometricWeights doubled{1.6f, 0.4f};
   const double expected =
       loss.evaluate(out.features, other.scene.train[0].rgb, doubled, g.features).weighted(doubled);
-  other.transmission.backward(other.scene.train[0].camera, 0, {}, g);
+  other.transmission.backward(g);
   CHECK(stats.terms.at("direct") == Approx(expected));
   CHECK(norm(f.transmission.gradient().sh_dc) > 0);
   CHECK(f.transmission.gradient().sh_dc == other.transmission.gradient().sh_dc);

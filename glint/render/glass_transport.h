@@ -3,9 +3,9 @@
 // transparency, from the sets' radiance to the picture [Na26 Eq. 5-9], and the way back.
 #pragma once
 
+#include "glint/render/glass_kernels.h"
 #include "glint/render/rasterize.h"
 #include "glint/render/trace.h"
-#include "glint/train/glass_kernels.h"
 
 namespace glint {
 
@@ -25,19 +25,22 @@ struct GlassLayers {
   Image interface, transmission, reflection;
 };
 
+// Names of an interface set's extra channels.
+inline constexpr const char* kTransparency = "transparency";
+inline constexpr const char* kSpecular = "specular";
+// Where the rasterised features of a set have them.
+InterfaceChannels interface_channels(const SurfelCloud& interface);
+
 // Camera rays with camera-space z = 1: t is planar depth.
 void camera_rays(const Camera& camera, Rays& rays);
 PixelRays pixel_rays(const Camera& camera);
-
-// The colour channels of a rasterised interface.
-void copy_color(const Image& features, Image& color);
 
 class GlassTransport {
  public:
   explicit GlassTransport(GlassOptions options = {}) : options_(options) {}
   void set_options(GlassOptions options) { options_ = options; }
 
-  // From the interface set rasterised with its colour, t (not without transmission) and s.
+  // From the interface set as it was rasterised, with the options' channels.
   const GlassBuffer& read_interface(const Camera& camera, const RasterOutput& interface);
   // The picture [H][W][3]. Images of layers that are switched off may be empty.
   const Image& compose(const GlassLayers& layers);

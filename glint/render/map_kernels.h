@@ -3,8 +3,9 @@
 #pragma once
 
 #include "glint/core/image.h"
+#include "glint/core/kernel.h"
 #include "glint/render/blend.h"
-#include "glint/train/pixel_losses.h"
+#include "glint/render/depth_normal.h"
 
 namespace glint {
 
@@ -70,5 +71,14 @@ struct MoveAlongRays {
     for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) origins[k] += depth[i] * directions[k];
   }
 };
+
+using MapKernels = KernelList<
+    ExpectedDepth,
+    ExpectedDepthVjp,
+    CopyColor,
+    UnitNormals,
+    ShiftDepth,
+    SumPixels,
+    MoveAlongRays>;
 
 }  // namespace glint

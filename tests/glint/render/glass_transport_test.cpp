@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // GlassTransport as a whole: central differences from the interface's maps to the picture, with a
 // reflected radiance that is a known function of the mirrored rays.
-#include "glint/train/glass_transport.h"
+#include "glint/render/glass_transport.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,6 +17,7 @@ using namespace glint::test;
 namespace {
 
 constexpr int kWidth = 4, kHeight = 3;
+constexpr std::size_t kInterfaceChannels = 5;  // colour, t, s
 
 Image random_image(Rng& rng, int channels, float low, float high) {
   Image image(kWidth, kHeight, channels);
@@ -33,7 +34,8 @@ struct Fixture {
   explicit Fixture(std::uint64_t seed) {
     Rng rng(seed);
     camera = random_camera(rng, {kWidth, kHeight});
-    interface.features = random_image(rng, kInterfaceChannels, 0.1f, 0.9f);
+    options.channels = {.transparency = 3, .specular = 4};
+    interface.features = random_image(rng, static_cast<int>(kInterfaceChannels), 0.1f, 0.9f);
     interface.alpha = random_image(rng, 1, 0.5f, 1);
     interface.depth_sum = random_image(rng, 1, 1, 2);
     interface.normal = random_image(rng, 3, -0.3f, 0.3f);
@@ -89,7 +91,7 @@ struct Fixture {
       go[2] = 0.3f * r[2];
     }
     RasterOutputGradient result;
-    result.features = Image(kWidth, kHeight, kInterfaceChannels);
+    result.features = Image(kWidth, kHeight, static_cast<int>(kInterfaceChannels));
     result.alpha = Image(kWidth, kHeight, 1);
     result.depth_sum = Image(kWidth, kHeight, 1);
     result.normal = Image(kWidth, kHeight, 3);
@@ -159,7 +161,7 @@ TEST_CASE("pixels without a surface mirror nothing and show the interface as it 
   for (Image* image : {&f.interface.alpha, &f.interface.depth_sum, &f.interface.normal})
     std::fill(image->values().begin(), image->values().end(), 0.0f);
   std::fill(f.interface.features.values().begin(), f.interface.features.values().end(), 0.0f);
-  GlassTransport transport;
+  GlassTransport transport(f.options);
   const GlassBuffer& buffer = transport.read_interface(f.camera, f.interface);
   for (const float value : buffer.mirrored.values()) CHECK(value == 0.0f);
   for (const float value : buffer.reflected.directions.values()) CHECK(value == 0.0f);

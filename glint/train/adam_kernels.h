@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "glint/core/kernel.h"
 #include "glint/core/real.h"
 
 namespace glint {
@@ -28,5 +29,7 @@ struct AdamKernel {
     g[i] = 0;
   }
 };
+
+using AdamKernels = KernelList<AdamKernel<true>, AdamKernel<false>>;
 
 }  // namespace glint

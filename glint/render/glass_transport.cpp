@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "glint/train/glass_transport.h"
+#include "glint/render/glass_transport.h"
 
 #include "glint/core/kernel.h"
-#include "glint/train/map_kernels.h"
 
 namespace glint {
 
@@ -35,11 +34,15 @@ void camera_rays(const Camera& camera, Rays& rays) {
   );
 }
 
-void copy_color(const Image& features, Image& color) {
-  fit(color, features.size(), 3);
-  run_kernel(
-      color.num_pixels(), kGrain, CopyColor{features.data(), features.channels(), color.data()}
-  );
+InterfaceChannels interface_channels(const SurfelCloud& interface) {
+  constexpr int kBehindColor = 3;
+  InterfaceChannels channels;
+  for (std::size_t i = 0; i < interface.num_extra(); ++i) {
+    const int channel = kBehindColor + static_cast<int>(i);
+    if (interface.extra_names[i] == kTransparency) channels.transparency = channel;
+    if (interface.extra_names[i] == kSpecular) channels.specular = channel;
+  }
+  return channels;
 }
 
 const GlassBuffer&

@@ -2,16 +2,24 @@
 // GlassTransport, pixel by pixel.
 #pragma once
 
+#include "glint/core/kernel.h"
 #include "glint/render/blend.h"
+#include "glint/render/depth_normal.h"
 #include "glint/render/transport.h"
-#include "glint/train/pixel_losses.h"
 
 namespace glint {
 
-// Feature channels of the interface set: its colour, t, s. A set without t has its s last, too.
-inline constexpr int kTransparencyChannel = 3, kInterfaceChannels = 5;
+// Where an interface set's features have t and s, behind its colour.
+struct InterfaceChannels {
+  static constexpr int kNone = -1;  // counts as 0
+  int transparency = kNone, specular = kNone;
+};
+GLINT_HD float feature_or_zero(const float* feature, int channel) {
+  return channel < 0 ? 0.0f : feature[channel];
+}
 
 struct GlassOptions {
+  InterfaceChannels channels;
   float f0 = 0.04f;             // of Fresnel's term
   bool transmission = true;     // off: t counts as 0
   bool reflection = true;       // off: k_s counts as 0
@@ -59,7 +67,6 @@ struct GlassMaps {
 };
 
 struct ReadInterface {
-  static constexpr float kLeastNormal = 1e-6f;  // of a composited normal that has a direction
   PixelRays rays;
   GlassOptions options;
   int channels;
@@ -71,14 +78,15 @@ struct ReadInterface {
     const float z = expected_depth(depth_sum[i], alpha[i]);
     const Vec3f raw = map3(normal, i);
     const float norm = length(raw);
-    const bool hit = z > 0 && norm > kLeastNormal;
+    const bool hit = z > 0 && norm > kMinNormalLength;
     const Vec3f n = hit ? (1 / norm) * raw : Vec3f{};
     const PixelRay ray = rays.at(i);
-    const float specular = feature[channels - 1];
+    const float specular = feature_or_zero(feature, options.channels.specular);
     const float fresnel = keep(options.fresnel, schlick(options.f0, -dot(n, ray.unit())));
     out.depth[i] = z;
     put3(out.normal, i, n);
-    out.transparency[i] = options.transmission ? feature[kTransparencyChannel] : 0.0f;
+    const float t = feature_or_zero(feature, options.channels.transparency);
+    out.transparency[i] = options.transmission ? t : 0.0f;
     out.specular[i] = specular;
     out.fresnel[i] = fresnel;
     out.mirrored[i] = keep(hit && options.reflection, mirrored_share(specular, fresnel));
@@ -137,17 +145,17 @@ struct ReadInterfaceVjp {
   GLINT_HD void operator()(std::size_t i) const {
     float* feature = dL_dfeatures + static_cast<std::size_t>(channels) * i;
     for (std::size_t c = 0; c < 3; ++c) feature[c] += dL_dcolor[3 * i + c];
-    if (channels == kInterfaceChannels) {
-      feature[kTransparencyChannel] += dL_dt[i];
-      if (dL_dmap_t != nullptr) feature[kTransparencyChannel] += dL_dmap_t[i];
+    if (options.channels.transparency >= 0) {
+      float& dL_dfeature = feature[options.channels.transparency];
+      dL_dfeature += dL_dt[i];
+      if (dL_dmap_t != nullptr) dL_dfeature += dL_dmap_t[i];
     }
     const Vec3f n = map3(normal, i);
     if (!options.reflection || length2(n) == 0) return;
     const PixelRay ray = rays.at(i);
-    float dL_dfresnel = 0;
-    mirrored_share_vjp(
-        specular[i], fresnel[i], dL_dmirrored[i], feature[channels - 1], dL_dfresnel
-    );
+    float dL_dfresnel = 0, dL_dspecular = 0;
+    mirrored_share_vjp(specular[i], fresnel[i], dL_dmirrored[i], dL_dspecular, dL_dfresnel);
+    if (options.channels.specular >= 0) feature[options.channels.specular] += dL_dspecular;
     dL_dfresnel = keep(options.fresnel, dL_dfresnel);
     Vec3f dL_dn = -schlick_vjp(options.f0, -dot(n, ray.unit()), dL_dfresnel) * ray.unit();
     if (dL_dorigins != nullptr) through_rays(i, ray, n, dL_dn);
@@ -165,5 +173,8 @@ struct ReadInterfaceVjp {
     );
   }
 };
+
+using GlassKernels =
+    KernelList<CameraRays, ReadInterface, ComposeGlass, ComposeGlassVjp, ReadInterfaceVjp>;
 
 }  // namespace glint

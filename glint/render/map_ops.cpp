@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "glint/render/map_ops.h"
+
+#include "glint/core/kernel.h"
+#include "glint/render/map_kernels.h"
+
+namespace glint {
+
+namespace {
+constexpr std::size_t kPixelGrain = 4096;  // pixels a block
+}
+
+void expected_depth_map(const RasterOutput& output, Image& depth) {
+  fit(depth, output.alpha.size(), 1);
+  run_kernel(
+      depth.num_pixels(),
+      kPixelGrain,
+      ExpectedDepth{output.depth_sum.data(), output.alpha.data(), depth.data()}
+  );
+}
+
+void expected_depth_map_vjp(
+    const RasterOutput& output, const Image& dL_ddepth, RasterOutputGradient& dL_doutput
+) {
+  run_kernel(
+      dL_ddepth.num_pixels(),
+      kPixelGrain,
+      ExpectedDepthVjp{
+          output.depth_sum.data(),
+          output.alpha.data(),
+          dL_ddepth.data(),
+          dL_doutput.depth_sum.data(),
+          dL_doutput.alpha.data()}
+  );
+}
+
+void clear_image(Image& image, ImageSize size, int channels) {
+  fit(image, size, channels);
+  fill(image.data(), image.values().size(), 0.0f);
+}
+
+void clear_gradient(ImageSize size, int features, RasterOutputGradient& dL_doutput) {
+  clear_image(dL_doutput.features, size, features);
+  clear_image(dL_doutput.normal, size, 3);
+  clear_image(dL_doutput.alpha, size, 1);
+  clear_image(dL_doutput.depth_sum, size, 1);
+}
+
+Image unit_normals(const Image& normal) {
+  Image result(normal.width(), normal.height(), 3);
+  run_kernel(normal.num_pixels(), kPixelGrain, UnitNormals{normal.data(), result.data()});
+  return result;
+}
+
+void copy_color(const Image& features, Image& color) {
+  fit(color, features.size(), 3);
+  run_kernel(
+      color.num_pixels(), kPixelGrain, CopyColor{features.data(), features.channels(), color.data()}
+  );
+}
+
+}  // namespace glint

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The two ops as a device implements them: the CPU (rasterize_cpu.cpp, trace_cpu.cpp) and GPUs
+// (glint/cuda/ops.h). Arguments are those of Rasterizer and Tracer, checked; outputs and gradients
+// have their shapes.
+#pragma once
+
+#include <memory>
+
+#include "glint/render/rasterize.h"
+#include "glint/render/trace.h"
+
+namespace glint {
+
+class RasterBackend {
+ public:
+  virtual ~RasterBackend() = default;
+  virtual void forward(const RasterCall& call, RasterOutput& output) = 0;
+  // Of the last forward call, with its output.
+  virtual void backward(
+      const RasterCall& call,
+      const RasterOutput& output,
+      const RasterOutputGradient& dL_doutput,
+      RasterGradient& gradient
+  ) = 0;
+  virtual std::size_t num_pairs() = 0;
+  virtual std::size_t num_pixel_pairs() = 0;
+};
+
+class TraceBackend {
+ public:
+  virtual ~TraceBackend() = default;
+  virtual void forward(const TraceCall& call, TraceOutput& output) = 0;
+  virtual void backward(
+      const TraceCall& call,
+      const TraceOutput& output,
+      const TraceOutputGradient& dL_doutput,
+      TraceGradient& gradient
+  ) = 0;
+  virtual std::size_t num_hits() = 0;
+};
+
+std::unique_ptr<RasterBackend> raster_on_cpu();
+std::unique_ptr<TraceBackend> trace_on_cpu();
+
+// Filled by the GPU backend in use; not looked at on the CPU.
+struct GpuOps {
+  std::unique_ptr<RasterBackend> (*rasterizer)() = nullptr;
+  std::unique_ptr<TraceBackend> (*tracer)() = nullptr;
+};
+inline GpuOps gpu_ops;
+
+// An op's implementations, made when their device is first used.
+template <class Backend>
+class DeviceChoice {
+ public:
+  using Make = std::unique_ptr<Backend> (*)();
+  Backend& on(bool gpu, Make make_cpu, Make make_gpu) {
+    std::unique_ptr<Backend>& chosen = gpu ? gpu_ : cpu_;
+    if (chosen == nullptr) chosen = gpu ? make_gpu() : make_cpu();
+    return *chosen;
+  }
+
+ private:
+  std::unique_ptr<Backend> cpu_, gpu_;
+};
+
+}  // namespace glint

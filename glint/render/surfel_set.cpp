@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "glint/render/surfel_set.h"
+
+#include <cmath>
+
+#include "glint/core/error.h"
+
+namespace glint {
+
+const RasterOutput& SurfelSet::forward(
+    RasterPass& pass,
+    const Camera& camera,
+    int sh_degree,
+    const RasterSettings& settings,
+    ImageView near_limit
+) const {
+  pass.sh_degree = sh_degree;
+  activate(cloud_, cast<float>(camera.center()), sh_degree, pass.activated);
+  RasterCall call{raster_input(cloud_, pass.activated), camera, settings};
+  call.input.near_limit = near_limit;
+  return pass.rasterizer.forward(call);
+}
+
+const TraceOutput& SurfelSet::trace(
+    const Rays& rays, int sh_degree, const TraceSettings& settings
+) {
+  ActivatedSurfels& activated = trace_pass_.activated;
+  activate_geometry(cloud_, activated);
+  return trace_pass_.tracer.forward({trace_input(cloud_, activated, sh_degree), rays, settings});
+}
+
+const RasterGradient& raster_backward(
+    const SurfelCloud& cloud,
+    RasterPass& pass,
+    const RasterOutputGradient& dL_doutput,
+    SurfelCloud& dL_dcloud
+) {
+  const RasterGradient& gradient = pass.rasterizer.backward(dL_doutput);
+  const Vec3f eye = cast<float>(pass.rasterizer.call().camera.center());
+  activate_vjp(cloud, eye, pass.sh_degree, pass.activated, gradient, dL_dcloud);
+  return gradient;
+}
+
+const TraceGradient& trace_backward(
+    TracePass& pass, const TraceOutputGradient& dL_doutput, SurfelCloud& dL_dcloud
+) {
+  const TraceGradient& gradient = pass.tracer.backward(dL_doutput);
+  trace_activate_vjp(pass.activated, gradient, dL_dcloud);
+  return gradient;
+}
+
+void check_finite(const SurfelCloud& cloud, const std::string& set_name) {
+  cloud.for_each_array([&](const char* name, const FloatArray& array, std::size_t width) {
+    for (std::size_t i = 0; i < array.size(); ++i)
+      GLINT_CHECK(
+          std::isfinite(array[i]),
+          kBadPrediction,
+          "{}: {} of surfel {} is {}; lower the learning rate of that parameter",
+          set_name,
+          name,
+          i / width,
+          array[i]
+      );
+  });
+}
+
+}  // namespace glint

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// One trainable set of surfels, rasterised or traced: the building block that methods are composed
+// of. A set that was only loaded is rendered by the same calls, and has neither gradients nor an
+// optimiser.
+#pragma once
+
+#include <memory>
+
+#include "glint/render/surfel_set.h"
+#include "glint/train/adam.h"
+#include "glint/train/densify.h"
+
+namespace glint {
+
+struct SetTraining {
+  SurfelRates rates;
+  DensifyConfig densify;
+  float extent = 1;        // of the scene, metres
+  std::uint64_t seed = 0;  // of density control
+};
+
+class TrainableSet final : public SurfelSet {
+ public:
+  TrainableSet() = default;
+  explicit TrainableSet(SurfelCloud cloud) : SurfelSet(std::move(cloud)) {}  // to be rendered
+  TrainableSet(SurfelCloud cloud, const SetTraining& training);
+  // New surfels at the points, with the rates of their extra channels.
+  TrainableSet(const PointCloud& points, const InitialSurfels& initial, SetTraining training);
+
+  // Back through the last forward(): adds to the gradient of the parameters, and to the statistics
+  // of density control. These and all below throw (kUsage) where the set is only to be rendered.
+  void backward(const RasterOutputGradient& dL_doutput);
+  // Back through a further rasterisation, whose statistics do not count.
+  void backward(const RasterOutputGradient& dL_doutput, RasterPass& pass);
+  // The same for the last trace(); returns the rays' gradient, valid until the next call.
+  const Rays& trace_backward(const TraceOutputGradient& dL_doutput);
+  // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.
+  void freeze_geometry();
+  // Optimiser step and, when due, densification. `step` counts from 1.
+  DensifyCounts update(int step);
+
+  const SurfelCloud& gradient() const { return training().gradient; }
+
+ private:
+  struct Training {
+    SurfelCloud gradient;
+    SurfelRates rates;
+    float extent;
+    bool frozen_geometry;
+    SurfelAdam adam;
+    Densifier densifier;
+  };
+  Training& training() const;
+
+  std::unique_ptr<Training> training_;  // null: only to be rendered
+};
+
+}  // namespace glint
