@@ -28,7 +28,8 @@ void set_color(cairo_t* cairo, Color color) {
   cairo_set_source_rgb(cairo, color.red, color.green, color.blue);
 }
 
-void add_path(cairo_t* cairo, std::span<const Point> points) {
+void set_path(cairo_t* cairo, std::span<const Point> points) {
+  cairo_new_path(cairo);  // a text leaves a point behind
   for (const Point& point : points) cairo_line_to(cairo, point.x, point.y);
 }
 
@@ -122,7 +123,7 @@ Image image_of(cairo_surface_t* surface) {
 }  // namespace
 
 void Canvas::line(std::span<const Point> points, const Stroke& stroke) {
-  add_path(cairo_, points);
+  set_path(cairo_, points);
   apply(cairo_, stroke);
 }
 
@@ -138,7 +139,7 @@ void Canvas::fill(const Box& box, Color color) {
 }
 
 void Canvas::fill_dot(std::span<const Point> corners, Color color) {
-  add_path(cairo_, corners);
+  set_path(cairo_, corners);
   cairo_close_path(cairo_);
   fill_dot_path(color);
 }

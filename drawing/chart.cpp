@@ -12,7 +12,7 @@ namespace glint {
 namespace {
 
 constexpr double kTop = 4, kRight = 4;           // points around the axes
-constexpr double kTickGap = 2.5, kLabelGap = 2;  // between axis, its numbers and its words
+constexpr double kTickGap = 2.5, kLabelGap = 3;  // between axis, its numbers and its words
 constexpr Color kGrid{0.88, 0.88, 0.88}, kFrame{0.45, 0.45, 0.45};
 constexpr std::size_t kFewPoints = 16;  // a line of so many has dots
 const TextStyle kNumber{6.5}, kWords{7};

@@ -12,7 +12,8 @@ namespace glint {
 
 namespace {
 
-constexpr double kPixelsPerInch = 72;  // a size is in points, and so is the page
+constexpr double kPixelsPerInch = 72;                     // a size is in points, and so is the page
+constexpr double kLoweredSize = 0.72, kLoweredBy = 0.16;  // of subscripts, to the text's size
 
 struct ObjectDeleter {
   void operator()(void* object) const { g_object_unref(object); }
@@ -64,10 +65,10 @@ struct Lowered {
   std::string text;
   Attributes attributes{pango_attr_list_new()};
 
-  void lower(std::size_t begin, std::size_t end) {
+  void lower(std::size_t begin, std::size_t end, double size) {
     for (PangoAttribute* attribute :
-         {pango_attr_font_scale_new(PANGO_FONT_SCALE_SUBSCRIPT),
-          pango_attr_baseline_shift_new(PANGO_BASELINE_SHIFT_SUBSCRIPT)}) {
+         {pango_attr_size_new(pango_units_from_double(kLoweredSize * size)),
+          pango_attr_rise_new(-pango_units_from_double(kLoweredBy * size))}) {
       attribute->start_index = static_cast<guint>(begin);
       attribute->end_index = static_cast<guint>(end);
       pango_attr_list_insert(attributes.get(), attribute);
@@ -75,7 +76,7 @@ struct Lowered {
   }
 };
 
-Lowered lowered(const std::string& text) {
+Lowered lowered(const std::string& text, double size) {
   Lowered result;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (!lowers(text, i)) {
@@ -84,7 +85,7 @@ Lowered lowered(const std::string& text) {
     }
     const std::size_t begin = result.text.size();
     while (i + 1 < text.size() && is_letter(text[i + 1])) result.text += text[++i];
-    result.lower(begin, result.text.size());
+    result.lower(begin, result.text.size(), size);
   }
   return result;
 }
@@ -92,7 +93,7 @@ Lowered lowered(const std::string& text) {
 Layout layout_of(const std::string& text, const TextStyle& style) {
   const Context context = make_context();
   Layout layout(pango_layout_new(context.get()));
-  const Lowered parts = lowered(text);
+  const Lowered parts = lowered(text, style.size);
   pango_layout_set_text(layout.get(), parts.text.data(), static_cast<int>(parts.text.size()));
   pango_layout_set_attributes(layout.get(), parts.attributes.get());
   pango_layout_set_font_description(layout.get(), font_of(style).get());

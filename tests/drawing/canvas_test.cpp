@@ -91,6 +91,7 @@ TEST_CASE("a word behind a letter and '_' is lowered, names with '_' stay") {
   const Box plain = ink_box(text_image("L", {10, 10})),
             lowered = ink_box(text_image("L_H", {10, 10}));
   CHECK(lowered.bottom() > plain.bottom() + 0.5);
+  CHECK(lowered.bottom() < plain.bottom() + 3);
   CHECK(measure_text("k_s", {10}).width < measure_text("ks", {10}).width);
   CHECK(measure_text("room_b", {10}).width > measure_text("roomb", {10}).width + 2);
 }
@@ -103,6 +104,24 @@ TEST_CASE("turned text is read from below") {
   CHECK(ink.height > 2 * ink.width);
   CHECK(ink.bottom() == Approx(90).margin(1.5));
   CHECK(ink.left > 10);
+}
+
+TEST_CASE("lines and dots start anew, wherever a text ended") {
+  const auto corner = [](const std::function<void(Canvas&)>& mark) {
+    const Image picture = draw_image(page(100, 60, [&](Canvas& canvas) {
+      canvas.text("HI", {80, 40}, {10});
+      mark(canvas);
+    }));
+    int ink = 0;  // between the text and the upper left corner
+    for (int y = 0; y < 39 * kPixels; ++y)
+      for (int x = 0; x < 79 * kPixels; ++x) ink += picture.at(x, y, 1) < 0.5f;
+    return ink;
+  };
+  CHECK(corner([](Canvas&) {}) == 0);
+  const Point outside[] = {{90, 55}, {95, 55}, {95, 58}};
+  CHECK(corner([&](Canvas& canvas) { canvas.line(outside, {}); }) == 0);
+  CHECK(corner([&](Canvas& canvas) { canvas.fill_dot(outside, kInk); }) == 0);
+  CHECK(corner([&](Canvas& canvas) { canvas.fill_dot({90, 55}, 2, kInk); }) == 0);
 }
 
 TEST_CASE("a picture keeps its pixels where the page shows each as one or more") {
