@@ -48,8 +48,8 @@ struct TextStyle {
 };
 
 struct TextSize {
-  double width = 0, height = 0;  // points, all lines
-  double baseline = 0;           // of the first line, from the top
+  double width = 0, height = 0;            // points, all lines
+  double baseline = 0, last_baseline = 0;  // of the first and the last line, from the top
 };
 
 // UTF-8, of which '_' behind a single letter lowers the word that follows: k_s, G_trans.

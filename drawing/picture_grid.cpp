@@ -16,10 +16,12 @@ constexpr double kPageWidth = 504;  // 7 inches, the width of a paper's text
 constexpr double kMargin = 2, kGap = 2.5, kTextGap = 4;
 constexpr double kMinColumn = 56;    // "transmission" fits
 constexpr double kMaxRowTitle = 90;  // longer ones are broken
-constexpr double kBarWidth = 90, kBarHeight = 6;
+constexpr double kBarWidth = 90, kSwatchWidth = 18, kBarHeight = 6;
 constexpr double kPixelsPerPoint = 2.5;  // at least: letters stay sharp
 constexpr int kStripes = 8;              // pixels from one to the next
 const TextStyle kTitle{7, true, Align::kCenter}, kRowTitle{7}, kLegend{6.5};
+
+bool is_swatch(LegendBar bar) { return bar == LegendBar::kHatch || bar == LegendBar::kGrey; }
 
 Image plain_bar(LegendBar bar, int width, int height) {
   Image picture(width, height, 3, kNothingGrey);
@@ -30,13 +32,13 @@ Image plain_bar(LegendBar bar, int width, int height) {
 }
 
 Image color_bar(LegendBar bar) {
-  constexpr int kWidth = 256, kHeight = 18;
-  if (bar == LegendBar::kHatch || bar == LegendBar::kGrey) return plain_bar(bar, kWidth, kHeight);
-  Image ramp(kWidth, 1, 1);
-  for (int x = 0; x < kWidth; ++x) ramp.at(x, 0) = static_cast<float>(x + 1);
-  if (bar == LegendBar::kDepth) return colorize_depth(ramp, 1, kWidth);
+  constexpr int kSteps = 256;
+  if (is_swatch(bar)) return plain_bar(bar, 6 * kStripes, 2 * kStripes);
+  Image ramp(kSteps, 1, 1);
+  for (int x = 0; x < kSteps; ++x) ramp.at(x, 0) = static_cast<float>(x + 1);
+  if (bar == LegendBar::kDepth) return colorize_depth(ramp, 1, kSteps);
   const bool share = bar == LegendBar::kShare;
-  return colorize_scalar(ramp, 1, kWidth, share ? ScalarColors::kViridis : ScalarColors::kMagma);
+  return colorize_scalar(ramp, 1, kSteps, share ? ScalarColors::kViridis : ScalarColors::kMagma);
 }
 
 TextStyle wrapped(TextStyle style, double width) {
@@ -44,12 +46,14 @@ TextStyle wrapped(TextStyle style, double width) {
   return style;
 }
 
+double width_of(LegendBar bar) { return is_swatch(bar) ? kSwatchWidth : kBarWidth; }
+
 // A line with a bar is never broken.
 double width_of(const LegendLine& line) {
   const double text = measure_text(line.text, kLegend).width;
   if (line.bar == LegendBar::kNone) return text;
   const double rest = line.rest.empty() ? 0 : kTextGap + measure_text(line.rest, kLegend).width;
-  return text + kTextGap + kBarWidth + rest;
+  return text + kTextGap + width_of(line.bar) + rest;
 }
 
 class GridDrawing {
@@ -63,15 +67,18 @@ class GridDrawing {
     for (const LegendLine& line : grid_.legend)
       if (line.bar != LegendBar::kNone) wanted = std::max(wanted, width_of(line));
     width_ = wanted;
-    for (const std::string& title : grid_.titles)
-      titles_ = std::max(titles_, measure_text(title, wrapped(kTitle, column_)).height);
+    for (const std::string& title : grid_.titles) {
+      const TextSize size = measure_text(title, wrapped(kTitle, column_));
+      titles_baseline_ = std::max(titles_baseline_, size.last_baseline);
+      below_ = std::max(below_, size.height - size.last_baseline);
+    }
   }
 
   double width() const { return width_ + 2 * kMargin; }
   double pixels_per_point() const { return pixels_ / column_; }
 
   double height() const {
-    double height = 2 * kMargin + titles_ + kGap;
+    double height = 2 * kMargin + titles_baseline_ + below_ + kGap;
     for (const double row : rows_) height += row + kGap;
     for (const LegendLine& line : grid_.legend) height += height_of(line);
     return height;
@@ -79,7 +86,7 @@ class GridDrawing {
 
   void draw(Canvas& canvas) const {
     draw_titles(canvas);
-    double top = kMargin + titles_ + kGap;
+    double top = kMargin + titles_baseline_ + below_ + kGap;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       draw_row(canvas, i, top);
       top += rows_[i] + kGap;
@@ -130,8 +137,10 @@ class GridDrawing {
   void draw_titles(Canvas& canvas) const {
     const TextStyle style = wrapped(kTitle, column_);
     for (std::size_t i = 0; i < grid_.titles.size(); ++i) {
-      const double height = measure_text(grid_.titles[i], style).height;
-      canvas.text(grid_.titles[i], {left_of(i) + column_ / 2, kMargin + titles_ - height}, style);
+      const double last = measure_text(grid_.titles[i], style).last_baseline;
+      canvas.text(
+          grid_.titles[i], {left_of(i) + column_ / 2, kMargin + titles_baseline_ - last}, style
+      );
     }
   }
 
@@ -170,17 +179,19 @@ class GridDrawing {
     canvas.text(line.text, {kMargin, top}, kLegend);
     const TextSize size = measure_text(line.text, kLegend);
     const double left = kMargin + size.width + kTextGap;
+    const double width = width_of(line.bar);
     canvas.picture(
-        color_bar(line.bar), {left, top + (size.height - kBarHeight) / 2, kBarWidth, kBarHeight}
+        color_bar(line.bar), {left, top + (size.height - kBarHeight) / 2, width, kBarHeight}
     );
-    canvas.text(line.rest, {left + kBarWidth + kTextGap, top}, kLegend);
+    canvas.text(line.rest, {left + width + kTextGap, top}, kLegend);
   }
 
   PictureGrid grid_;
   std::size_t num_columns_ = 0;
-  int pixels_ = 0;                                               // width of a panel
-  double column_ = 0, row_titles_ = 0, titles_ = 0, width_ = 0;  // points
-  std::vector<double> rows_;                                     // heights, points
+  int pixels_ = 0;                                  // width of a panel
+  double column_ = 0, row_titles_ = 0, width_ = 0;  // points
+  double titles_baseline_ = 0, below_ = 0;          // of the titles: last baseline, from there on
+  std::vector<double> rows_;                        // heights, points
 };
 
 }  // namespace

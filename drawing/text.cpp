@@ -113,6 +113,14 @@ double shift_of(PangoLayout* layout, const TextStyle& style) {
   return -pango_units_to_double(width) * static_cast<int>(style.align) / 2;
 }
 
+double last_baseline_of(PangoLayout* layout) {
+  PangoLayoutIter* lines = pango_layout_get_iter(layout);
+  while (pango_layout_iter_next_line(lines)) continue;
+  const int baseline = pango_layout_iter_get_baseline(lines);
+  pango_layout_iter_free(lines);
+  return pango_units_to_double(baseline);
+}
+
 }  // namespace
 
 std::string found_font_family() {
@@ -131,7 +139,8 @@ TextSize measure_text(const std::string& text, const TextStyle& style) {
   return {
       pango_units_to_double(width),
       pango_units_to_double(height),
-      pango_units_to_double(pango_layout_get_baseline(layout.get()))};
+      pango_units_to_double(pango_layout_get_baseline(layout.get())),
+      last_baseline_of(layout.get())};
 }
 
 void Canvas::text(const std::string& text, Point at, const TextStyle& style) {
