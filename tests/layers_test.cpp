@@ -82,7 +82,8 @@ struct SourceFile {
 
 std::vector<SourceFile> source_files() {
   std::vector<SourceFile> files;
-  for (const char* folder : {"glint", "drawing", "metrics", "baselines", "datasets", "reports", "tests"})
+  for (const char* folder :
+       {"glint", "drawing", "metrics", "baselines", "datasets", "reports", "tests"})
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension == ".h" || extension == ".cpp" || extension == ".cu" || extension == ".cuh")
@@ -281,7 +282,8 @@ TEST_CASE("A lean build meets no header of OpenCV, cairo, Open3D, CGAL, Embree, 
          "metrics/tools/mesh",
          "metrics/fusion/tsdf_open3d.cpp"}
     );
-    for (const char* library : {"opencv2/", "cairo", "pango/", "open3d/", "CGAL/", "embree3/", "bt", "assimp/"}) {
+    for (const char* library :
+         {"opencv2/", "cairo", "pango/", "open3d/", "CGAL/", "embree3/", "bt", "assimp/"}) {
       if (file.text.find(fmt::format("\n#include <{}", library)) == std::string::npos) continue;
       ++heavy;
       INFO(file.path << " includes <" << library);
