@@ -94,6 +94,13 @@ if(GLINT_HAS_CUDA)
 endif()
 message(STATUS "cuDNN: ${GLINT_HAS_CUDNN}")
 
+# Letters and lines: pango places them, cairo draws them, as pixels and as PDF.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(PANGOCAIRO REQUIRED pangocairo>=1.50 cairo-pdf>=1.16)
+add_library(pangocairo INTERFACE)  # not its flags: a precompiled header has to have the same
+target_include_directories(pangocairo SYSTEM INTERFACE ${PANGOCAIRO_INCLUDE_DIRS})
+target_link_libraries(pangocairo INTERFACE ${PANGOCAIRO_LINK_LIBRARIES})
+
 # Meshes; its config forgets to look for Eigen where another package has.
 find_package(Eigen3 3.4 QUIET CONFIG)
 find_package(Open3D QUIET CONFIG)

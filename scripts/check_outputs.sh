@@ -13,7 +13,9 @@ for table in table1_photometric table2_geometry table3_ablation tableB_cost regi
 done
 [ -s "$out/tables/all.tex" ] || fail "$out/tables/all.tex is missing or empty"
 for figure in qualitative curves f1 meshes; do
-  [ -s "$out/figures/$figure.png" ] || fail "$out/figures/$figure.png is missing or empty"
+  for kind in png pdf; do
+    [ -s "$out/figures/$figure.$kind" ] || fail "$out/figures/$figure.$kind is missing or empty"
+  done
 done
 grep -q '^2DGS\|^2dgs' "$out/tables/table1_photometric.csv" || fail "no row for 2dgs in table1_photometric.csv"
 for file in index.html assets/data.js assets/scene_0.js assets/probe_0_0.js assets/pictures/s0/v0_r0_render.png; do

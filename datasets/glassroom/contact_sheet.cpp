@@ -5,14 +5,13 @@
 #include <vector>
 
 #include "datasets/glassroom/write_scene.h"
+#include "drawing/color_maps.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {
 
 namespace {
 
-constexpr int kGap = 2;  // pixels between tiles
-constexpr int kRows = 9;
 constexpr float kFarDepth = 6;  // metres, end of the depth colours
 
 Image glass_over_image(const MaskImage& glass, const Image& picture) {
@@ -23,13 +22,34 @@ Image glass_over_image(const MaskImage& glass, const Image& picture) {
   return result;
 }
 
+struct SheetRow {
+  const char* title;
+  Image picture;
+};
+
+std::vector<SheetRow> rows_of(const PathTracerOutput& truth, const Priors& priors, float exposure) {
+  const Image picture = display_image(truth.radiance, exposure);
+  return {
+      {"image", picture},
+      {"depth", colorize_depth(truth.depth, 0, kFarDepth)},
+      {"normal", colorize_normal(truth.normal)},
+      {"glass", glass_over_image(truth.glass, picture)},
+      {"depth behind\nglass", colorize_depth(truth.behind_depth, 0, kFarDepth)},
+      {"seen through\nglass", display_image(truth.transmitted, exposure)},
+      {"mirrored\nby glass", display_image(truth.reflected, exposure)},
+      {"normal prior,\nsimulated", colorize_normal(priors.normal)},
+      {"albedo prior,\nsimulated", priors.albedo}};
+}
+
 }  // namespace
 
 ContactSheet::ContactSheet(int views, int columns, ImageSize tile)
-    : views_(views),
-      columns_(std::min(views, columns)),
-      tile_(tile),
-      image_(columns_ * (tile.width + kGap) - kGap, kRows * (tile.height + kGap) - kGap, 3, 1.0f) {}
+    : views_(views), columns_(std::min(views, columns)), tile_(tile) {
+  for (int column = 0; column < columns_; ++column)
+    grid_.titles.push_back("view " + view_name(column * views_ / columns_));
+  grid_.legend = {
+      {"depth: 0 m", LegendBar::kDepth, fmt::format("{:g} m, black: nothing", kFarDepth)}};
+}
 
 void ContactSheet::add(
     int view, const PathTracerOutput& truth, const Priors& priors, float exposure
@@ -37,26 +57,13 @@ void ContactSheet::add(
   // Column c shows view c * views / columns; this is the only c that can show `view`.
   const int column = (view * columns_ + views_ - 1) / views_;
   if (column >= columns_ || column * views_ / columns_ != view) return;
-  const Image picture = display_image(truth.radiance, exposure);
-  const std::vector<Image> rows{
-      picture,
-      colorize_depth(truth.depth, 0, kFarDepth),
-      colorize_normal(truth.normal),
-      glass_over_image(truth.glass, picture),
-      colorize_depth(truth.behind_depth, 0, kFarDepth),
-      display_image(truth.transmitted, exposure),
-      display_image(truth.reflected, exposure),
-      colorize_normal(priors.normal),
-      priors.albedo,
-  };
-  for (int row = 0; row < kRows; ++row) paste(column, row, rows[static_cast<std::size_t>(row)]);
-}
-
-void ContactSheet::paste(int column, int row, ImageView picture) {
-  const Image tile = resize_image(picture, tile_);
-  const int x0 = column * (tile_.width + kGap), y0 = row * (tile_.height + kGap);
-  for (int y = 0; y < tile_.height; ++y)
-    std::copy_n(tile.pixel(0, y), 3 * tile_.width, image_.pixel(x0, y0 + y));
+  const std::vector<SheetRow> rows = rows_of(truth, priors, exposure);
+  grid_.rows.resize(rows.size(), std::vector<Image>(static_cast<std::size_t>(columns_)));
+  grid_.row_titles.clear();
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    grid_.row_titles.emplace_back(rows[row].title);
+    grid_.rows[row][static_cast<std::size_t>(column)] = resize_image(rows[row].picture, tile_);
+  }
 }
 
 }  // namespace glint

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "datasets/glassroom/path_tracer.h"
+#include "drawing/picture_grid.h"
 #include "glint/scene/scene.h"
 
 namespace glint {
@@ -12,16 +13,15 @@ class ContactSheet {
  public:
   // Up to `columns` of `views` views are shown, evenly chosen; tiles are `tile` pixels.
   ContactSheet(int views, int columns, ImageSize tile);
-  // Draws the view if it is one of those shown.
+  // Keeps the view if it is one of those shown.
   void add(int view, const PathTracerOutput& truth, const Priors& priors, float exposure);
-  const Image& image() const { return image_; }
+  // With titles of rows and columns. A view that was not added is "missing".
+  Image image() const { return draw_image(draw_grid(grid_)); }
 
  private:
-  void paste(int column, int row, ImageView picture);
-
   int views_, columns_;
   ImageSize tile_;
-  Image image_;
+  PictureGrid grid_;
 };
 
 }  // namespace glint

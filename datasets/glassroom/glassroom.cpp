@@ -197,8 +197,9 @@ class SceneMaker {
     write_cameras(folder_, scene_->cameras);
     write_point_ply(folder_ / "sparse" / "0" / "points3D.ply", cloud_);
     write_meshes(scene_->room.scene, folder_);
+    const Json data = description();  // without the sheet: letters differ between machines
     write_png(folder_ / "contact_sheet.png", sheet_.image());
-    write_file(folder_ / "scene.json", description().dump(1) + "\n");
+    write_file(folder_ / "scene.json", data.dump(1) + "\n");
   }
 
  private:

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Image files: PNG and JPEG through OpenCV (lean build: PNG through libpng, no JPEG, no resizing,
-// no letters), EXR through OpenEXR, NPY maps. Colours stay as stored (sRGB-encoded values in [0,
-// 1]); nothing here changes a transfer function. Writers are atomic. Errors (kBadReference) name
-// the file and say what was found and expected: truncated files, wrong channel counts, sizes that
-// do not match the header, cropped or deep EXR, missing EXR channels.
+// Image files: PNG, JPEG, EXR, NPY maps. Colours stay as stored (sRGB-encoded values in [0, 1]);
+// nothing here changes a transfer function. Writers are atomic. Errors (kBadReference) name the
+// file and say what was found and expected: truncated files, wrong channel counts, sizes that do
+// not match the header, cropped or deep EXR, missing EXR channels.
 #pragma once
 
 #include <string>
@@ -37,18 +36,5 @@ Image resize_image(ImageView image, ImageSize size);
 // IEC 61966-2-1. Values outside [0, 1] are continued (encode clamps below at 0).
 float srgb_encode(float linear);
 float srgb_decode(float encoded);
-
-// Colour maps for people: depth over [low, high], normals as n * 0.5 + 0.5 with y, z turned towards
-// the viewer (the field's habit), both black where there is nothing; other maps dark (low) to light
-// (high), mid-grey where not finite. All maps are perceptual and safe for colour-blind readers.
-Image colorize_depth(ImageView depth, float low, float high);
-Image colorize_normal(ImageView normal);
-enum class ScalarColors { kViridis, kMagma };
-Image colorize_scalar(ImageView map, float low, float high, ScalarColors colors);
-
-// Black letters over the picture, ASCII, the first one's lower left corner at (left, baseline), its
-// capitals `cap_height` pixels tall. What lies outside of the picture is cut off.
-void draw_text(Image& image, const std::string& text, int left, int baseline, int cap_height);
-int text_width(const std::string& text, int cap_height);  // pixels
 
 }  // namespace glint

@@ -70,7 +70,9 @@ void add_outputs(CLI::App& app, MeshToolOptions& options) {
   app.add_flag("--csv", options.csv, "one row, numbers not rounded")->excludes(json);
   app.add_option("--colored", options.colored, "FILE.ply: the prediction, distances as colours");
   app.add_option("--colored-reference", options.colored_reference, "FILE.ply: the reference");
-  app.add_option("--curve", options.curve, "FILE.png: F1 over the threshold");
+  app.add_option(
+      "--curve", options.curve, "FILE.png, and FILE.pdf beside it: F1 over the threshold"
+  );
   app.add_option("--threads", options.threads, "0: all cores")->check(CLI::NonNegativeNumber);
   app.add_flag("--quiet", options.quiet, "no progress on standard error");
 }
@@ -153,7 +155,7 @@ void write_pictures(MeshReport& report, const MeshToolOptions& options) {
   if (!options.colored_reference.empty())
     write_colored(options.colored_reference, reference, prediction, range);
   if (!options.colored.empty() || !options.colored_reference.empty()) report.color_range_m = range;
-  if (!options.curve.empty()) write_png(options.curve, draw_f1_curve(report.curve));
+  if (!options.curve.empty()) write_drawing(options.curve, draw_f1_curve(report.curve));
 }
 
 void run(MeshToolOptions& options, std::ostream& out) {

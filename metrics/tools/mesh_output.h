@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "glint/core/image.h"
+#include "drawing/canvas.h"
 #include "metrics/mesh/mesh_scores.h"
 #include "metrics/tools/mesh_inputs.h"
 
@@ -36,8 +36,7 @@ void write_colored(
     const fs::path& path, const Surface& surface, const Surface& target, double range_m
 );
 
-// F1, precision and recall over the threshold, 0 to 1 upwards. [480][720][3]. `curve` by ascending
-// threshold, at least two.
-Image draw_f1_curve(const std::vector<ThresholdScores>& curve);
+// F1, precision and recall over the threshold. `curve` by ascending threshold, at least two.
+Drawing draw_f1_curve(const std::vector<ThresholdScores>& curve);
 
 }  // namespace glint

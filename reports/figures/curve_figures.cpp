@@ -5,8 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include "drawing/chart.h"
 #include "metrics/mesh/mesh_protocol.h"
-#include "reports/figures/chart.h"
+#include "reports/figures/figure_methods.h"
 #include "reports/pictures/training_curve.h"
 #include "reports/records/run_folder.h"
 #include "reports/tables/statistics.h"
@@ -37,19 +38,21 @@ SceneRecords finished_runs(const std::vector<Record>& records) {
   return scenes;
 }
 
-// The methods of a figure: one has the same colour and pattern in all charts.
-class Names {
+// The index of a method, which is its place among those of the store.
+class Methods {
  public:
-  std::size_t index_of(const std::string& name) {
-    const auto it = std::find(names_.begin(), names_.end(), name);
-    const auto index = static_cast<std::size_t>(it - names_.begin());
-    if (it == names_.end()) names_.push_back(name);
-    return index;
+  explicit Methods(const std::vector<Record>& records) : ids_(figure_methods(records)) {}
+  std::size_t index_of(const std::string& id) const {
+    return static_cast<std::size_t>(std::find(ids_.begin(), ids_.end(), id) - ids_.begin());
   }
-  const std::vector<std::string>& list() const { return names_; }
+  std::vector<std::string> titles() const {
+    std::vector<std::string> titles;
+    for (const std::string& id : ids_) titles.push_back(method_title(id));
+    return titles;
+  }
 
  private:
-  std::vector<std::string> names_;
+  std::vector<std::string> ids_;
 };
 
 double metric_of(const Record& record, const std::string& id) {
@@ -64,12 +67,12 @@ std::vector<double> numbers_of(const Json& array) {
   return numbers;
 }
 
-Chart training_chart(const MethodRecords& methods, const fs::path& folder, Names& names) {
+Chart training_chart(const MethodRecords& methods, const fs::path& folder, const Methods& all) {
   Chart chart{"iteration", "PSNR of training views (dB)", {}};
   for (const auto& [method, runs] : methods) {
     const fs::path log = run_folder(folder, runs.front()->cell) / "log.jsonl";
     const Json curve = training_curve(log, kCurvePoints);
-    chart.series.push_back({names.index_of(method), {}, {}});
+    chart.series.push_back({all.index_of(method), {}, {}});
     if (!curve.is_object()) continue;
     chart.series.back().x = numbers_of(curve.at("iteration"));
     chart.series.back().y = numbers_of(curve.at("psnr"));
@@ -81,11 +84,11 @@ Chart scatter_chart(
     const MethodRecords& methods,
     const std::string& x_metric,
     const std::string& x_label,
-    Names& names
+    const Methods& all
 ) {
   Chart chart{x_label, "PSNR of test views (dB)", {}};
   for (const auto& [method, runs] : methods) {
-    ChartSeries series{names.index_of(method), {}, {}, true};
+    ChartSeries series{all.index_of(method), {}, {}, true};
     for (const Record* record : runs) {
       series.x.push_back(metric_of(*record, x_metric));
       series.y.push_back(metric_of(*record, "psnr"));
@@ -111,56 +114,38 @@ ChartSeries f1_series(const RecordPointers& runs, const char* prefix) {
   return series;
 }
 
-Chart f1_chart(const MethodRecords& methods, const char* prefix, Names& names) {
+Chart f1_chart(const MethodRecords& methods, const char* prefix, const Methods& all) {
   Chart chart{"distance (cm)", "F1", {}};
   for (const auto& [method, runs] : methods)
     if (ChartSeries series = f1_series(runs, prefix); series.x.size() >= 2) {
-      series.index = names.index_of(method);
+      series.index = all.index_of(method);
       chart.series.push_back(std::move(series));
     }
   return chart;
 }
 
-void add_charts(PictureGrid& grid, const std::string& scene, const std::vector<Chart>& charts) {
-  std::vector<Image> row;
-  for (const Chart& chart : charts) row.push_back(draw_chart(chart));
-  const bool nothing =
-      std::all_of(row.begin(), row.end(), [](const Image& panel) { return panel.empty(); });
-  if (nothing) return;
-  grid.rows.push_back(std::move(row));
-  grid.row_titles.push_back(scene);
-}
-
-void add_legend(PictureGrid& grid, const Names& names) {
-  if (grid.rows.empty()) return;
-  grid.rows.push_back(draw_chart_legend(names.list(), grid.titles.size()));
-  grid.row_titles.emplace_back();
-}
-
 }  // namespace
 
-PictureGrid curves_figure(const std::vector<Record>& records, const fs::path& folder) {
-  PictureGrid grid{{"training", "quality and time", "quality and size"}, {}, {}};
-  Names names;
+Drawing curves_figure(const std::vector<Record>& records, const fs::path& folder) {
+  const Methods all(records);
+  ChartSheet sheet{{"training", "quality and time", "quality and size"}, {}, all.titles()};
   for (const auto& [scene, methods] : finished_runs(records))
-    add_charts(
-        grid,
-        scene,
-        {training_chart(methods, folder, names),
-         scatter_chart(methods, "train-minutes", "training (min)", names),
-         scatter_chart(methods, "num-surfels", "surfels", names)}
+    sheet.rows.push_back(
+        {scene,
+         {training_chart(methods, folder, all),
+          scatter_chart(methods, "train-minutes", "training (min)", all),
+          scatter_chart(methods, "num-surfels", "surfels", all)}}
     );
-  add_legend(grid, names);
-  return grid;
+  return draw_charts(sheet);
 }
 
-PictureGrid f1_figure(const std::vector<Record>& records) {
-  PictureGrid grid{{"mesh", "mesh behind glass"}, {}, {}};
-  Names names;
+Drawing f1_figure(const std::vector<Record>& records) {
+  const Methods all(records);
+  ChartSheet sheet{{"mesh", "mesh behind glass"}, {}, all.titles()};
   for (const auto& [scene, methods] : finished_runs(records))
-    add_charts(grid, scene, {f1_chart(methods, "", names), f1_chart(methods, kBehindMesh, names)});
-  add_legend(grid, names);
-  return grid;
+    sheet.rows.push_back({scene, {f1_chart(methods, "", all), f1_chart(methods, kBehindMesh, all)}}
+    );
+  return draw_charts(sheet);
 }
 
 }  // namespace glint

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Figures of curves, a row of charts a scene. A grid without rows: nothing to show.
+// Figures of curves, a row of charts a scene. Empty: nothing to show.
 #pragma once
 
 #include <vector>
 
-#include "reports/pictures/picture_grid.h"
+#include "drawing/canvas.h"
 #include "reports/records/records.h"
 
 namespace glint {
 
 // PSNR of training views by iteration (from log.jsonl of the first finished seed), and PSNR of test
 // views against minutes of training and against the number of surfels, a dot a seed.
-PictureGrid curves_figure(const std::vector<Record>& records, const fs::path& folder);
+Drawing curves_figure(const std::vector<Record>& records, const fs::path& folder);
 
 // F1 of the mesh, and of the mesh behind glass, over the distance that counts as near, of methods
 // with two distances at least; means over seeds.
-PictureGrid f1_figure(const std::vector<Record>& records);
+Drawing f1_figure(const std::vector<Record>& records);
 
 }  // namespace glint

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "drawing/picture_grid.h"
 #include "reports/figures/figures.h"
 #include "reports/pictures/layers.h"
-#include "reports/pictures/picture_grid.h"
 
 namespace glint {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "reports/figures/figures.h"
 
-#include "glint/scene/image_files.h"
 #include "reports/figures/curve_figures.h"
 #include "reports/figures/map_figures.h"
 #include "reports/figures/mesh_figure.h"
@@ -11,14 +10,15 @@ namespace glint {
 namespace {
 
 // A figure of earlier records with nothing to show now does not stay behind.
-void keep(const fs::path& path, const PictureGrid& grid, std::vector<fs::path>& written) {
-  if (grid.rows.empty()) {
+void keep(const fs::path& png, const Drawing& drawing, std::vector<fs::path>& written) {
+  if (drawing.empty()) {
     std::error_code code;
-    fs::remove(path, code);
+    fs::remove(png, code);
+    fs::remove(fs::path(png).replace_extension(".pdf"), code);
     return;
   }
-  write_png(path, draw_grid(grid));
-  written.push_back(path);
+  write_drawing(png, drawing);
+  written.push_back(png);
 }
 
 }  // namespace
@@ -28,15 +28,17 @@ std::vector<fs::path> write_figures(const FigureOptions& options) {
   const auto scenes = figure_scenes(records, options);
   const fs::path folder = options.folder / "figures";
   std::vector<fs::path> written;
-  keep(folder / "qualitative.png", qualitative_figure(scenes), written);
-  keep(folder / "depth_decomposition.png", depth_figure(scenes), written);
-  keep(folder / "transparency.png", transparency_figure(scenes), written);
-  keep(folder / "radiance.png", radiance_figure(scenes), written);
-  keep(folder / "ablation.png", ablation_figure(scenes), written);
+  keep(folder / "qualitative.png", draw_grid(qualitative_figure(scenes)), written);
+  keep(folder / "depth_decomposition.png", draw_grid(depth_figure(scenes)), written);
+  keep(folder / "transparency.png", draw_grid(transparency_figure(scenes)), written);
+  keep(folder / "radiance.png", draw_grid(radiance_figure(scenes)), written);
+  keep(folder / "ablation.png", draw_grid(ablation_figure(scenes)), written);
   keep(folder / "curves.png", curves_figure(records, options.folder), written);
   keep(folder / "f1.png", f1_figure(records), written);
-  keep(folder / "meshes.png", meshes_figure(scenes), written);
+  keep(folder / "meshes.png", draw_grid(meshes_figure(scenes)), written);
   return written;
 }
+
+std::string figures_font() { return found_font_family(); }
 
 }  // namespace glint

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Figures of a profile's results as PNG: what methods render beside the truth, and curves. One view
-// a scene, chosen by a rule; one range of colours for all methods (docs/REPORT.md).
+// Figures of a profile's results as PNG and PDF: what methods render beside the truth, and curves.
+// One view a scene, chosen by a rule; one range of colours for all methods (docs/REPORT.md).
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "glint/core/files.h"
@@ -17,9 +18,13 @@ struct FigureOptions {
 };
 
 // FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves, f1,
-// meshes}.png; returns the paths of those that have something to show. What is absent inside a
-// figure says "missing"; scenes without data are left out of figures with maps, with a warning. The
-// lean build has none. Errors: those of read_records(), kEnvironment (disk).
+// meshes}.png, each with a PDF beside it; returns the PNGs of those that have something to show.
+// What is absent inside a figure says "missing"; scenes without data are left out of figures with
+// maps, with a warning. The lean build has none. Errors: those of read_records(), kEnvironment
+// (disk).
 std::vector<fs::path> write_figures(const FigureOptions& options);
+
+// What is found here of kFontFamily (drawing/canvas.h); empty in the lean build.
+std::string figures_font();
 
 }  // namespace glint

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
-#include "reports/pictures/picture_grid.h"
 
 namespace glint {
 

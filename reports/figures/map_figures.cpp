@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "reports/figures/figure_methods.h"
 #include "reports/figures/map_crops.h"
 #include "reports/tables/tables.h"
 
@@ -151,7 +152,7 @@ PictureGrid method_rows(
             ),
             column.gain
         ));
-      add_row(grid, fmt::format("{}\n{}", scene.name, method), std::move(row));
+      add_row(grid, fmt::format("{}\n{}", scene.name, method_title(method)), std::move(row));
     }
   return grid;
 }
@@ -177,7 +178,7 @@ PictureGrid qualitative_figure(const std::vector<FigureScene>& scenes) {
   const auto methods = methods_with(scenes, "render", false);
   if (methods.empty()) return grid;
   grid.titles.emplace_back("truth");
-  grid.titles.insert(grid.titles.end(), methods.begin(), methods.end());
+  for (const std::string& method : methods) grid.titles.push_back(method_title(method));
   for (const FigureScene& scene : scenes) add_qualitative_rows(grid, scene, methods);
   grid.legend = legend_of(scenes, true);
   grid.legend.push_back(
@@ -206,7 +207,7 @@ PictureGrid transparency_figure(const std::vector<FigureScene>& scenes) {
   if (found.empty()) return grid;
   const std::vector<std::string> methods(found.begin(), found.end());
   grid.titles = {"image", "true glass"};
-  for (const std::string& method : methods) grid.titles.push_back(method + ", t");
+  for (const std::string& method : methods) grid.titles.push_back(method_title(method) + ", t");
   for (const FigureScene& scene : scenes) {
     std::vector<Image> row = layer_row(scene, methods, "t");
     row[0] = panel_of(&scene.truth, "render", scene.scale);

@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "drawing/picture_grid.h"
 #include "reports/figures/figure_scenes.h"
-#include "reports/pictures/picture_grid.h"
 
 namespace glint {
 

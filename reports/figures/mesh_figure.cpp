@@ -12,6 +12,7 @@
 #include "metrics/mesh/clean.h"
 #include "metrics/mesh/cull.h"
 #include "reports/bench/mesh_stage.h"
+#include "reports/figures/figure_methods.h"
 #include "reports/figures/mesh_render.h"
 
 namespace glint {
@@ -156,7 +157,7 @@ PictureGrid meshes_figure(const std::vector<FigureScene>& scenes) {
   }
   if (grid.rows.empty()) return grid;
   grid.titles.emplace_back("truth");
-  grid.titles.insert(grid.titles.end(), methods.begin(), methods.end());
+  for (const std::string& method : methods) grid.titles.push_back(method_title(method));
   grid.legend = {views_line(scenes)};
   for (LegendLine& line : mesh_legend()) grid.legend.push_back(std::move(line));
   return grid;

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "drawing/picture_grid.h"
 #include "reports/figures/figure_scenes.h"
-#include "reports/pictures/picture_grid.h"
 
 namespace glint {
 

@@ -6,11 +6,11 @@
 #include <limits>
 #include <vector>
 
+#include "drawing/color_maps.h"
+#include "drawing/picture_grid.h"
 #include "glint/core/parallel.h"
-#include "glint/scene/image_files.h"
 #include "metrics/mesh/mesh_scores.h"
 #include "metrics/mesh/triangle_tree.h"
-#include "reports/pictures/picture_grid.h"
 
 namespace glint {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "drawing/color_maps.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "metrics/components.h"
@@ -14,7 +15,7 @@ namespace glint {
 
 namespace {
 
-constexpr int kColorSteps = 17;  // of the colour bars: the maps are linear between five colours
+constexpr int kColorSteps = 256;  // of the colour bars: those of the tables
 
 Image error_map(const Image& render, const Image& truth) {
   Image error(truth.width(), truth.height(), 1);

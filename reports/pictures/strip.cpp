@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drawing/color_maps.h"
+#include "drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
-#include "reports/pictures/picture_grid.h"
 #include "reports/records/run_folder.h"
 
 namespace glint {
@@ -139,7 +140,7 @@ void write_strip(
 ) {
   PictureGrid grid{titles_of(plan), {}, legend_of(plan, views)};
   for (const View* view : views) grid.rows.push_back(row_of(plan, *view));
-  write_png(path, draw_grid(grid));
+  write_png(path, draw_image(draw_grid(std::move(grid))));
 }
 
 }  // namespace

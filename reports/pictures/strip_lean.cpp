@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// In place of strip.cpp and picture_grid.cpp: letters and shrunk pictures need OpenCV. The maps
-// themselves are written as always.
+// In place of strip.cpp: letters need cairo, shrunk pictures OpenCV. The maps themselves are
+// written as always.
 #include "reports/pictures/strip.h"
 
 namespace glint {

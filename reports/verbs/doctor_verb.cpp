@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/ranges.h>
 
+#include "drawing/canvas.h"
 #include "glint/core/error.h"
 #include "glint/core/machine.h"
 #include "glint/core/parallel.h"
 #include "glint/cuda/backend.h"
 #include "metrics/feature_net.h"
+
 #include "metrics/lpips_weights.h"
+#include "reports/figures/figures.h"
 #include "reports/records/environment.h"
 #include "reports/records/revision.h"
 #include "reports/verbs/verb.h"
@@ -53,6 +56,15 @@ Examined lpips_weights() {
       "lpips", fmt::format("no weights at {}: its columns will say so", place.string()), true, ""};
 }
 
+// Of figures. Another font is no failure: only their look differs.
+Examined font() {
+  const std::string found = figures_font();
+  if (found.empty()) return {"font", "off: this build draws no figures", true, ""};
+  if (found == kFontFamily) return {"font", found, true, ""};
+  return {
+      "font", fmt::format("{} in place of {}: install fonts-inter", found, kFontFamily), true, ""};
+}
+
 std::vector<Examined> examine(const CommonOptions& common) {
   const Machine machine = this_machine();
   const std::uint64_t disk = free_disk_bytes(common.out);
@@ -74,6 +86,7 @@ std::vector<Examined> examine(const CommonOptions& common) {
       {"cuda", cuda_text(), true, ""},
       {"networks", feature_net_libraries(), true, ""},
       lpips_weights(),
+      font(),
       {"revision", git_revision(), true, ""}};
 }
 

@@ -20,7 +20,7 @@ int run_figures(const CommonOptions& common) {
 }  // namespace
 
 void add_figures_verb(CommandLine& line) {
-  line.add_verb(line.app, "figures", "write OUT/PROFILE/figures/*.png", [&line] {
+  line.add_verb(line.app, "figures", "write OUT/PROFILE/figures/*.png and *.pdf", [&line] {
     return run_figures(line.common);
   });
 }

@@ -290,35 +290,3 @@ TEST_CASE("sRGB encoding follows IEC 61966-2-1 and decodes back") {
     CHECK(srgb_encode(srgb_decode(v)) == Approx(v).margin(2e-4));
   }
 }
-
-TEST_CASE("colour maps leave missing pixels black and turn normals towards the viewer") {
-  Image depth(3, 1, 1);
-  depth.at(0, 0) = 1;
-  depth.at(1, 0) = 5;
-  const Image colors = colorize_depth(depth, 1, 5);
-  CHECK(colors.at(0, 0, 0) > 0.9f);  // near: yellow
-  CHECK(colors.at(1, 0, 1) < 0.1f);  // far: violet
-  CHECK(colors.at(2, 0, 0) + colors.at(2, 0, 1) + colors.at(2, 0, 2) == 0);
-  Image normal(2, 1, 3);
-  normal.at(0, 0, 2) = -1;  // facing the camera
-  const Image shown = colorize_normal(normal);
-  CHECK(shown.at(0, 0, 2) == 1);
-  CHECK(shown.at(0, 0, 0) == 0.5f);
-  CHECK(shown.at(1, 0, 0) == 0);
-}
-
-TEST_CASE("colours of scalar maps get lighter with the value, and grey where there is none") {
-  Image ramp(11, 1, 1);
-  for (int i = 0; i < 10; ++i) ramp.at(i, 0) = 2.0f + static_cast<float>(i) / 9;
-  ramp.at(10, 0) = std::numeric_limits<float>::quiet_NaN();
-  for (const ScalarColors map : {ScalarColors::kViridis, ScalarColors::kMagma}) {
-    const Image colors = colorize_scalar(ramp, 2, 3, map);
-    const auto luminance = [&](int x) {  // Rec. 709 of linear values
-      return 0.2126f * srgb_decode(colors.at(x, 0, 0)) + 0.7152f * srgb_decode(colors.at(x, 0, 1)) +
-             0.0722f * srgb_decode(colors.at(x, 0, 2));
-    };
-    for (int i = 1; i < 10; ++i) CHECK(luminance(i) > luminance(i - 1));
-    CHECK(colors.at(10, 0, 0) == 0.5f);
-    CHECK(colorize_scalar(Image(1, 1, 1, 99.0f), 2, 3, map).at(0, 0, 1) == colors.at(9, 0, 1));
-  }
-}

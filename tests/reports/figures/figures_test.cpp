@@ -5,6 +5,7 @@
 
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"
+#include "reports/figures/figure_methods.h"
 #include "reports/figures/map_crops.h"
 #include "reports/figures/map_figures.h"
 #include "tests/reports/fake_method.h"
@@ -90,15 +91,51 @@ TEST_CASE("figures have what the runs rendered and nothing else") {
       {{{-9, -9, 2}, {9, -9, 2}, {0, 9, 2}}, {{0, 1, 2}}, {}}
   );
   CHECK(names_of(write_figures({folder.path(), load_fake})).back() == "meshes");
-  for (const auto& entry : fs::directory_iterator(folder / "figures"))
-    CHECK(read_image(entry.path(), 3).width() > kMinPanelWidth);
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(folder / "figures")) ++files;
+  CHECK(files == 2 * 8);
+  for (const fs::path& png : write_figures({folder.path(), load_fake})) {
+    CHECK(read_image(png, 3).width() > kMinPanelWidth);
+    CHECK(read_file(fs::path(png).replace_extension(".pdf")).starts_with("%PDF-"));
+  }
+}
+
+TEST_CASE("the same records give the same bytes of a figure") {
+  const test::TempFolder folder;
+  add_run(folder.path(), "2dgs", 0.4f);
+  add_run(folder.path(), "glint", 0.5f, true);
+  const auto bytes = [&] {
+    std::string all;
+    for (const fs::path& png : write_figures({folder.path(), load_fake}))
+      all += read_file(png) + read_file(fs::path(png).replace_extension(".pdf"));
+    return all;
+  };
+  const std::string first = bytes();
+  CHECK(first.size() > 10000);
+  CHECK(bytes() == first);
+}
+
+TEST_CASE("methods have titles, and one place each in all figures: variants come last") {
+  CHECK(method_title("2dgs") == "2DGS");
+  CHECK(method_title("2dgs/prior") == "2DGS + priors");
+  CHECK(method_title("glint/no-trans") == "GLINT, w/o G_trans");
+  CHECK(method_title("glint/release") == "GLINT (release)");
+  CHECK(method_title("imported") == "imported");
+  CHECK(method_title("imported/variant") == "imported/variant");
+  std::vector<Record> records(5);
+  const char* ids[] = {"glint/no-trans", "glint", "2dgs", "failed", "glint"};
+  for (std::size_t i = 0; i < 5; ++i) records[i].cell = {"room_1", ids[i], 0};
+  records[3].failure = Failure{};
+  CHECK(figure_methods(records) == std::vector<std::string>{"2dgs", "glint", "glint/no-trans"});
 }
 
 TEST_CASE("a figure that has nothing to show any more is removed") {
   const test::TempFolder folder;
   add_run(folder.path(), "2dgs", 0.4f);
   write_file(folder / "figures/f1.png", "of earlier records");
+  write_file(folder / "figures/f1.pdf", "of earlier records");
   write_figures({folder.path(), load_fake});
+  CHECK_FALSE(fs::exists(folder / "figures/f1.pdf"));
   CHECK_FALSE(fs::exists(folder / "figures/f1.png"));
 }
 

@@ -299,12 +299,15 @@ TEST_CASE("the colour bar has the colours of the pictures") {
         std::find_if(page_layers().begin(), page_layers().end(), [&](const PageLayer& candidate) {
           return layer["id"] == candidate.id;
         });
-    const Image middle(1, 1, 1, (layer["low"].get<float>() + layer["high"].get<float>()) / 2);
-    const Image color = layer_picture(*it, middle, scale);
-    std::string hex = "#";
-    for (const float value : color.values())
-      hex += fmt::format("{:02x}", static_cast<int>(std::lround(value * 255)));
-    CHECK(layer["colors"][layer["colors"].size() / 2] == hex);
+    REQUIRE(layer["colors"].size() == 256);
+    const float low = layer["low"].get<float>(), high = layer["high"].get<float>();
+    for (const int step : {1, 100, 255}) {
+      const Image value(1, 1, 1, low + (high - low) * static_cast<float>(step) / 255);
+      std::string hex = "#";
+      for (const float channel : layer_picture(*it, value, scale).values())
+        hex += fmt::format("{:02x}", static_cast<int>(std::lround(channel * 255)));
+      CHECK(layer["colors"][static_cast<std::size_t>(step)] == hex);
+    }
   }
 }
 

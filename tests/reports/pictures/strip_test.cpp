@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
-#include "reports/pictures/picture_grid.h"
 #include "reports/records/run_folder.h"
 #include "tests/reports/fake_method.h"
 #include "tests/support/temp_folder.h"
@@ -134,35 +134,4 @@ TEST_CASE("a map that one view lacks is a grey panel") {
   const Image strip = read_image(view_folder(run.path(), views[0].name) / "strip.png", 3);
   const int x = strip.width() * 7 / 10, y = strip.height() / 2;          // the fourth panel of five
   for (int c = 0; c < 3; ++c) CHECK(strip.at(x, y, c) == 128 / 255.0f);  // 127.5, to even
-}
-
-TEST_CASE("panels grow by whole numbers and shrink to a width that fits a page") {
-  Image small(30, 20, 3);
-  small.at(29, 19, 2) = 1;
-  const Image large = fit_panel(small);
-  CHECK(large.size() == ImageSize{210, 140});
-  CHECK(large.at(203, 133, 2) == 1);
-  CHECK(large.at(202, 133, 2) == 0);
-  CHECK(fit_panel(Image(300, 100, 3)).size() == ImageSize{300, 100});
-  CHECK(fit_panel(Image(1920, 1080, 3)).size() == ImageSize{480, 270});
-  CHECK(fit_panel(Image(9000, 1, 3)).size() == ImageSize{480, 1});
-}
-
-TEST_CASE("titles of rows stand left of the panels and widen the picture by the longest line") {
-  PictureGrid grid{{"one"}, {{fit_panel(Image(40, 30, 3))}}, {}};
-  const int narrow = draw_grid(grid).width();
-  grid.row_titles = {"a short line\nand a rather longer one"};
-  const Image wide = draw_grid(grid);
-  CHECK(wide.width() > narrow + 100);
-  CHECK(wide.at(wide.width() - narrow / 2, wide.height() / 2) == 0);  // the black panel
-  grid.row_titles = {"short"};
-  CHECK(draw_grid(grid).width() < wide.width());
-}
-
-TEST_CASE("a legend longer than the panels widens the picture") {
-  PictureGrid grid{{"one"}, {{fit_panel(Image(40, 30, 3))}}, {{"short"}}};
-  const int narrow = draw_grid(grid).width();
-  grid.legend.push_back({std::string(200, 'w'), LegendBar::kDepth, "end"});
-  CHECK(narrow == kMinPanelWidth);
-  CHECK(draw_grid(grid).width() > 5 * narrow);
 }

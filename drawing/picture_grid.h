@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "glint/core/image.h"
+#include "drawing/canvas.h"
 
 namespace glint {
 
-// Panels are enlarged to at least the first, by whole numbers, and shrunk to at most the second.
+// fit_panel() enlarges to at least the first, by whole numbers, and shrinks to at most the second.
 inline constexpr int kMinPanelWidth = 200, kMaxPanelWidth = 480;  // pixels
 
 // The colours of a map from low to high, as layer_picture() and the strips show it; or what stands
@@ -29,14 +29,16 @@ struct LegendLine {
 
 struct PictureGrid {
   std::vector<std::string> titles;       // one a column
-  std::vector<std::vector<Image>> rows;  // panels [h][w][3] from fit_panel(); empty: "missing"
+  std::vector<std::vector<Image>> rows;  // panels [h][w][1 or 3]; empty: "missing"
   std::vector<LegendLine> legend;
   std::vector<std::string> row_titles = {};  // left of the rows, '\n' between lines; none: no room
 };
 
 Image fit_panel(const Image& panel);
 
-// On white, every column as wide as the widest panel.
-Image draw_grid(const PictureGrid& grid);
+// A page as wide as that of a paper, or narrower where the panels have few pixels, or wider where
+// there are many columns, each as wide as the widest panel. Its picture shows every pixel of a
+// panel as one pixel. Titles and legends are broken into lines that fit. Empty: there is no row.
+Drawing draw_grid(PictureGrid grid);
 
 }  // namespace glint

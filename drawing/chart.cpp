@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "drawing/chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "drawing/ticks.h"
+
+namespace glint {
+
+namespace {
+
+constexpr double kTop = 4, kRight = 4;           // points around the axes
+constexpr double kTickGap = 2.5, kLabelGap = 3;  // between axis, its numbers and its words
+constexpr Color kGrid{0.88, 0.88, 0.88}, kFrame{0.45, 0.45, 0.45};
+constexpr std::size_t kFewPoints = 16;  // a line of so many has dots
+const TextStyle kNumber{6.5}, kWords{7};
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+  void add(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+// A twentieth of room to either side; a single value gets room, too.
+Range with_room(Range range) {
+  const double size = range.high - range.low;
+  const double room = size > 0 ? size / 20 : std::max(std::abs(range.low) / 10, 1e-6);
+  return {range.low - room, range.high + room};
+}
+
+bool is_point(const ChartSeries& series, std::size_t i) {
+  return std::isfinite(series.x[i]) && std::isfinite(series.y[i]);
+}
+
+bool has_points(const ChartSeries& series) {
+  for (std::size_t i = 0; i < series.x.size(); ++i)
+    if (is_point(series, i)) return true;
+  return false;
+}
+
+struct Axis {
+  Range range;
+  std::vector<double> ticks;
+  std::vector<std::string> labels;
+};
+
+Axis axis_of(const Chart& chart, std::vector<double> ChartSeries::*values) {
+  Axis axis;
+  for (const ChartSeries& series : chart.series)
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      if (is_point(series, i)) axis.range.add((series.*values)[i]);
+  axis.range = with_room(axis.range);
+  axis.ticks = round_ticks(axis.range.low, axis.range.high);
+  axis.labels = tick_labels(axis.ticks);
+  return axis;
+}
+
+class ChartDrawing {
+ public:
+  ChartDrawing(Canvas& canvas, const Box& box, const Chart& chart)
+      : canvas_(canvas),
+        box_(box),
+        chart_(chart),
+        x_(axis_of(chart, &ChartSeries::x)),
+        y_(axis_of(chart, &ChartSeries::y)) {
+    const double words = measure_text(chart.x_label, kWords).height + kLabelGap;
+    const double numbers = measure_text("0", kNumber).height + kTickGap;
+    const double left = words + widest_number() + kTickGap;
+    field_ = {
+        box.left + left,
+        box.top + kTop,
+        box.width - left - kRight,
+        box.height - kTop - numbers - words};
+  }
+
+  void draw() {
+    draw_grid();
+    for (const ChartSeries& series : chart_.series) draw_series(series);
+    draw_numbers();
+    draw_words();
+  }
+
+ private:
+  double widest_number() const {
+    double widest = 0;
+    for (const std::string& label : y_.labels)
+      widest = std::max(widest, measure_text(label, kNumber).width);
+    return widest;
+  }
+
+  double column(double x) const {
+    return field_.left + (x - x_.range.low) / (x_.range.high - x_.range.low) * field_.width;
+  }
+  double row(double y) const {
+    return field_.bottom() - (y - y_.range.low) / (y_.range.high - y_.range.low) * field_.height;
+  }
+
+  void draw_grid() {
+    const auto line = [&](Point from, Point to) {
+      const Point points[] = {from, to};
+      canvas_.line(points, {kGrid, 0.4, {}});
+    };
+    for (const double x : x_.ticks) line({column(x), field_.top}, {column(x), field_.bottom()});
+    for (const double y : y_.ticks) line({field_.left, row(y)}, {field_.right(), row(y)});
+    canvas_.rectangle(field_, {kFrame, 0.5, {}});
+  }
+
+  void draw_series(const ChartSeries& series) {
+    const SeriesStyle style = series_style(series.index);
+    std::vector<Point> piece;
+    const auto end_piece = [&] {
+      if (piece.size() > 1) draw_series_line(canvas_, piece, style);
+      piece.clear();
+    };
+    for (std::size_t i = 0; i < series.x.size() && !series.points; ++i)
+      if (is_point(series, i))
+        piece.push_back({column(series.x[i]), row(series.y[i])});
+      else
+        end_piece();
+    end_piece();
+    if (!series.points && series.x.size() > kFewPoints) return;
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      if (is_point(series, i))
+        draw_series_dot(canvas_, {column(series.x[i]), row(series.y[i])}, style);
+  }
+
+  void draw_numbers() {
+    TextStyle style = kNumber;
+    style.align = Align::kCenter;
+    for (std::size_t i = 0; i < x_.ticks.size(); ++i)
+      canvas_.text(x_.labels[i], {column(x_.ticks[i]), field_.bottom() + kTickGap}, style);
+    style.align = Align::kRight;
+    const double middle = measure_text("0", kNumber).height / 2;
+    for (std::size_t i = 0; i < y_.ticks.size(); ++i)
+      canvas_.text(y_.labels[i], {field_.left - kTickGap, row(y_.ticks[i]) - middle}, style);
+  }
+
+  void draw_words() {
+    TextStyle style = kWords;
+    style.align = Align::kCenter;
+    const double height = measure_text(chart_.x_label, style).height;
+    canvas_.text(chart_.x_label, {field_.left + field_.width / 2, box_.bottom() - height}, style);
+    canvas_.text_upwards(chart_.y_label, {box_.left, field_.top + field_.height / 2}, style);
+  }
+
+  Canvas& canvas_;
+  const Box& box_;
+  const Chart& chart_;
+  Axis x_, y_;
+  Box field_;  // within the axes
+};
+
+}  // namespace
+
+bool has_points(const Chart& chart) {
+  return std::any_of(chart.series.begin(), chart.series.end(), [](const ChartSeries& series) {
+    return has_points(series);
+  });
+}
+
+void draw_chart(Canvas& canvas, const Box& box, const Chart& chart) {
+  ChartDrawing(canvas, box, chart).draw();
+}
+
+}  // namespace glint

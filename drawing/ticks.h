@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Where an axis is marked, and with which words.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// Two to six round numbers (1, 2 or 5 times a power of ten apart) within [low, high]; low < high.
+std::vector<double> round_ticks(double low, double high);
+
+// All with the decimals that the finest needs: "0.0", "0.5"; from ten thousand on in thousands,
+// "20k", from ten millions on in millions, "20M".
+std::vector<std::string> tick_labels(const std::vector<double>& ticks);
+
+}  // namespace glint

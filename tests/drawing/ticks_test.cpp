@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "drawing/ticks.h"
+
+#include <catch2/catch.hpp>
+
+using namespace glint;
+using Labels = std::vector<std::string>;
+
+TEST_CASE("ticks are round numbers within the limits") {
+  CHECK(round_ticks(0, 10) == std::vector<double>{0, 2, 4, 6, 8, 10});
+  CHECK(round_ticks(17.2, 24.9) == std::vector<double>{18, 20, 22, 24});
+  CHECK(round_ticks(-1, 1.5) == std::vector<double>{-1, -0.5, 0, 0.5, 1, 1.5});
+  CHECK(round_ticks(1000, 60000) == std::vector<double>{20000, 40000, 60000});
+  CHECK(round_ticks(-0.4, 8.4).size() == 5);
+}
+
+TEST_CASE("there are two to six ticks, whatever the range") {
+  for (double size = 1e-3; size < 1e7; size *= 1.37)
+    for (const double low : {0.0, -0.3 * size, 5.1 * size}) {
+      const auto ticks = round_ticks(low, low + size);
+      INFO(low << " " << size);
+      CHECK(ticks.size() >= 2);
+      CHECK(ticks.size() <= 6);
+      CHECK(ticks.front() >= low);
+      CHECK(ticks.back() <= low + size);
+    }
+}
+
+TEST_CASE("labels of an axis have the same decimals") {
+  CHECK(tick_labels({0, 0.5, 1, 1.5}) == Labels{"0.0", "0.5", "1.0", "1.5"});
+  CHECK(tick_labels({18, 20, 22}) == Labels{"18", "20", "22"});
+  CHECK(tick_labels({-0.02, 0, 0.02}) == Labels{"−0.02", "0.00", "0.02"});
+  CHECK(tick_labels(round_ticks(0, 0.31)) == Labels{"0.0", "0.1", "0.2", "0.3"});
+  CHECK(tick_labels({}).empty());
+}
+
+TEST_CASE("large numbers are written in thousands and millions") {
+  CHECK(tick_labels({0, 2000, 4000}) == Labels{"0", "2000", "4000"});
+  CHECK(tick_labels({0, 10000, 20000}) == Labels{"0", "10k", "20k"});
+  CHECK(tick_labels({5000, 7500, 10000}) == Labels{"5.0k", "7.5k", "10.0k"});
+  CHECK(tick_labels({0, 2e7}) == Labels{"0", "20M"});
+}
