@@ -103,13 +103,12 @@ class TwoDgs final : public Method {
     return stats;
   }
 
-  RenderOutput render(const Camera& camera) const override {
+  MapSet render(const Camera& camera) const override {
     const RasterOutput& out = set_.forward(camera, sh_degree_, {}, {}, render_pass_);
-    RenderOutput result;
-    expected_depth_map(out, result.depth);
-    result.normal = unit_normals(out.normal);
-    result.rgb = out.features;
-    result.alpha = out.alpha;
+    MapSet result;
+    expected_depth_map(out, result["depth"]);
+    result["normal"] = unit_normals(out.normal);
+    result["rgb"] = out.features;
     return result;
   }
 

@@ -77,7 +77,7 @@ class Glint final : public Method {
     return stats;
   }
 
-  RenderOutput render(const Camera& camera) const override {
+  MapSet render(const Camera& camera) const override {
     return model_.render(camera, config_, phase_);
   }
   void draw(const Camera& camera) const override { model_.forward(camera, config_, phase_); }

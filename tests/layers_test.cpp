@@ -45,7 +45,7 @@ const std::vector<Layer>& layers() {
         "glint/method.h",
         "metrics/"}},
       {"glint/", {"glint/", "metrics/"}},
-      {"metrics/", {"glint/core/", "metrics/"}},
+      {"metrics/", {"glint/core/", "glint/scene/maps.h", "metrics/"}},
       {"metrics/mesh/", {"glint/core/", "glint/scene/camera.h", "metrics/"}},
       {"metrics/fusion/",
        {"glint/core/", "glint/scene/camera.h", "metrics/mesh/", "metrics/fusion/"}},

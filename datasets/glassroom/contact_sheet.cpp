@@ -11,16 +11,31 @@ namespace glint {
 
 namespace {
 
-constexpr int kGap = 2;  // pixels between tiles
-constexpr int kRows = 9;
+constexpr int kGap = 2;         // pixels between tiles
 constexpr float kFarDepth = 6;  // metres, end of the depth colours
 
-Image glass_over_image(const MaskImage& glass, const Image& picture) {
+bool is_shown(const MapRow& row, bool truth) { return !(truth ? row.truth : row.prior).empty(); }
+
+int num_rows() {
+  int rows = 1;  // the image
+  for (const bool truth : {true, false})
+    for (const MapRow& row : maps()) rows += is_shown(row, truth) ? 1 : 0;
+  return rows;
+}
+
+Image mask_over_image(const Image& mask, const Image& picture) {
   Image result = picture;
-  for (std::size_t i = 0; i < glass.values().size(); ++i)
-    if (glass.values()[i] == 0)
+  for (std::size_t i = 0; i < mask.values().size(); ++i)
+    if (mask.values()[i] == 0)
       for (std::size_t c = 0; c < 3; ++c) result.values()[3 * i + c] *= 0.15f;
   return result;
+}
+
+Image grey_picture(const Image& map) {
+  Image picture(map.width(), map.height(), 3);
+  for (std::size_t i = 0; i < picture.values().size(); ++i)
+    picture.values()[i] = map.values()[i / 3];
+  return picture;
 }
 
 }  // namespace
@@ -29,27 +44,34 @@ ContactSheet::ContactSheet(int views, int columns, ImageSize tile)
     : views_(views),
       columns_(std::min(views, columns)),
       tile_(tile),
-      image_(columns_ * (tile.width + kGap) - kGap, kRows * (tile.height + kGap) - kGap, 3, 1.0f) {}
+      image_(
+          columns_ * (tile.width + kGap) - kGap, num_rows() * (tile.height + kGap) - kGap, 3, 1.0f
+      ) {}
 
 void ContactSheet::add(
-    int view, const PathTracerOutput& truth, const Priors& priors, float exposure
+    int view, const PathTracerOutput& truth, const MapSet& priors, float exposure
 ) {
   // Column c shows view c * views / columns; this is the only c that can show `view`.
   const int column = (view * columns_ + views_ - 1) / views_;
   if (column >= columns_ || column * views_ / columns_ != view) return;
   const Image picture = display_image(truth.radiance, exposure);
-  const std::vector<Image> rows{
-      picture,
-      colorize_depth(truth.depth, 0, kFarDepth),
-      colorize_normal(truth.normal),
-      glass_over_image(truth.glass, picture),
-      colorize_depth(truth.behind_depth, 0, kFarDepth),
-      display_image(truth.transmitted, exposure),
-      display_image(truth.reflected, exposure),
-      colorize_normal(priors.normal),
-      priors.albedo,
+  const auto picture_of = [&](MapKind kind, const Image& map, float far_depth) {
+    if (kind == MapKind::kDepth) return colorize_depth(map, 0, far_depth);
+    if (kind == MapKind::kNormal) return colorize_normal(map);
+    if (kind == MapKind::kMask) return mask_over_image(map, picture);
+    if (kind == MapKind::kPart) return display_image(map, exposure);
+    return kind == MapKind::kShare ? grey_picture(map) : map;
   };
-  for (int row = 0; row < kRows; ++row) paste(column, row, rows[static_cast<std::size_t>(row)]);
+  int row = 0;
+  paste(column, row++, picture);
+  for (const bool is_truth : {true, false})
+    for (const MapRow& entry : maps()) {
+      if (!is_shown(entry, is_truth)) continue;
+      const Image& map = (is_truth ? truth.maps : priors)[entry];
+      const float far_depth = is_truth ? kFarDepth : 1;  // priors are relative
+      if (!map.empty()) paste(column, row, picture_of(entry.kind, map, far_depth));
+      ++row;
+    }
 }
 
 void ContactSheet::paste(int column, int row, ImageView picture) {

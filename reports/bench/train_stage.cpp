@@ -24,7 +24,7 @@ class InterruptibleMethod final : public Method {
   void initialize(const Scene& scene, const RunOptions& options) override {
     method_.initialize(scene, options);
   }
-  RenderOutput render(const Camera& camera) const override { return method_.render(camera); }
+  MapSet render(const Camera& camera) const override { return method_.render(camera); }
   void draw(const Camera& camera) const override { method_.draw(camera); }
   void save(const std::string& folder) const override { method_.save(folder); }
   void load(const std::string& folder) override { method_.load(folder); }
