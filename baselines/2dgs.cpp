@@ -97,13 +97,12 @@ class TwoDgs final : public Method {
     return stats;
   }
 
-  RenderOutput render(const Camera& camera) override {
+  MapSet render(const Camera& camera) override {
     const RasterOutput& out = set_.forward(camera, sh_degree_);
-    RenderOutput result;
-    expected_depth_map(out, result.depth);
-    result.normal = unit_normals(out.normal);
-    result.rgb = out.features;
-    result.alpha = out.alpha;
+    MapSet result;
+    expected_depth_map(out, result["depth"]);
+    result["normal"] = unit_normals(out.normal);
+    result["rgb"] = out.features;
     return result;
   }
 

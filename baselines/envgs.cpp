@@ -139,20 +139,19 @@ class EnvGs final : public Method {
     return stats;
   }
 
-  RenderOutput render(const Camera& camera) override {
-    RenderOutput out;
-    out.rgb = forward(camera);
+  MapSet render(const Camera& camera) override {
+    MapSet out;
+    out["rgb"] = forward(camera);
     const GlassBuffer& buffer = transport_.buffer();
-    out.depth = buffer.depth;
-    out.normal = buffer.normal;
-    out.alpha = base_output_->alpha;
-    out.layers["specularity"] = buffer.mirrored;
-    out.layers["interface"] = layers_.interface;
+    out["depth"] = buffer.depth;
+    out["normal"] = buffer.normal;
+    out["specularity"] = buffer.specularity;
+    out["interface"] = layers_.interface;
     if (!with_environment_) return out;
-    out.layers["reflection"] = layers_.reflection;
-    Image& reflected = out.layers["reflected"] = layers_.reflection;
+    out["reflection"] = layers_.reflection;
+    Image& reflected = out["reflected"] = layers_.reflection;
     for (std::size_t i = 0; i < reflected.values().size(); ++i)
-      reflected.values()[i] *= buffer.mirrored.data()[i / 3];
+      reflected.values()[i] *= buffer.specularity.data()[i / 3];
     return out;
   }
 

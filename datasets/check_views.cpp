@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string_view>
 
 #include "datasets/check_geometry.h"
@@ -53,27 +54,16 @@ std::size_t count_not_unit(const Image& normal) {
 }
 
 void check_values(
-    std::string_view name,
-    const std::string& where,
-    const Image& map,
-    std::vector<Finding>& findings
+    MapKind kind, const std::string& where, const Image& map, std::vector<Finding>& findings
 ) {
-  if (const std::size_t count = count_not_finite(map); count > 0) {
-    findings.push_back(
-        {"non-finite",
-         where,
-         fmt::format("{} values are not finite; store 0 where nothing is known", count)}
-    );
-    return;
-  }
   const auto values = map.values();
-  if (name.starts_with("true depth") && *std::min_element(values.begin(), values.end()) < 0)
+  if (kind == MapKind::kDepth && *std::min_element(values.begin(), values.end()) < 0)
     findings.push_back(
         {"depth-values",
          where,
          "holds negative depth; expected metres in front of the camera, or 0"}
     );
-  if (!name.starts_with("true normal")) return;
+  if (kind != MapKind::kNormal) return;
   // Anti-aliased edges leave a few.
   const std::size_t count = count_not_unit(map);
   if (count > map.num_pixels() / 20)
@@ -84,22 +74,21 @@ void check_values(
     );
 }
 
-void check_map(
-    std::string_view name,
+// What every map of a view has to be. False: nothing more can be said of it.
+bool check_map(
+    const std::string& name,
     const fs::path& path,
-    int channels,
+    const Image& map,
     ImageSize expected,
     std::vector<Finding>& findings
 ) {
-  if (path.empty()) return;
-  const Image map = read_or_report(path, channels, findings);
-  if (map.empty()) return;
+  if (map.empty()) return false;
   if (expected.width > 0 && map.size() != expected)
     findings.push_back(
         {"wrong-size",
          path.string(),
          fmt::format(
-             "the {} has {} x {} pixels, its view's image {} x {}",
+             "{} has {} x {} pixels, its view's image {} x {}",
              name,
              map.width(),
              map.height(),
@@ -107,7 +96,14 @@ void check_map(
              expected.height
          )}
     );
-  check_values(name, path.string(), map, findings);
+  const std::size_t count = count_not_finite(map);
+  if (count > 0)
+    findings.push_back(
+        {"non-finite",
+         path.string(),
+         fmt::format("{} values are not finite; store 0 where nothing is known", count)}
+    );
+  return count == 0;
 }
 
 // Intrinsics that belong to another size show in the principal point when no size is stated.
@@ -169,8 +165,8 @@ PosedMap read_posed(const ViewSource& view, const fs::path& path, Reader&& read)
   return result;
 }
 
-PosedMap read_depth(const ViewSource& view, const fs::path& path) {
-  return read_posed(view, path, [](const fs::path& p) { return read_image(p, 1); });
+PosedMap read_depth(const ViewSource& view, MapId depth) {
+  return read_posed(view, view.truth[depth], [](const fs::path& p) { return read_image(p, 1); });
 }
 
 // Indices of up to kMostViews views, evenly spaced.
@@ -218,21 +214,19 @@ void report_depth(
 }
 
 // One kind of depth of the whole dataset: views against others a little further along the path.
-DepthKind check_depth(
-    const SceneIndex& index, fs::path TruthFiles::*file, std::vector<Finding>& findings
-) {
+DepthKind check_depth(const SceneIndex& index, MapId depth, std::vector<Finding>& findings) {
   DepthAgreement agreement;
   const std::size_t gap = std::max<std::size_t>(1, index.views.size() / 12);
   for (const std::size_t i : sample_views(index)) {
     if (i + gap >= index.views.size()) continue;
     const ViewSource &a = index.views[i], &b = index.views[i + gap];
-    const PosedMap from = read_depth(a, a.truth.*file), to = read_depth(b, b.truth.*file);
+    const PosedMap from = read_depth(a, depth), to = read_depth(b, depth);
     if (!from.usable || !to.usable) continue;
     agreement.add_pair(from.camera, from.map, to.camera, to.map);
     agreement.add_pair(to.camera, to.map, from.camera, from.map);
   }
   if (agreement.num_tested() < kEnoughSamples) return DepthKind::kPlanar;
-  report_depth(agreement, (index.views.front().truth.*file).parent_path().string(), findings);
+  report_depth(agreement, index.views.front().truth[depth].parent_path().string(), findings);
   return agreement.best();
 }
 
@@ -277,46 +271,34 @@ void report_facing(double share, const std::string& where, std::vector<Finding>&
   );
 }
 
-struct NormalKind {
-  fs::path (*normal)(const ViewSource&);
-  fs::path (*depth)(const ViewSource&);
-  Image (*read)(const fs::path&);
-};
-
-Image read_normal(const fs::path& path) { return read_image(path, 3); }
-
-const NormalKind kNormalKinds[] = {
-    {[](const ViewSource& v) { return v.truth.normal; },
-     [](const ViewSource& v) { return v.truth.depth; },
-     read_normal},
-    {[](const ViewSource& v) { return v.truth.behind_normal; },
-     [](const ViewSource& v) { return v.truth.behind_depth; },
-     read_normal},
-    {[](const ViewSource& v) { return v.priors.normal; },
-     [](const ViewSource& v) { return v.truth.depth; },
-     read_normal_prior},
-};
+using DepthKinds = std::map<std::string_view, DepthKind>;  // by id of the depth
 
 void check_normals(
     const SceneIndex& index,
-    const NormalKind& kind,
-    DepthKind depth_kind,
+    MapFiles ViewSource::*files,
+    const MapRow& row,
+    const DepthKinds& depth_kinds,
     std::vector<Finding>& findings
 ) {
+  const MapRow* depth_row = depth_of(row);
   NormalAgreement agreement;
   double facing = 0;
   int views = 0;
   std::string where;
   for (const std::size_t i : sample_views(index)) {
     const ViewSource& view = index.views[i];
-    const PosedMap normal = read_posed(view, kind.normal(view), kind.read);
+    const fs::path& path = (view.*files)[row];
+    const PosedMap normal = read_posed(view, path, [&](const fs::path& p) {
+      return files == &ViewSource::priors ? read_prior(p, row.kind) : read_image(p, 3);
+    });
     if (!normal.usable) continue;
-    where = kind.normal(view).parent_path().string();
+    where = path.parent_path().string();
     facing += facing_share(normal.camera, normal.map);
     ++views;
-    const PosedMap depth = read_depth(view, kind.depth(view));
+    if (depth_row == nullptr) continue;
+    const PosedMap depth = read_depth(view, *depth_row);
     if (depth.usable && depth.map.size() == normal.map.size())
-      agreement.add_view(normal.camera, depth.map, depth_kind, normal.map);
+      agreement.add_view(normal.camera, depth.map, depth_kinds.at(depth_row->id), normal.map);
   }
   if (agreement.num_samples() >= kEnoughSamples)
     report_normals(agreement, where, findings);
@@ -330,20 +312,27 @@ std::vector<Finding> check_view_files(const ViewSource& view) {
   std::vector<Finding> findings;
   const Image image = read_or_report(view.image, 3, findings);
   check_camera(view, image.size(), findings);
-  const auto check = [&](const char* name, const fs::path& path, int channels) {
-    check_map(name, path, channels, image.size(), findings);
-  };
-  view.priors.for_each(check);
-  view.truth.for_each(check);
+  view.priors.for_each([&](const MapRow& row, const fs::path& path) {
+    // Depth comes in one channel or spread over three.
+    const int channels = row.kind == MapKind::kDepth ? 0 : row.channels();
+    const Image map = read_or_report(path, channels, findings);
+    check_map(fmt::format("prior.{}", row.id), path, map, image.size(), findings);
+  });
+  view.truth.for_each([&](const MapRow& row, const fs::path& path) {
+    const Image map = read_or_report(path, row.channels(), findings);
+    if (check_map(fmt::format("truth.{}", row.id), path, map, image.size(), findings))
+      check_values(row.kind, path.string(), map, findings);
+  });
   return findings;
 }
 
 void check_agreement(const SceneIndex& index, std::vector<Finding>& findings) {
-  const DepthKind first = check_depth(index, &TruthFiles::depth, findings);
-  const DepthKind behind = check_depth(index, &TruthFiles::behind_depth, findings);
-  const DepthKind depth_of_kind[] = {first, behind, first};
-  for (std::size_t i = 0; i < std::size(kNormalKinds); ++i)
-    check_normals(index, kNormalKinds[i], depth_of_kind[i], findings);
+  DepthKinds kinds;
+  for (const MapRow& row : maps())
+    if (row.kind == MapKind::kDepth) kinds[row.id] = check_depth(index, row, findings);
+  for (const auto files : {&ViewSource::truth, &ViewSource::priors})
+    for (const MapRow& row : maps())
+      if (row.kind == MapKind::kNormal) check_normals(index, files, row, kinds, findings);
 }
 
 }  // namespace glint

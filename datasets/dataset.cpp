@@ -26,51 +26,15 @@ std::string size_range(const Scene& scene) {
 }
 
 // "normal (64 views), depth (63 views)": the maps that views have.
-class MapCounter {
- public:
-  void count(const char* name, bool present) {
-    auto it = std::find_if(counts_.begin(), counts_.end(), [&](const auto& c) {
-      return c.first == name;
+std::string describe_maps(const std::vector<View>& views, MapSet View::*set) {
+  std::string text;
+  for (const MapRow& row : maps()) {
+    const auto count = std::count_if(views.begin(), views.end(), [&](const View& view) {
+      return (view.*set).has(row);
     });
-    if (it == counts_.end()) it = counts_.insert(counts_.end(), {name, 0});
-    it->second += present ? 1 : 0;
+    if (count > 0) text += fmt::format("{}{} ({} views)", text.empty() ? "" : ", ", row.id, count);
   }
-  std::string text() const {
-    std::string text;
-    for (const auto& entry : counts_)
-      if (entry.second > 0)
-        text += fmt::format("{}{} ({} views)", text.empty() ? "" : ", ", entry.first, entry.second);
-    return text.empty() ? "none" : text;
-  }
-
- private:
-  std::vector<std::pair<std::string, int>> counts_;
-};
-
-std::string describe_priors(const Scene& scene) {
-  MapCounter counter;
-  for (const View& view : scene.train) {
-    counter.count("normal", !view.priors.normal.empty());
-    counter.count("depth", !view.priors.depth.empty());
-    counter.count("albedo", !view.priors.albedo.empty());
-    counter.count("basecolor", !view.priors.basecolor.empty());
-  }
-  return counter.text() + (scene.simulated_priors ? ", simulated" : "");
-}
-
-std::string describe_truth(const Scene& scene) {
-  MapCounter counter;
-  for (const View& view : scene.test) {
-    counter.count("depth", !view.truth.depth.empty());
-    counter.count("normal", !view.truth.normal.empty());
-    counter.count("albedo", !view.truth.albedo.empty());
-    counter.count("glass", !view.truth.glass.empty());
-    counter.count("depth behind glass", !view.truth.behind_depth.empty());
-    counter.count("normal behind glass", !view.truth.behind_normal.empty());
-    counter.count("transmitted", !view.truth.transmitted.empty());
-    counter.count("reflected", !view.truth.reflected.empty());
-  }
-  return counter.text();
+  return text.empty() ? "none" : text;
 }
 
 std::string format_vector(Vec3f v) {
@@ -133,8 +97,12 @@ std::string describe_scene(const Scene& scene) {
       "views          {} ({} train, {} test)\n", views, scene.train.size(), scene.test.size()
   );
   text += fmt::format("image size     {}\n", size_range(scene));
-  text += fmt::format("priors         {}\n", describe_priors(scene));
-  text += fmt::format("ground truth   {}\n", describe_truth(scene));
+  text += fmt::format(
+      "priors         {}{}\n",
+      describe_maps(scene.train, &View::priors),
+      scene.simulated_priors ? ", simulated" : ""
+  );
+  text += fmt::format("ground truth   {}\n", describe_maps(scene.test, &View::truth));
   text += fmt::format("points         {}\n", scene.points.positions.size());
   text += fmt::format(
       "bounds         {} to {}\n", format_vector(scene.bounds_min), format_vector(scene.bounds_max)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // EasyVolcap's folder layout, as GLINT's official release and our GlassRoom generator write it:
 //   images/<view>/000000.{png,jpg}   intri.yml   extri.yml   sparse/0/points3D.ply
-//   diffrens/{normal,depth,diffuse_albedo,basecolor}/<view>/000000.png       priors
+//   diffrens/<prior>/<view>/000000.png
 // and, of GlassRoom only:
-//   gt/{depth,normal,albedo,behind_depth,behind_normal,transmitted,reflected}/<view>.exr
-//   gt/glass/<view>.png   scene.json
+//   gt/<truth>/<view>.exr (masks: .png)   scene.json
+// Priors and truth are those of the table (glint/scene/maps.h).
 #include <algorithm>
 
 #include "datasets/dataset.h"
@@ -35,28 +35,19 @@ fs::path first_frame(const fs::path& view_folder) {
   return files.empty() ? view_folder / "000000.png" : files.front();
 }
 
-PriorFiles find_priors(const fs::path& folder, const std::string& view) {
-  const fs::path priors = folder / "diffrens";
-  const auto find = [&](const char* kind) {
-    return is_folder(priors / kind) ? first_frame(priors / kind / view) : fs::path();
-  };
-  return {find("normal"), find("depth"), find("diffuse_albedo"), find("basecolor")};
+MapFiles find_priors(const fs::path& folder, const std::string& view) {
+  MapFiles files;
+  for (const MapRow& row : maps())
+    if (!row.prior.empty() && is_folder(folder / row.prior))
+      files[row] = first_frame(folder / row.prior / view);
+  return files;
 }
 
-TruthFiles find_truth(const fs::path& folder, const std::string& view) {
-  const fs::path truth = folder / "gt";
-  const auto find = [&](const char* kind, const char* extension) {
-    return is_folder(truth / kind) ? truth / kind / (view + extension) : fs::path();
-  };
-  TruthFiles files;
-  files.depth = find("depth", ".exr");
-  files.normal = find("normal", ".exr");
-  files.albedo = find("albedo", ".exr");
-  files.glass = find("glass", ".png");
-  files.behind_depth = find("behind_depth", ".exr");
-  files.behind_normal = find("behind_normal", ".exr");
-  files.transmitted = find("transmitted", ".exr");
-  files.reflected = find("reflected", ".exr");
+MapFiles find_truth(const fs::path& folder, const std::string& view) {
+  MapFiles files;
+  for (const MapRow& row : maps())
+    if (!row.truth.empty() && is_folder(folder / row.truth))
+      files[row] = folder / true_map_file(row, view);
   return files;
 }
 
@@ -67,8 +58,8 @@ ViewSource make_view(const fs::path& folder, const OpencvCamera& camera) {
   view.image = first_frame(folder / "images" / camera.name);
   view.camera = camera.camera;
   view.distortion = camera.distortion;
-  view.priors = find_priors(folder, camera.name);
-  view.truth = find_truth(folder, camera.name);
+  view.priors = find_priors(folder / "diffrens", camera.name);
+  view.truth = find_truth(folder / "gt", camera.name);
   return view;
 }
 

@@ -12,6 +12,7 @@ namespace {
 Image resize_map(const Image& map, MapKind kind, ImageSize size) {
   if (kind == MapKind::kDepth) return resize_depth(map, size);
   if (kind == MapKind::kNormal) return resize_normal(map, size);
+  if (kind == MapKind::kMask) return map_of_mask(resize_mask(mask_of_map(map), size));
   return resize_image(map, size);
 }
 
@@ -30,10 +31,9 @@ ImageSize target_size(ImageSize stored, const LoadOptions& options) {
 void fit_view(View& view, const LoadOptions& options) {
   const ImageSize size = target_size(view.camera.size(), options);
   if (size == view.camera.size()) return;
-  for_each_map(view, [&](const char*, Image& map, MapKind kind) {
-    if (!map.empty()) map = resize_map(map, kind, size);
+  for_each_map(view, [&](const std::string&, Image& map, const MapRow& row) {
+    if (!map.empty()) map = resize_map(map, row.kind, size);
   });
-  if (!view.truth.glass.empty()) view.truth.glass = resize_mask(view.truth.glass, size);
   view.camera = resized(view.camera, size);
 }
 

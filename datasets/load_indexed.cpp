@@ -29,60 +29,66 @@ void check_size(const fs::path& path, ImageSize found, ImageSize expected) {
   );
 }
 
-template <class Reader>
-void read_into(Image& image, const fs::path& path, ImageSize expected, Reader&& read) {
-  if (path.empty()) return;
-  image = read(path);
-  check_size(path, image.size(), expected);
+Image read_finite(const fs::path& path, int channels) {
+  Image map = read_image(path, channels);
+  for (std::size_t i = 0; i < map.values().size(); ++i) {
+    const std::size_t pixel = i / static_cast<std::size_t>(channels);
+    GLINT_CHECK(
+        std::isfinite(map.values()[i]),
+        kBadReference,
+        "{}: pixel ({}, {}) is {}; store 0 where nothing is known",
+        path.string(),
+        pixel % static_cast<std::size_t>(map.width()),
+        pixel / static_cast<std::size_t>(map.width()),
+        map.values()[i]
+    );
+  }
+  return map;
 }
 
-Image read_three(const fs::path& path) { return read_map(path, 3); }
-Image read_one(const fs::path& path) { return read_map(path, 1); }
-
-Priors read_priors(const PriorFiles& files, ImageSize size) {
-  Priors priors;
-  read_into(priors.normal, files.normal, size, read_normal_prior);
-  read_into(priors.depth, files.depth, size, read_depth_prior);
-  read_into(priors.albedo, files.albedo, size, read_three);
-  read_into(priors.basecolor, files.basecolor, size, read_three);
-  return priors;
+Image read_normal_prior(const fs::path& path) {
+  constexpr float kMissing = 0.5f;  // mid-grey decodes to about zero
+  Image normal = read_finite(path, 3);
+  for (std::size_t i = 0; i < normal.num_pixels(); ++i) {
+    float* n = normal.data() + 3 * i;
+    for (int c = 0; c < 3; ++c) n[c] = 2 * n[c] - 1;
+    const float norm = length(Vec3f{n[0], n[1], n[2]});
+    for (int c = 0; c < 3; ++c) n[c] = norm < kMissing ? 0 : n[c] / norm;
+  }
+  return normal;
 }
 
-GroundTruth read_truth(const TruthFiles& files, ImageSize size) {
-  GroundTruth truth;
-  read_into(truth.depth, files.depth, size, read_one);
-  read_into(truth.normal, files.normal, size, read_three);
-  read_into(truth.albedo, files.albedo, size, read_three);
-  read_into(truth.behind_depth, files.behind_depth, size, read_one);
-  read_into(truth.behind_normal, files.behind_normal, size, read_three);
-  read_into(truth.transmitted, files.transmitted, size, read_three);
-  read_into(truth.reflected, files.reflected, size, read_three);
-  if (files.glass.empty()) return truth;
-  truth.glass = read_mask(files.glass);
-  check_size(files.glass, truth.glass.size(), size);
-  return truth;
+Image read_depth_prior(const fs::path& path) {
+  Image stored = read_image(path);
+  if (stored.channels() == 1) return read_finite(path, 1);
+  Image depth(stored.width(), stored.height(), 1);
+  for (std::size_t i = 0; i < depth.num_pixels(); ++i) {
+    const float* rgb = stored.data() + 3 * i;
+    depth.data()[i] = rgb[0] + rgb[1] / 256 + rgb[2] / 65536;
+  }
+  return depth;
 }
 
-MaskImage undistort_mask(const MaskImage& mask, const Undistortion& undistortion) {
-  Image values(mask.width(), mask.height(), 1);
-  std::copy(mask.values().begin(), mask.values().end(), values.values().begin());
-  values = undistortion.apply(values, Undistortion::Lookup::kNearest);
-  MaskImage result(values.width(), values.height(), 1);
-  for (std::size_t i = 0; i < result.num_pixels(); ++i)
-    result.data()[i] = values.data()[i] > 0 ? 255 : 0;
-  return result;
+MapSet read_maps(
+    const MapFiles& files, ImageSize size, Image (*read)(const fs::path& path, MapKind kind)
+) {
+  MapSet maps;
+  files.for_each([&](const MapRow& row, const fs::path& path) {
+    maps[row] = read(path, row.kind);
+    check_size(path, maps[row].size(), size);
+  });
+  return maps;
 }
 
 void undistort_view(View& view, const std::vector<double>& distortion) {
+  using Lookup = Undistortion::Lookup;
   const Undistortion undistortion(view.camera, distortion);
-  for_each_map(view, [&](const char*, Image& image, MapKind kind) {
-    if (image.empty()) return;
-    const bool blend = kind == MapKind::kColor;
-    image = undistortion.apply(
-        image, blend ? Undistortion::Lookup::kBilinear : Undistortion::Lookup::kNearest
-    );
+  for_each_map(view, [&](const std::string&, Image& map, const MapRow& row) {
+    if (map.empty()) return;
+    const bool blend =
+        row.kind != MapKind::kDepth && row.kind != MapKind::kNormal && row.kind != MapKind::kMask;
+    map = undistortion.apply(map, blend ? Lookup::kBilinear : Lookup::kNearest);
   });
-  if (!view.truth.glass.empty()) view.truth.glass = undistort_mask(view.truth.glass, undistortion);
   view.camera = undistortion.camera();
 }
 
@@ -185,8 +191,8 @@ View read_view(const ViewSource& source, const LoadOptions& options) {
   view.name = source.name;
   view.rgb = read_image(source.image, 3);
   view.camera = camera_at(source, view.rgb.size());
-  if (options.with_priors) view.priors = read_priors(source.priors, view.rgb.size());
-  if (options.with_truth) view.truth = read_truth(source.truth, view.rgb.size());
+  if (options.with_priors) view.priors = read_maps(source.priors, view.rgb.size(), read_prior);
+  if (options.with_truth) view.truth = read_maps(source.truth, view.rgb.size(), read_true_map);
   return view;
 }
 
@@ -209,44 +215,15 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options) {
   return scene;
 }
 
-Image read_map(const fs::path& path, int channels) {
-  Image map = read_image(path, channels);
-  for (std::size_t i = 0; i < map.values().size(); ++i) {
-    const std::size_t pixel = i / static_cast<std::size_t>(channels);
-    GLINT_CHECK(
-        std::isfinite(map.values()[i]),
-        kBadReference,
-        "{}: pixel ({}, {}) is {}; store 0 where nothing is known",
-        path.string(),
-        pixel % static_cast<std::size_t>(map.width()),
-        pixel / static_cast<std::size_t>(map.width()),
-        map.values()[i]
-    );
-  }
-  return map;
+Image read_true_map(const fs::path& path, MapKind kind) {
+  if (kind == MapKind::kMask) return map_of_mask(read_mask(path));
+  return read_finite(path, channels_of(kind));
 }
 
-Image read_normal_prior(const fs::path& path) {
-  constexpr float kMissing = 0.5f;  // mid-grey decodes to about zero
-  Image normal = read_map(path, 3);
-  for (std::size_t i = 0; i < normal.num_pixels(); ++i) {
-    float* n = normal.data() + 3 * i;
-    for (int c = 0; c < 3; ++c) n[c] = 2 * n[c] - 1;
-    const float norm = length(Vec3f{n[0], n[1], n[2]});
-    for (int c = 0; c < 3; ++c) n[c] = norm < kMissing ? 0 : n[c] / norm;
-  }
-  return normal;
-}
-
-Image read_depth_prior(const fs::path& path) {
-  Image stored = read_image(path);
-  if (stored.channels() == 1) return read_map(path, 1);
-  Image depth(stored.width(), stored.height(), 1);
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i) {
-    const float* rgb = stored.data() + 3 * i;
-    depth.data()[i] = rgb[0] + rgb[1] / 256 + rgb[2] / 65536;
-  }
-  return depth;
+Image read_prior(const fs::path& path, MapKind kind) {
+  if (kind == MapKind::kNormal) return read_normal_prior(path);
+  if (kind == MapKind::kDepth) return read_depth_prior(path);
+  return read_true_map(path, kind);
 }
 
 }  // namespace glint

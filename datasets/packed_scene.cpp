@@ -140,17 +140,14 @@ void check_camera(const Camera& camera, const std::string& where) {
 
 void read_maps(PackedReader& reader, const std::string& prefix, View& view) {
   const ImageSize size = view.camera.size();
-  for_each_map(view, [&](const char* name, Image& map, MapKind kind) {
+  for_each_map(view, [&](const std::string& name, Image& map, const MapRow& row) {
     if (!reader.has(prefix + name)) return;
-    const auto values = reader.read_floats(prefix + name, shape_of(size, channels_of(kind)));
-    map = Image(size.width, size.height, channels_of(kind));
+    auto values = reader.read_floats(prefix + name, shape_of(size, row.channels()));
+    if (row.kind == MapKind::kMask)
+      for (float& value : values) value = value != 0 ? 1.0f : 0.0f;
+    map = Image(size.width, size.height, row.channels());
     std::copy(values.begin(), values.end(), map.data());
   });
-  const std::string glass = prefix + "truth.glass";
-  if (!reader.has(glass)) return;
-  const auto values = reader.read<std::uint8_t>(glass, shape_of(size, 1));
-  view.truth.glass = MaskImage(size.width, size.height, 1);
-  std::copy(values.begin(), values.end(), view.truth.glass.data());
 }
 
 std::vector<View> read_views(PackedReader& reader, const std::string& split) {
@@ -213,9 +210,9 @@ void check_finite(std::span<const float> values, const std::string& where) {
 void check_view(const View& view, const std::string& where) {
   check_camera(view.camera, where + "camera");
   GLINT_CHECK(!view.rgb.empty(), kBadReference, "{}rgb is missing; pack it again", where);
-  for_each_map(view, [&](const char* name, const Image& map, MapKind kind) {
+  for_each_map(view, [&](const std::string& name, const Image& map, const MapRow& row) {
     if (map.empty()) return;
-    const bool fits = map.size() == view.camera.size() && map.channels() == channels_of(kind);
+    const bool fits = map.size() == view.camera.size() && map.channels() == row.channels();
     GLINT_CHECK(
         fits,
         kBadReference,
@@ -223,19 +220,10 @@ void check_view(const View& view, const std::string& where) {
         where,
         name,
         shape_text(shape_of(map.size(), map.channels())),
-        shape_text(shape_of(view.camera.size(), channels_of(kind)))
+        shape_text(shape_of(view.camera.size(), row.channels()))
     );
     check_finite(map.values(), where + name);
   });
-  const MaskImage& glass = view.truth.glass;
-  GLINT_CHECK(
-      glass.empty() || (glass.size() == view.camera.size() && glass.channels() == 1),
-      kBadReference,
-      "{}truth.glass: {}, expected {}",
-      where,
-      shape_text(shape_of(glass.size(), glass.channels())),
-      shape_text(shape_of(view.camera.size(), 1))
-  );
 }
 
 void check_vectors(std::span<const Vec3f> vectors, std::size_t count, const std::string& where) {

@@ -118,18 +118,12 @@ class Packer {
     add_cameras(split, views);
     for (std::size_t i = 0; i < views.size(); ++i) {
       const std::string prefix = packed::view_prefix(split, i);
-      for_each_map(views[i], [&](const char* name, const Image& map, MapKind) {
+      for_each_map(views[i], [&](const std::string& name, const Image& map, const MapRow&) {
         if (!map.empty()) add_floats(prefix + name, shape_of(map), map.values());
-      });
-      const MaskImage& glass = views[i].truth.glass;
-      if (glass.empty()) continue;
-      add(prefix + "truth.glass", TensorType::kU8, shape_of(glass), [&glass](std::byte* to) {
-        std::memcpy(to, glass.data(), glass.values().size());
       });
     }
   }
-  template <class T>
-  static Shape shape_of(const BasicImage<T>& image) {
+  static Shape shape_of(const Image& image) {
     return {
         static_cast<std::size_t>(image.height()),
         static_cast<std::size_t>(image.width()),

@@ -12,35 +12,8 @@
 
 namespace glint {
 
-// Paths of a view's priors; empty where the dataset has none of the kind. for_each calls
-// f(name, path, channels); 0 channels: one or three.
-struct PriorFiles {
-  fs::path normal, depth, albedo, basecolor;
-
-  template <class F>
-  void for_each(F&& f) const {
-    f("normal prior", normal, 3);
-    f("depth prior", depth, 0);
-    f("albedo prior", albedo, 3);
-    f("basecolor prior", basecolor, 3);
-  }
-};
-
-struct TruthFiles {
-  fs::path depth, normal, albedo, glass, behind_depth, behind_normal, transmitted, reflected;
-
-  template <class F>
-  void for_each(F&& f) const {
-    f("true depth", depth, 1);
-    f("true normal", normal, 3);
-    f("true albedo", albedo, 3);
-    f("glass mask", glass, 1);
-    f("true depth behind glass", behind_depth, 1);
-    f("true normal behind glass", behind_normal, 3);
-    f("transmitted radiance", transmitted, 3);
-    f("reflected radiance", reflected, 3);
-  }
-};
+// Where the maps of a view lie; empty where the dataset has none of the kind.
+using MapFiles = BasicMapSet<fs::path>;
 
 struct ViewSource {
   std::string name;
@@ -51,8 +24,7 @@ struct ViewSource {
       false;  // intrinsics follow the image when its size is not the stated one
   std::vector<double> distortion;  // OpenCV's order k1 k2 p1 p2 k3; empty: none
   bool is_train = false, is_test = false;
-  PriorFiles priors;
-  TruthFiles truth;
+  MapFiles priors, truth;
 };
 
 struct SceneIndex {
@@ -88,9 +60,9 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options);
 std::vector<Finding> check_indexed(const SceneIndex& index);
 
 // Readers of single maps, values checked to be finite.
-Image read_map(const fs::path& path, int channels);
-Image read_normal_prior(const fs::path& path
-);                                             // (n + 1) / 2, OpenCV camera axes, to unit n or zero
-Image read_depth_prior(const fs::path& path);  // grey, or R + G/256 + B/65536
+Image read_true_map(const fs::path& path, MapKind kind);
+// As other networks store them. Normals: (n + 1) / 2, OpenCV camera axes, to unit n or zero. Depth:
+// grey, or R + G/256 + B/65536.
+Image read_prior(const fs::path& path, MapKind kind);
 
 }  // namespace glint

@@ -1,33 +1,22 @@
 // SPDX-License-Identifier: MIT
-// The one list of the images of a view, and the view at another size.
+// All maps of a view, and the view at another size.
 #pragma once
 
 #include "datasets/dataset.h"
 
 namespace glint {
 
-enum class MapKind { kColor, kDepth, kNormal };
-inline int channels_of(MapKind kind) { return kind == MapKind::kDepth ? 1 : 3; }
-
-// Calls f(name, image, kind) for every map of a view (const or not), also for those that are empty;
-// the glass mask is not among them.
+// Calls f(name, map, row) for the image and every map of the table (of views that are not const
+// also for those that are empty), under the names that packed scenes and messages use: "rgb",
+// "prior.depth", "truth.glass".
 template <class AnyView, class F>
 void for_each_map(AnyView& view, F&& f) {
-  f("rgb", view.rgb, MapKind::kColor);
-  f("prior.normal", view.priors.normal, MapKind::kNormal);
-  f("prior.depth", view.priors.depth, MapKind::kDepth);
-  f("prior.albedo", view.priors.albedo, MapKind::kColor);
-  f("prior.basecolor", view.priors.basecolor, MapKind::kColor);
-  f("truth.depth", view.truth.depth, MapKind::kDepth);
-  f("truth.normal", view.truth.normal, MapKind::kNormal);
-  f("truth.albedo", view.truth.albedo, MapKind::kColor);
-  f("truth.behind_depth", view.truth.behind_depth, MapKind::kDepth);
-  f("truth.behind_normal", view.truth.behind_normal, MapKind::kNormal);
-  f("truth.transmitted", view.truth.transmitted, MapKind::kColor);
-  f("truth.reflected", view.truth.reflected, MapKind::kColor);
+  f(std::string("rgb"), view.rgb, MapId("rgb").row());
+  for (const MapRow& row : maps()) f(fmt::format("prior.{}", row.id), view.priors[row], row);
+  for (const MapRow& row : maps()) f(fmt::format("truth.{}", row.id), view.truth[row], row);
 }
 
-// Images, mask and camera at the size that `size` or `max_pixels` of the options ask for.
+// Images and camera at the size that `size` or `max_pixels` of the options ask for.
 void fit_view(View& view, const LoadOptions& options);
 
 }  // namespace glint

@@ -79,7 +79,7 @@ class Glint final : public Method {
     return stats;
   }
 
-  RenderOutput render(const Camera& camera) override {
+  MapSet render(const Camera& camera) override {
     return model_.render(camera, config_, phase_);
   }
   void draw(const Camera& camera) override { model_.forward(camera, config_, phase_); }

@@ -111,30 +111,28 @@ Image GlintModel::behind_depth(const Camera& camera) {
 }
 
 // The shares of a pixel's radiance that came through the interface and that it mirrored.
-void GlintModel::add_components(RenderOutput& out) const {
+void GlintModel::add_components(MapSet& out) const {
   Image through = buffer().transparency;
   for (std::size_t i = 0; i < through.num_pixels(); ++i)
-    through.data()[i] *= 1 - buffer().mirrored.data()[i];
-  if (phase_.transmission)
-    out.layers["transmitted"] = scaled_by_pixel(layers_.transmission, through);
+    through.data()[i] *= 1 - buffer().specularity.data()[i];
+  if (phase_.transmission) out["transmitted"] = scaled_by_pixel(layers_.transmission, through);
   if (phase_.reflection)
-    out.layers["reflected"] = scaled_by_pixel(layers_.reflection, buffer().mirrored);
+    out["reflected"] = scaled_by_pixel(layers_.reflection, buffer().specularity);
 }
 
-RenderOutput GlintModel::render(
+MapSet GlintModel::render(
     const Camera& camera, const GlintConfig& config, const GlintPhase& phase
 ) {
-  RenderOutput out;
-  out.rgb = forward(camera, config, phase);
-  out.depth = buffer().depth;
-  out.normal = buffer().normal;
-  out.alpha = interface_output_->alpha;
-  out.layers["transparency"] = buffer().transparency;
-  out.layers["specularity"] = buffer().mirrored;
-  out.layers["interface"] = layers_.interface;
-  if (phase.transmission) out.layers["transmission"] = layers_.transmission;
-  if (phase.transmission) out.layers["behind_depth"] = behind_depth(camera);
-  if (phase.reflection) out.layers["reflection"] = layers_.reflection;
+  MapSet out;
+  out["rgb"] = forward(camera, config, phase);
+  out["depth"] = buffer().depth;
+  out["normal"] = buffer().normal;
+  out["transparency"] = buffer().transparency;
+  out["specularity"] = buffer().specularity;
+  out["interface"] = layers_.interface;
+  if (phase.transmission) out["transmission"] = layers_.transmission;
+  if (phase.transmission) out["behind_depth"] = behind_depth(camera);
+  if (phase.reflection) out["reflection"] = layers_.reflection;
   add_components(out);
   return out;
 }

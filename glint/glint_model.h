@@ -38,13 +38,13 @@ class GlintModel {
   const GlassLayers& layers() const { return layers_; }
 
   // All maps of a view (docs/RECORDS.md).
-  RenderOutput render(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
+  MapSet render(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
 
  private:
   void render_transmission(const Camera& camera, const GlintConfig& config);
   void transmission_vjp(const GlintConfig& config, const Image& dL_dradiance);
   Image behind_depth(const Camera& camera);
-  void add_components(RenderOutput& out) const;
+  void add_components(MapSet& out) const;
 
   Camera camera_;  // of the last forward call, as is the phase
   GlintPhase phase_;

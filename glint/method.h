@@ -22,17 +22,6 @@ struct StepStats {
   std::map<std::string, double> terms;  // each loss term, weighted
 };
 
-// Maps of one view, all of the camera's size. Empty images: the method does not produce them.
-struct RenderOutput {
-  Image rgb;     // [H][W][3] as displayed, not clamped
-  Image depth;   // [H][W][1] planar z in metres; 0: nothing hit
-  Image normal;  // [H][W][3] unit, camera space, facing the camera; zero: nothing hit
-  Image alpha;   // [H][W][1]
-  // Further maps by name (docs/RECORDS.md): transparency, specularity, behind_depth, transmitted,
-  // reflected; pictures: interface, transmission, reflection.
-  std::map<std::string, Image> layers;
-};
-
 // Options of one run that every method gets.
 struct RunOptions {
   int iterations = 30000;  // schedules scale with it
@@ -46,8 +35,9 @@ class Method {
   // be looked at. Errors: kUsage (config), kBadReference (scene lacks what the method needs).
   virtual void initialize(const Scene& scene, const RunOptions& options) = 0;
   virtual StepStats step(int iteration) = 0;  // iteration counts from 0
-  // Not const: buffers are kept from one view to the next, and shared with step().
-  virtual RenderOutput render(const Camera& camera) = 0;
+  // Maps of one view, all of the camera's size; rgb is not clamped. Not const: buffers are kept from
+  // one view to the next, and shared with step().
+  virtual MapSet render(const Camera& camera) = 0;
   // The picture alone, left on the device where it was made: what FPS counts.
   virtual void draw(const Camera& camera) { render(camera); }
   // Surfel sets as PLY files and whatever else is needed to render again.

@@ -14,6 +14,7 @@
 
 #include "glint/core/config.h"
 #include "glint/core/image.h"
+#include "glint/scene/maps.h"
 
 namespace glint {
 
@@ -35,20 +36,11 @@ struct Region {
 // alone.
 std::vector<Region> evaluation_regions(MaskView glass);
 
-// What a method rendered and what is true, all of one size. Empty views: not available.
+// What a method rendered and what is true, all of one size.
 struct ViewPair {
-  ImageView rgb;     // [H][W][3] as displayed, not clamped
-  ImageView depth;   // [H][W][1] planar z in metres; 0 or not finite: nothing rendered
-  ImageView normal;  // [H][W][3] camera space, OpenCV axes; zero or not finite: nothing rendered
-  ImageView transparency;  // [H][W][1] in [0, 1]
-  ImageView specularity;   // [H][W][1] in [0, 1]
-  ImageView behind_depth;  // [H][W][1] planar z in metres of the first surface behind glass
-  ImageView transmitted;   // [H][W][3] the part of rgb that came through glass
-  ImageView reflected;     // [H][W][3] the part of rgb that glass mirrored
-
-  ImageView true_rgb, true_depth, true_normal, true_behind_depth;
-  ImageView true_transmitted, true_reflected;  // [H][W][3] linear radiance (components.h)
-  MaskView glass;                              // non-zero: the first surface is glass
+  MapViews rendered;  // rgb is not clamped; depth and normal: 0 or not finite where nothing is
+  MapViews truth;     // "rgb" is the view's image
+  MaskView glass;     // non-zero: the first surface is glass; empty: not known
 };
 
 enum class Direction { kHigherIsBetter, kLowerIsBetter };
@@ -57,7 +49,7 @@ NLOHMANN_JSON_SERIALIZE_ENUM(
 )
 
 struct Metric {
-  std::string id;    // docs: PROTOCOL; "psnr", "normal-11.25", ...
+  std::string id;    // "psnr", "normal-11.25", ...: docs/METRICS.md
   std::string unit;  // "dB", "deg", "%", "m", "" for plain numbers
   Direction direction = Direction::kHigherIsBetter;
   int decimals = 3;  // as printed in tables; JSON is never rounded
@@ -76,7 +68,8 @@ struct MetricFiles {
 // Metrics that come out of one pass over the maps.
 struct MetricFamily {
   std::vector<Metric> metrics;
-  // One entry per region, in their order. Errors: see the metric's header.
+  // One entry per region, in their order; none where the view lacks a map. Errors: those of the
+  // metric's function.
   std::function<std::vector<MetricValues>(const ViewPair&, std::span<const Region>)> evaluate;
   std::function<MetricFiles(const Metric&)> files = nullptr;  // null: it needs none
 };

@@ -47,7 +47,7 @@ const std::vector<Layer>& layers() {
         "metrics/"}},
       {"glint/", {"glint/", "metrics/"}},
       {"drawing/", {"glint/core/", "glint/scene/", "drawing/"}},
-      {"metrics/", {"glint/core/", "metrics/"}},
+      {"metrics/", {"glint/core/", "glint/scene/maps.h", "metrics/"}},
       {"metrics/mesh/", {"glint/core/", "glint/scene/camera.h", "metrics/"}},
       {"metrics/fusion/",
        {"glint/core/", "glint/scene/camera.h", "metrics/mesh/", "metrics/fusion/"}},

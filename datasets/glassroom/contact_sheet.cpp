@@ -14,32 +14,51 @@ namespace {
 
 constexpr float kFarDepth = 6;  // metres, end of the depth colours
 
-Image glass_over_image(const MaskImage& glass, const Image& picture) {
+// A row of the sheet: what is true, or what a simulated prior says.
+bool is_shown(const MapRow& row, bool truth) { return !(truth ? row.truth : row.prior).empty(); }
+
+std::string title_of(const MapRow& row, bool truth) {
+  return fmt::format("{}\n({})", row.title, truth ? "true" : "simulated prior");
+}
+
+Image mask_over_image(const Image& mask, const Image& picture) {
   Image result = picture;
-  for (std::size_t i = 0; i < glass.values().size(); ++i)
-    if (glass.values()[i] == 0)
+  for (std::size_t i = 0; i < mask.values().size(); ++i)
+    if (mask.values()[i] == 0)
       for (std::size_t c = 0; c < 3; ++c) result.values()[3 * i + c] *= 0.15f;
   return result;
 }
 
-struct SheetRow {
-  const char* title;
-  Image picture;
-};
-
-std::vector<SheetRow> rows_of(const PathTracerOutput& truth, const Priors& priors, float exposure) {
-  const Image picture = display_image(truth.radiance, exposure);
-  return {
-      {"image", picture},
-      {"depth", colorize_depth(truth.depth, 0, kFarDepth)},
-      {"normal", colorize_normal(truth.normal)},
-      {"glass", glass_over_image(truth.glass, picture)},
-      {"depth behind\nglass", colorize_depth(truth.behind_depth, 0, kFarDepth)},
-      {"seen through\nglass", display_image(truth.transmitted, exposure)},
-      {"mirrored\nby glass", display_image(truth.reflected, exposure)},
-      {"normal prior,\nsimulated", colorize_normal(priors.normal)},
-      {"albedo prior,\nsimulated", priors.albedo}};
+Image grey_picture(const Image& map) {
+  Image picture(map.width(), map.height(), 3);
+  for (std::size_t i = 0; i < picture.values().size(); ++i)
+    picture.values()[i] = map.values()[i / 3];
+  return picture;
 }
+
+// What the maps of one view are drawn with.
+struct ViewPictures {
+  Image image;  // as displayed
+  float exposure;
+
+  Image of(MapKind kind, const Image& map, float far_depth) const {
+    switch (kind) {
+      case MapKind::kDepth:
+        return colorize_depth(map, 0, far_depth);
+      case MapKind::kNormal:
+        return colorize_normal(map);
+      case MapKind::kMask:
+        return mask_over_image(map, image);
+      case MapKind::kPart:
+        return display_image(map, exposure);
+      case MapKind::kShare:
+        return grey_picture(map);
+      case MapKind::kColor:
+        return map;
+    }
+    return map;
+  }
+};
 
 }  // namespace
 
@@ -52,18 +71,33 @@ ContactSheet::ContactSheet(int views, int columns, ImageSize tile)
 }
 
 void ContactSheet::add(
-    int view, const PathTracerOutput& truth, const Priors& priors, float exposure
+    int view, const PathTracerOutput& truth, const MapSet& priors, float exposure
 ) {
   // Column c shows view c * views / columns; this is the only c that can show `view`.
   const int column = (view * columns_ + views_ - 1) / views_;
   if (column >= columns_ || column * views_ / columns_ != view) return;
-  const std::vector<SheetRow> rows = rows_of(truth, priors, exposure);
-  grid_.rows.resize(rows.size(), std::vector<Image>(static_cast<std::size_t>(columns_)));
-  grid_.row_titles.clear();
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    grid_.row_titles.emplace_back(rows[row].title);
-    grid_.rows[row][static_cast<std::size_t>(column)] = resize_image(rows[row].picture, tile_);
-  }
+  const ViewPictures pictures{display_image(truth.radiance, exposure), exposure};
+  std::size_t row = 0;
+  const auto add_row = [&](const std::string& title, const Image& picture) {
+    if (row == grid_.rows.size()) {
+      grid_.rows.emplace_back(static_cast<std::size_t>(columns_));
+      grid_.row_titles.push_back(title);
+    }
+    if (!picture.empty())
+      grid_.rows[row][static_cast<std::size_t>(column)] = resize_image(picture, tile_);
+    ++row;
+  };
+  add_row(std::string(MapId("rgb").row().title), pictures.image);
+  for (const bool is_truth : {true, false})
+    for (const MapRow& entry : maps()) {
+      if (!is_shown(entry, is_truth)) continue;
+      const Image& map = (is_truth ? truth.maps : priors)[entry];
+      const float far_depth = is_truth ? kFarDepth : 1;  // priors are relative
+      add_row(
+          title_of(entry, is_truth),
+          map.empty() ? Image() : pictures.of(entry.kind, map, far_depth)
+      );
+    }
 }
 
 }  // namespace glint

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One picture that shows a scene: a column per view; rows for image, depth, normal, glass, what
-// lies behind it, the two radiance components at the glass, and the simulated priors.
+// One picture that shows a scene: a column per view; rows for the image, every true map of the
+// table (glint/scene/maps.h) and every simulated prior.
 #pragma once
 
 #include "datasets/glassroom/path_tracer.h"
@@ -14,7 +14,7 @@ class ContactSheet {
   // Up to `columns` of `views` views are shown, evenly chosen; tiles are `tile` pixels.
   ContactSheet(int views, int columns, ImageSize tile);
   // Keeps the view if it is one of those shown.
-  void add(int view, const PathTracerOutput& truth, const Priors& priors, float exposure);
+  void add(int view, const PathTracerOutput& truth, const MapSet& priors, float exposure);
   // With titles of rows and columns. A view that was not added is "missing".
   Image image() const { return draw_image(draw_grid(grid_)); }
 

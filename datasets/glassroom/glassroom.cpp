@@ -209,7 +209,7 @@ class SceneMaker {
     const int spp = options_.spp * (is_test_view(view) ? kTestSampleFactor : 1);
     const PathTracerOutput truth =
         scene_->tracer->render(camera, {.spp = spp, .seed = seed_, .view = stream});
-    const Priors priors =
+    const MapSet priors =
         simulate_priors(truth, albedo_behind(*scene_->tracer, camera), prior_model_, seed_, stream);
     write_view(folder_, view, truth, priors, exposure_);
     sheet_.add(view, truth, priors, exposure_);

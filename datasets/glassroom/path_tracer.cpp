@@ -57,15 +57,15 @@ class Rendering {
     const Vec3f direction = ray_direction(x + 0.5, y + 0.5);
     const auto first = rays_.intersect(origin_, direction, RayMask::kAll);
     if (!first) return;
-    write_layer(*first, x, y, out_.depth, out_.normal);
+    write_layer(*first, x, y, out_.maps["depth"], out_.maps["normal"]);
     const bool glass = rays_.is_glass(*first);
     const bool conductor = rays_.material(*first).kind == MaterialKind::kRoughConductor;
-    out_.glass.at(x, y) = glass ? 255 : 0;
+    out_.maps["glass"].at(x, y) = glass ? 1.0f : 0.0f;
     const Vec3f color = glass ? rays_.material(*first).tint : rays_.albedo(*first);
-    store(out_.basecolor, x, y, cast<double>(color));
-    if (!glass && !conductor) store(out_.albedo, x, y, cast<double>(color));
+    store(out_.maps["basecolor"], x, y, cast<double>(color));
+    if (!glass && !conductor) store(out_.maps["albedo"], x, y, cast<double>(color));
     const auto behind = glass ? rays_.intersect(origin_, direction, RayMask::kOpaque) : first;
-    if (behind) write_layer(*behind, x, y, out_.behind_depth, out_.behind_normal);
+    if (behind) write_layer(*behind, x, y, out_.maps["behind_depth"], out_.maps["behind_normal"]);
   }
 
   void write_layer(const Surface& surface, int x, int y, Image& depth, Image& normal) const {
@@ -95,9 +95,9 @@ class Rendering {
   void write_radiance(int x, int y, Vec3d transmitted, Vec3d reflected) const {
     const Vec3f t = cast<float>(transmitted), r = cast<float>(reflected);
     store(out_.radiance, x, y, cast<double>(t + r));
-    if (out_.glass.at(x, y) == 0) return;
-    store(out_.transmitted, x, y, cast<double>(t));
-    store(out_.reflected, x, y, cast<double>(r));
+    if (out_.maps["glass"].at(x, y) == 0) return;
+    store(out_.maps["transmitted"], x, y, cast<double>(t));
+    store(out_.maps["reflected"], x, y, cast<double>(r));
   }
 
   const RayScene& rays_;
@@ -108,9 +108,21 @@ class Rendering {
   Vec3f origin_;
 };
 
+constexpr MapId kTracedMaps[] = {
+    "depth",
+    "normal",
+    "glass",
+    "behind_depth",
+    "behind_normal",
+    "transmitted",
+    "reflected",
+    "albedo",
+    "basecolor"};
+
 PathTracerOutput empty_output(int w, int h) {
-  const Image rgb(w, h, 3), map(w, h, 1);
-  return {rgb, map, rgb, rgb, rgb, MaskImage(w, h, 1), map, rgb, rgb, rgb};
+  PathTracerOutput out{Image(w, h, 3), {}};
+  for (const MapId id : kTracedMaps) out.maps[id] = Image(w, h, id.row().channels());
+  return out;
 }
 
 }  // namespace

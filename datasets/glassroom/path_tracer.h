@@ -10,6 +10,7 @@
 
 #include "datasets/glassroom/trace_scene.h"
 #include "glint/scene/camera.h"
+#include "glint/scene/maps.h"
 #include "glint/scene/ply.h"
 
 namespace glint {
@@ -22,21 +23,15 @@ struct PathTracerSettings {
   bool next_event_estimation = true;  // off: BSDF sampling alone (noisy; for checks)
 };
 
-// Radiance is linear. Geometry buffers are of the ray through the pixel centre (no anti-aliasing).
+// Geometry maps are of the ray through the pixel centre (no anti-aliasing).
 struct PathTracerOutput {
-  Image radiance;      // [H][W][3]
-  Image depth;         // [H][W][1] planar z of the first surface, glass included; 0: none
-  Image normal;        // [H][W][3] shading normal in camera space, OpenCV axes, facing the camera
-  Image albedo;        // [H][W][3] diffuse albedo of the first surface (glass and conductors: 0)
-  Image basecolor;     // [H][W][3] base colour (glass: its near-white tint)
-  MaskImage glass;     // 255: first surface is thin dielectric
-  Image behind_depth;  // first surface that is not glass, along the straight ray
-  Image behind_normal;
-  // Where `glass` is set (0 elsewhere): the part of radiance that passed the first surface, and the
-  // part that it mirrored; transmitted + reflected == radiance exactly. Only the first pane splits.
+  Image radiance;  // [H][W][3] linear
+  // depth, normal (shading normal), glass, behind_depth, behind_normal; albedo (diffuse, linear, of
+  // the first surface; glass and conductors: 0); basecolor (glass: its near-white tint); where the
+  // first surface is glass (0 elsewhere) transmitted and reflected: the part of radiance that
+  // passed it, and the part that it mirrored, which add up exactly. Only the first pane splits.
   // Samples of a border pixel that miss the pane count as transmitted.
-  Image transmitted;  // [H][W][3]
-  Image reflected;    // [H][W][3]
+  MapSet maps;
 };
 
 class PathTracer {

@@ -99,19 +99,19 @@ class Simulation {
         behind_albedo_(behind_albedo),
         model_(model),
         rng_(seed, view),
-        width_(truth.depth.width()),
-        height_(truth.depth.height()),
+        width_(truth.maps["depth"].width()),
+        height_(truth.maps["depth"].height()),
         sigma_(std::max(0.5f, model.blur * static_cast<float>(width_))) {
     const SmoothField field = smooth_field(0.12f);
     const float threshold = normal_quantile_above(model.failure_rate);
     for_each_pixel([&](int x, int y) {
-      valid_.push_back(truth.depth.at(x, y) > 0);
-      fails_.push_back(truth.glass.at(x, y) != 0 && field(x, y) > threshold);
+      valid_.push_back(truth.maps["depth"].at(x, y) > 0);
+      fails_.push_back(truth.maps["glass"].at(x, y) != 0 && field(x, y) > threshold);
     });
   }
 
   Image normal() {
-    Image chosen = choose(truth_.normal, truth_.behind_normal);
+    Image chosen = choose(truth_.maps["normal"], truth_.maps["behind_normal"]);
     Image smooth = blurred(chosen, sigma_, valid_);
     const SmoothField about_x = smooth_field(0.2f), about_y = smooth_field(0.2f);
     const float radians =
@@ -127,7 +127,7 @@ class Simulation {
   }
 
   Image depth() {
-    Image z = blurred(choose(truth_.depth, truth_.behind_depth), sigma_, valid_);
+    Image z = blurred(choose(truth_.maps["depth"], truth_.maps["behind_depth"]), sigma_, valid_);
     const float far = std::max(1e-3f, *std::max_element(z.values().begin(), z.values().end()));
     const float scale = std::exp(model_.sigma_scale * rng_.normal());
     const float shift = model_.sigma_shift * rng_.normal();
@@ -146,7 +146,7 @@ class Simulation {
     Image chosen = choose(first, behind_albedo_);
     const SmoothField glass_tone = smooth_field(0.3f);
     for_each_pixel([&](int x, int y) {
-      if (truth_.glass.at(x, y) == 0 || fails_[index(x, y)]) return;
+      if (truth_.maps["glass"].at(x, y) == 0 || fails_[index(x, y)]) return;
       const float t = std::clamp(0.5f + 0.25f * glass_tone(x, y), 0.0f, 1.0f);
       const float tone = srgb_decode(std::lerp(glass_low, glass_high, t));
       set_rgb(chosen, x, y, {tone, tone, tone});
@@ -214,7 +214,7 @@ class Simulation {
 
 }  // namespace
 
-Priors simulate_priors(
+MapSet simulate_priors(
     const PathTracerOutput& truth,
     ImageView behind_albedo,
     const PriorModel& model,
@@ -222,11 +222,11 @@ Priors simulate_priors(
     std::uint64_t view
 ) {
   Simulation simulation(truth, behind_albedo, model, seed, view);
-  Priors priors;
-  priors.normal = simulation.normal();
-  priors.depth = simulation.depth();
-  priors.albedo = simulation.color(truth.albedo, 0.0f, 0.036f);
-  priors.basecolor = simulation.color(truth.basecolor, 0.82f, 0.93f);
+  MapSet priors;
+  priors["normal"] = simulation.normal();
+  priors["depth"] = simulation.depth();
+  priors["albedo"] = simulation.color(truth.maps["albedo"], 0.0f, 0.036f);
+  priors["basecolor"] = simulation.color(truth.maps["basecolor"], 0.82f, 0.93f);
   return priors;
 }
 

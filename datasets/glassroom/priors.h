@@ -52,7 +52,7 @@ struct PriorModel {
 
 // `behind_albedo` [H][W][3]: linear albedo of the first opaque surface. Deterministic in (seed,
 // view). Sizes as in `truth`; normals are zero and depth is 0 where no surface was hit.
-Priors simulate_priors(
+MapSet simulate_priors(
     const PathTracerOutput& truth,
     ImageView behind_albedo,
     const PriorModel& model,

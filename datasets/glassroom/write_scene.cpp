@@ -96,11 +96,15 @@ Image half_plus_half(ImageView normal) {
   return result;
 }
 
-Image mask_image(const MaskImage& mask) {
-  Image result(mask.width(), mask.height(), 1);
-  for (std::size_t i = 0; i < result.values().size(); ++i)
-    result.values()[i] = mask.values()[i] != 0 ? 1.0f : 0.0f;
-  return result;
+void write_prior(const fs::path& path, MapKind kind, const Image& map) {
+  if (kind == MapKind::kNormal) return write_png(path, half_plus_half(map));
+  write_png(path, kind == MapKind::kDepth ? encode_depth(map) : map);
+}
+
+void write_truth(const fs::path& path, MapKind kind, const Image& map, float exposure) {
+  if (kind == MapKind::kMask) return write_png(path, map);
+  if (kind == MapKind::kPart) return write_exr(path, scaled(map, exposure));
+  write_exr(path, map, kind == MapKind::kNormal);
 }
 
 Vec3f vertex_color(const TraceScene& scene, const TraceMesh& mesh, Vec2f uv) {
@@ -188,26 +192,19 @@ void write_view(
     const fs::path& folder,
     int view,
     const PathTracerOutput& truth,
-    const Priors& priors,
+    const MapSet& priors,
     float exposure
 ) {
-  const std::string name = view_name(view), exr = name + ".exr";
-  const fs::path frame = fs::path(name) / "000000.png", priors_folder = folder / "diffrens",
-                 gt = folder / "gt";
+  const std::string name = view_name(view);
+  const fs::path frame = fs::path(name) / "000000.png", gt = folder / "gt";
   write_png(folder / "images" / frame, display_image(truth.radiance, exposure));
-  write_png(priors_folder / "normal" / frame, half_plus_half(priors.normal));
-  write_png(priors_folder / "depth" / frame, encode_depth(priors.depth));
-  write_png(priors_folder / "diffuse_albedo" / frame, priors.albedo);
-  write_png(priors_folder / "basecolor" / frame, priors.basecolor);
-  write_exr(gt / "rgb" / exr, scaled(truth.radiance, exposure));
-  write_exr(gt / "transmitted" / exr, scaled(truth.transmitted, exposure));
-  write_exr(gt / "reflected" / exr, scaled(truth.reflected, exposure));
-  write_exr(gt / "depth" / exr, truth.depth);
-  write_exr(gt / "behind_depth" / exr, truth.behind_depth);
-  write_exr(gt / "normal" / exr, truth.normal, true);
-  write_exr(gt / "behind_normal" / exr, truth.behind_normal, true);
-  write_exr(gt / "albedo" / exr, truth.albedo);
-  write_png(gt / "glass" / (name + ".png"), mask_image(truth.glass));
+  priors.for_each([&](const MapRow& row, const Image& map) {
+    write_prior(folder / "diffrens" / row.prior / frame, row.kind, map);
+  });
+  write_exr(gt / "rgb" / (name + ".exr"), scaled(truth.radiance, exposure));
+  truth.maps.for_each([&](const MapRow& row, const Image& map) {
+    if (!row.truth.empty()) write_truth(gt / true_map_file(row, name), row.kind, map, exposure);
+  });
 }
 
 TriangleMesh truth_mesh(const TraceScene& scene, TruthLayer layer, float max_edge) {

@@ -3,9 +3,9 @@
 //   images/<view>/000000.png                     sRGB-encoded, 8 bit
 //   intri.yml extri.yml                          OpenCV FileStorage, world to camera, OpenCV axes
 //   sparse/0/points3D.ply                        simulated SfM points
-//   diffrens/{normal,depth,diffuse_albedo,basecolor}/<view>/000000.png   simulated priors
-//   gt/{rgb,transmitted,reflected,...}/<view>.exr, gt/glass/<view>.png, gt/mesh.ply
-//   gt/mesh_behind.ply
+//   diffrens/<prior>/<view>/000000.png           simulated priors (glint/scene/maps.h)
+//   gt/<truth>/<view>.exr                        (masks: .png), and gt/rgb/<view>.exr
+//   gt/mesh.ply gt/mesh_behind.ply
 // Radiance maps are linear and multiplied by the exposure: an image is their sRGB encoding,
 // clamped.
 #pragma once
@@ -31,7 +31,7 @@ void write_view(
     const fs::path& folder,
     int view,
     const PathTracerOutput& truth,
-    const Priors& priors,
+    const MapSet& priors,
     float exposure
 );
 

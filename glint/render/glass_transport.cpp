@@ -49,7 +49,7 @@ const GlassBuffer&
 GlassTransport::read_interface(const Camera& camera, const RasterOutput& interface) {
   const ImageSize size = camera.size();
   GlassBuffer& b = buffer_;
-  for (Image* image : {&b.depth, &b.transparency, &b.specular, &b.fresnel, &b.mirrored})
+  for (Image* image : {&b.depth, &b.transparency, &b.specular, &b.fresnel, &b.specularity})
     fit(*image, size, 1);
   for (Image* image : {&b.normal, &b.reflected.origins, &b.reflected.directions})
     fit(*image, size, 3);
@@ -59,7 +59,7 @@ GlassTransport::read_interface(const Camera& camera, const RasterOutput& interfa
       b.transparency.data(),
       b.specular.data(),
       b.fresnel.data(),
-      b.mirrored.data(),
+      b.specularity.data(),
       b.reflected.origins.data(),
       b.reflected.directions.data()};
   run_kernel(
@@ -84,7 +84,7 @@ GlassInputs GlassTransport::inputs(const GlassLayers& layers) const {
       data_or_null(layers.transmission),
       data_or_null(layers.reflection),
       buffer_.transparency.data(),
-      buffer_.mirrored.data()};
+      buffer_.specularity.data()};
 }
 
 const Image& GlassTransport::compose(const GlassLayers& layers) {

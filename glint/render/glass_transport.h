@@ -16,7 +16,7 @@ struct GlassBuffer {
   Image transparency;  // [H][W][1] t, composited (not divided by alpha)
   Image specular;      // [H][W][1] s, composited
   Image fresnel;       // [H][W][1]
-  Image mirrored;      // [H][W][1] k_s; 0 where nothing was hit
+  Image specularity;   // [H][W][1] k_s; 0 where nothing was hit
   Rays reflected;      // world; unit directions, 0 where nothing was hit
 };
 

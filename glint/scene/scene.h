@@ -9,36 +9,17 @@
 #include "glint/core/image.h"
 #include "glint/core/vec.h"
 #include "glint/scene/camera.h"
+#include "glint/scene/maps.h"
 #include "glint/scene/surfels.h"
 
 namespace glint {
 
-// Per-image predictions of other networks, or simulated ones. Empty images: not available.
-struct Priors {
-  Image normal;     // [H][W][3] unit, camera space, OpenCV axes; zero where missing
-  Image depth;      // [H][W][1] relative, larger = farther, 0 where missing
-  Image albedo;     // [H][W][3] diffuse albedo in [0, 1] as stored
-  Image basecolor;  // [H][W][3]
-};
-
-// Both layers of glass. Empty images: not available.
-struct GroundTruth {
-  Image depth;          // [H][W][1] planar z in metres of the first surface, 0: none
-  Image normal;         // [H][W][3] unit, camera space, OpenCV axes, facing the camera
-  Image albedo;         // [H][W][3]
-  MaskImage glass;      // [H][W][1] 255 where the first surface is glass
-  Image behind_depth;   // [H][W][1] first opaque surface along the straight ray
-  Image behind_normal;  // [H][W][3]
-  Image transmitted;    // [H][W][3] linear radiance that came through the glass
-  Image reflected;      // [H][W][3] linear radiance that the glass mirrored
-};
-
 struct View {
   std::string name;
   Camera camera;
-  Image rgb;  // [H][W][3] as displayed (sRGB-encoded), [0, 1]
-  Priors priors;
-  GroundTruth truth;
+  Image rgb;      // [H][W][3] as displayed (sRGB-encoded), [0, 1]
+  MapSet priors;  // predictions of other networks, or simulated ones
+  MapSet truth;   // both layers of glass; the true image is `rgb`
 };
 
 struct Scene {

@@ -12,14 +12,13 @@ namespace glint {
 
 void require_prior(
     const Scene& scene,
-    Image Priors::*prior,
-    const char* prior_name,
+    MapId prior,
     const char* loss_name,
     const std::string& method,
     float& weight,
     std::vector<std::string>& warnings
 ) {
-  const auto lacks = [&](const View& view) { return (view.priors.*prior).empty(); };
+  const auto lacks = [&](const View& view) { return !view.priors.has(prior); };
   const auto missing = std::count_if(scene.train.begin(), scene.train.end(), lacks);
   if (weight == 0 || missing == 0) return;
   weight = 0;
@@ -27,7 +26,7 @@ void require_prior(
       "{}: {} has no {} prior for {} of {} training views; {} is off",
       method,
       scene.name,
-      prior_name,
+      prior.row().id,
       missing,
       scene.train.size(),
       loss_name
@@ -53,10 +52,8 @@ std::vector<std::string> GeometryLosses::set_up(
   depth_prior_.gradient_scales = config.depth_gradient_scales;
   normal_prior_.l1 = config.normal_l1;
   std::vector<std::string> warnings;
-  require_prior(scene, &Priors::depth, "depth", "L_depth", method, config_.lambda_depth, warnings);
-  require_prior(
-      scene, &Priors::normal, "normal", "L_normal", method, config_.lambda_normal, warnings
-  );
+  require_prior(scene, "depth", "L_depth", method, config_.lambda_depth, warnings);
+  require_prior(scene, "normal", "L_normal", method, config_.lambda_normal, warnings);
   return warnings;
 }
 
@@ -69,9 +66,10 @@ void GeometryLosses::add_normal_prior(
 ) {
   const float weight = config_.lambda_normal;
   const Image pixel_weight = config_.near_first ? inverse_depth_weight(depth) : Image{};
-  stats.terms["normal"] =
-      static_cast<double>(weight) *
-      normal_prior_.evaluate(output.normal, view.priors.normal, pixel_weight, weight, dL_dnormal);
+  stats.terms["normal"] = static_cast<double>(weight) *
+                          normal_prior_.evaluate(
+                              output.normal, view.priors["normal"], pixel_weight, weight, dL_dnormal
+                          );
 }
 
 void GeometryLosses::add(
@@ -91,7 +89,7 @@ void GeometryLosses::add(
     record(
         "depth",
         depth_weight,
-        depth_prior_.evaluate(depth, view.priors.depth, {}, depth_weight, dL_ddepth_)
+        depth_prior_.evaluate(depth, view.priors["depth"], {}, depth_weight, dL_ddepth_)
     );
   normal_prior_.min_cosine =
       iteration >= config_.gate_from ? config_.min_cosine : NormalPriorLoss::kNoGate;

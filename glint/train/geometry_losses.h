@@ -95,8 +95,7 @@ Json prior_control(int published_iterations);
 // Warns, and sets `weight` to 0, where it is not 0 and a training view lacks the prior.
 void require_prior(
     const Scene& scene,
-    Image Priors::*prior,
-    const char* prior_name,
+    MapId prior,
     const char* loss_name,
     const std::string& method,
     float& weight,

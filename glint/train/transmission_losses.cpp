@@ -25,9 +25,8 @@ std::vector<std::string> TransmissionLosses::set_up(
   guidance_.low_albedo = config.low_albedo;
   std::vector<std::string> warnings;
   float& weight = config_.lambda_transparency;
-  require_prior(scene, &Priors::albedo, "albedo", "L_trans", method, weight, warnings);
-  if (release)
-    require_prior(scene, &Priors::basecolor, "basecolor", "L_trans", method, weight, warnings);
+  require_prior(scene, "albedo", "L_trans", method, weight, warnings);
+  if (release) require_prior(scene, "basecolor", "L_trans", method, weight, warnings);
   return warnings;
 }
 
@@ -37,9 +36,9 @@ TransparencyCues TransmissionLosses::cues(
   TransparencyCues cues;
   cues.interface_depth = buffer.depth;
   cues.transmission_depth = direct_depth_;
-  cues.albedo = view.priors.albedo;
+  cues.albedo = view.priors["albedo"];
   if (guidance_.kind == GuidanceKind::kL1) return cues;
-  cues.basecolor = view.priors.basecolor;
+  cues.basecolor = view.priors["basecolor"];
   cosine_ = viewing_cosines(view.camera, interface.normal);
   cues.cosine = cosine_;
   return cues;
@@ -54,7 +53,9 @@ void TransmissionLosses::add_plausible(
   clear_image(dL_ddepth_, out.alpha.size(), 1);
   const double loss =
       depth_.evaluate(direct_depth_, buffer.depth, masks_.opaque, weight, dL_ddepth_) +
-      normal_.evaluate(out.normal, view.priors.normal, masks_.opaque, weight, dL_ddirect_.normal);
+      normal_.evaluate(
+          out.normal, view.priors["normal"], masks_.opaque, weight, dL_ddirect_.normal
+      );
   expected_depth_map_vjp(out, dL_ddepth_, dL_ddirect_);
   stats.terms["plausible"] = static_cast<double>(weight) * loss;
 }

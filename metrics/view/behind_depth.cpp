@@ -9,12 +9,13 @@ namespace {
 
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   std::vector<MetricValues> values;
-  const ImageView depth = pair.behind_depth.empty() ? pair.depth : pair.behind_depth;
-  if (depth.empty() || pair.true_behind_depth.empty() || pair.glass.empty()) return values;
+  const ImageView depth = pair.rendered["behind_depth"].empty() ? pair.rendered["depth"]
+                                                                : pair.rendered["behind_depth"];
+  if (depth.empty() || pair.truth["behind_depth"].empty() || pair.glass.empty()) return values;
   for (const Region& region : regions) {
     MetricValues row(1);
     if (region.name.empty())
-      if (const auto e = depth_errors(depth, pair.true_behind_depth, pair.glass))
+      if (const auto e = depth_errors(depth, pair.truth["behind_depth"], pair.glass))
         row[0] = e->absrel;
     values.push_back(row);
   }

@@ -15,22 +15,28 @@ std::optional<double> component_psnr(
     ImageView predicted, ImageView component, ImageView other, const ViewPair& pair
 ) {
   if (predicted.empty()) return std::nullopt;
-  return glint::psnr(predicted, displayed_component(pair.true_rgb, component, other), pair.glass);
+  return glint::psnr(
+      predicted, displayed_component(pair.truth["rgb"], component, other), pair.glass
+  );
 }
 
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   const bool has_glass = std::any_of(regions.begin(), regions.end(), [](const Region& region) {
     return region.name == "glass";
   });
-  const bool has_truth =
-      !pair.true_rgb.empty() && !pair.true_transmitted.empty() && !pair.true_reflected.empty();
+  const bool has_truth = !pair.truth["rgb"].empty() && !pair.truth["transmitted"].empty() &&
+                         !pair.truth["reflected"].empty();
   std::vector<MetricValues> values(regions.size(), MetricValues(2));
   if (!has_glass || !has_truth) return values;
   for (std::size_t r = 0; r < regions.size(); ++r)
     if (regions[r].name.empty())
       values[r] = {
-          component_psnr(pair.transmitted, pair.true_transmitted, pair.true_reflected, pair),
-          component_psnr(pair.reflected, pair.true_reflected, pair.true_transmitted, pair)};
+          component_psnr(
+              pair.rendered["transmitted"], pair.truth["transmitted"], pair.truth["reflected"], pair
+          ),
+          component_psnr(
+              pair.rendered["reflected"], pair.truth["reflected"], pair.truth["transmitted"], pair
+          )};
   return values;
 }
 

@@ -9,12 +9,14 @@ namespace {
 // Fitted on the whole view, scored by region.
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   std::vector<MetricValues> values;
-  if (pair.depth.empty() || pair.true_depth.empty()) return values;
+  if (pair.rendered["depth"].empty() || pair.truth["depth"].empty()) return values;
   const DepthProtocol plain, release = release_depth_protocol();
-  const DepthFit fit = fit_depth(pair.depth, pair.true_depth, {}, release);
+  const DepthFit fit = fit_depth(pair.rendered["depth"], pair.truth["depth"], {}, release);
   for (const Region& region : regions) {
-    const auto a = depth_errors(pair.depth, pair.true_depth, region.mask, plain, {});
-    const auto b = depth_errors(pair.depth, pair.true_depth, region.mask, release, fit);
+    const auto a =
+        depth_errors(pair.rendered["depth"], pair.truth["depth"], region.mask, plain, {});
+    const auto b =
+        depth_errors(pair.rendered["depth"], pair.truth["depth"], region.mask, release, fit);
     MetricValues row(7);
     if (a) row = {a->absrel, a->rmse, a->delta1, a->coverage, {}, {}, {}};
     if (b) row[4] = b->absrel, row[5] = b->rmse, row[6] = b->delta1;

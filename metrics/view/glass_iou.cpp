@@ -11,9 +11,11 @@ namespace {
 
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   std::vector<MetricValues> values;
-  if (pair.glass.empty() || (pair.transparency.empty() && pair.specularity.empty())) return values;
+  if (pair.glass.empty() ||
+      (pair.rendered["transparency"].empty() && pair.rendered["specularity"].empty()))
+    return values;
   MetricValues row(1);
-  for (const ImageView& map : {pair.transparency, pair.specularity})
+  for (const ImageView& map : {pair.rendered["transparency"], pair.rendered["specularity"]})
     if (!map.empty()) row[0] = std::max(row[0], best_threshold_iou(map, pair.glass));
   values.assign(regions.size(), MetricValues(1));
   values.front() = row;  // whole images only

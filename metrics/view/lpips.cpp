@@ -31,13 +31,13 @@ std::shared_ptr<const LpipsWeights> weights_of(const std::string& network) {
 
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   std::vector<MetricValues> values(regions.size(), MetricValues(std::size(kVariants)));
-  if (pair.rgb.empty() || pair.true_rgb.empty()) return values;
+  if (pair.rendered["rgb"].empty() || pair.truth["rgb"].empty()) return values;
   for (std::size_t v = 0; v < std::size(kVariants); ++v) {
     const auto weights = weights_of(kVariants[v].network);
     if (weights == nullptr) continue;
     Lpips lpips(weights, kVariants[v].range);
-    if (!lpips.accepts(pair.true_rgb.size())) continue;
-    const std::vector<LpipsMap> taps = lpips.tap_maps(pair.rgb, pair.true_rgb);
+    if (!lpips.accepts(pair.truth["rgb"].size())) continue;
+    const std::vector<LpipsMap> taps = lpips.tap_maps(pair.rendered["rgb"], pair.truth["rgb"]);
     for (std::size_t r = 0; r < regions.size(); ++r)
       values[r][v] = lpips_mean(taps, regions[r].mask);
   }

@@ -8,11 +8,12 @@ namespace {
 
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   std::vector<MetricValues> values;
-  if (pair.normal.empty() || pair.true_normal.empty()) return values;
-  const BasicImage<double> angles = normal_angles_deg(pair.normal, pair.true_normal);
+  if (pair.rendered["normal"].empty() || pair.truth["normal"].empty()) return values;
+  const BasicImage<double> angles =
+      normal_angles_deg(pair.rendered["normal"], pair.truth["normal"]);
   for (const Region& region : regions) {
     MetricValues row(9);
-    if (const auto e = normal_errors_from_angles(angles, pair.normal, region.mask)) {
+    if (const auto e = normal_errors_from_angles(angles, pair.rendered["normal"], region.mask)) {
       row = {e->mean_deg, e->median_deg};
       row.insert(row.end(), e->below.begin(), e->below.end());
       row.insert(row.end(), {e->coverage, e->dropped});

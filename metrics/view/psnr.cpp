@@ -8,11 +8,11 @@ namespace {
 
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   std::vector<MetricValues> values;
-  if (pair.rgb.empty() || pair.true_rgb.empty()) return values;
+  if (pair.rendered["rgb"].empty() || pair.truth["rgb"].empty()) return values;
   for (const Region& region : regions)
     values.push_back(
-        {glint::psnr(pair.rgb, pair.true_rgb, region.mask),
-         glint::psnr_8bit(pair.rgb, pair.true_rgb, region.mask)}
+        {glint::psnr(pair.rendered["rgb"], pair.truth["rgb"], region.mask),
+         glint::psnr_8bit(pair.rendered["rgb"], pair.truth["rgb"], region.mask)}
     );
   return values;
 }

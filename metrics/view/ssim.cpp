@@ -8,8 +8,8 @@ namespace {
 
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   std::vector<MetricValues> values;
-  if (pair.rgb.empty() || pair.true_rgb.empty()) return values;
-  const SsimMap map = ssim_map(pair.rgb, pair.true_rgb);
+  if (pair.rendered["rgb"].empty() || pair.truth["rgb"].empty()) return values;
+  const SsimMap map = ssim_map(pair.rendered["rgb"], pair.truth["rgb"]);
   for (const Region& region : regions)
     values.push_back(
         {ssim_mean(map, SsimBorder::kZeroPadded, region.mask),

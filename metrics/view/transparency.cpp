@@ -9,10 +9,11 @@ namespace {
 // Inside a region of one kind only, an IoU would be a recall: whole images only.
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   std::vector<MetricValues> values;
-  if (pair.transparency.empty() || pair.glass.empty()) return values;
+  if (pair.rendered["transparency"].empty() || pair.glass.empty()) return values;
   for (const Region& region : regions) {
-    MetricValues row = {{}, transparency_mae(pair.transparency, pair.glass, region.mask)};
-    if (region.name.empty()) row[0] = transparency_iou(pair.transparency, pair.glass);
+    MetricValues row = {
+        {}, transparency_mae(pair.rendered["transparency"], pair.glass, region.mask)};
+    if (region.name.empty()) row[0] = transparency_iou(pair.rendered["transparency"], pair.glass);
     values.push_back(row);
   }
   return values;

@@ -2,7 +2,6 @@
 #include "reports/bench/evaluate.h"
 
 #include "glint/scene/image_files.h"
-#include "metrics/metric.h"
 
 namespace glint {
 
@@ -24,44 +23,31 @@ Image read_map(const fs::path& path, int channels, ImageSize size) {
   return map;
 }
 
-ImageView view_of(const Image& image) { return image.empty() ? ImageView{} : ImageView(image); }
-
 }  // namespace
 
-Scores score_view(const fs::path& folder, const View& view) {
-  const ImageSize size = view.rgb.size();
-  const Image rgb = read_map(folder / "rgb.exr", 3, size);
+MapSet read_scored_maps(const fs::path& folder, ImageSize size) {
+  MapSet rendered;
+  for (const MapRow& row : maps())
+    if (!row.file.empty()) rendered[row] = read_map(folder / row.file, row.channels(), size);
   GLINT_CHECK(
-      !rgb.empty(),
+      rendered.has("rgb"),
       kBadPrediction,
       "{}: no rgb.exr; run `glint-bench render` first",
       folder.string()
   );
-  const Image depth = read_map(folder / "depth.exr", 1, size);
-  const Image normal = read_map(folder / "normal.exr", 3, size);
-  const Image transparency = read_map(folder / "transparency.exr", 1, size);
-  const Image specularity = read_map(folder / "specularity.exr", 1, size);
-  const Image behind_depth = read_map(folder / "behind_depth.exr", 1, size);
-  const Image transmitted = read_map(folder / "transmitted.exr", 3, size);
-  const Image reflected = read_map(folder / "reflected.exr", 3, size);
+  return rendered;
+}
 
-  ViewPair pair;
-  pair.rgb = rgb;
-  pair.depth = view_of(depth);
-  pair.normal = view_of(normal);
-  pair.transparency = view_of(transparency);
-  pair.specularity = view_of(specularity);
-  pair.behind_depth = view_of(behind_depth);
-  pair.transmitted = view_of(transmitted);
-  pair.reflected = view_of(reflected);
-  pair.true_rgb = view.rgb;
-  pair.true_depth = view_of(view.truth.depth);
-  pair.true_normal = view_of(view.truth.normal);
-  pair.true_behind_depth = view_of(view.truth.behind_depth);
-  pair.true_transmitted = view_of(view.truth.transmitted);
-  pair.true_reflected = view_of(view.truth.reflected);
-  if (!view.truth.glass.empty()) pair.glass = view.truth.glass;
-  return evaluate_view(pair);
+ViewPair view_pair(const MapSet& rendered, const View& view, const MaskImage& glass) {
+  ViewPair pair{views_of(rendered), views_of(view.truth), {}};
+  pair.truth["rgb"] = view.rgb;
+  if (!glass.empty()) pair.glass = glass;
+  return pair;
+}
+
+Scores score_view(const fs::path& folder, const View& view) {
+  const MapSet rendered = read_scored_maps(folder, view.rgb.size());
+  return evaluate_view(view_pair(rendered, view, mask_of_map(view.truth["glass"])));
 }
 
 Json score_protocols() { return metric_protocols(); }

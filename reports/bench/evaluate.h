@@ -9,6 +9,7 @@
 #include "glint/core/config.h"
 #include "glint/core/files.h"
 #include "glint/scene/scene.h"
+#include "metrics/metric.h"
 
 namespace glint {
 
@@ -17,6 +18,11 @@ using Scores = std::map<std::string, double>;  // metric id -> value; "psnr@glas
 // `folder`: renders/<view>. Metrics whose map was not rendered, or that have no ground truth, are
 // absent. Errors (kBadPrediction): rgb missing, a file damaged or of another size than the view.
 Scores score_view(const fs::path& folder, const View& view);
+
+// What score_view() scores: every map that has a file, and the pair of those and the truth, which
+// borrows all three.
+MapSet read_scored_maps(const fs::path& folder, ImageSize size);
+ViewPair view_pair(const MapSet& rendered, const View& view, const MaskImage& glass);
 
 // The protocols behind the ids, for metrics.json.
 Json score_protocols();

@@ -26,27 +26,28 @@ void set_bounds(TsdfOptions& options, const Scene& scene) {
   }
 }
 
-FusionView load_view(const fs::path& run, const View& view, const std::string& map) {
+FusionView load_view(const fs::path& run, const View& view, MapId map) {
   const fs::path folder = train_folder(run, view);
   return with_exit_code(ExitCode::kBadPrediction, [&] {
     return FusionView{
-        read_image(folder / (map + ".exr"), 1), read_image(folder / "rgb.png", 3), view.camera};
+        read_image(folder / map.row().file, 1),
+        read_image(folder / MapId("rgb").row().picture, 3),
+        view.camera};
   });
 }
 
-bool has_map(const fs::path& run, const Scene& scene, const std::string& map) {
-  return fs::exists(train_folder(run, scene.train.front()) / (map + ".exr"));
+bool has_map(const fs::path& run, const Scene& scene, MapId map) {
+  return fs::exists(train_folder(run, scene.train.front()) / map.row().file);
 }
 
 // Depth of what is seen through the glass; the first surface where there is none (t of at most a
 // half). Empty: the method does not look behind glass.
-Image depth_through_glass(const RenderOutput& output) {
-  const auto behind = output.layers.find("behind_depth");
-  const auto transparency = output.layers.find("transparency");
-  if (behind == output.layers.end() || transparency == output.layers.end()) return {};
-  Image depth = output.depth;
+Image depth_through_glass(const MapSet& output) {
+  const Image &behind = output["behind_depth"], &transparency = output["transparency"];
+  if (behind.empty() || transparency.empty()) return {};
+  Image depth = output["depth"];
   for (std::size_t i = 0; i < depth.num_pixels(); ++i)
-    if (transparency->second.data()[i] > 0.5f) depth.data()[i] = behind->second.data()[i];
+    if (transparency.data()[i] > 0.5f) depth.data()[i] = behind.data()[i];
   return depth;
 }
 
@@ -61,13 +62,15 @@ void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method)
   Progress progress("render training views", scene.train.size());
   for (const View& view : scene.train) {
     throw_if_interrupted();
-    const RenderOutput output = method.render(view.camera);
+    const MapSet output = method.render(view.camera);
     synchronize();
     const fs::path folder = train_folder(spec.folder, view);
-    write_png(folder / "rgb.png", output.rgb);
-    if (!output.depth.empty()) write_exr(folder / "depth.exr", output.depth);
-    const Image behind = depth_through_glass(output);
-    if (!behind.empty()) write_exr(folder / "behind_depth.exr", behind);
+    const auto write = [&](MapId id, const Image& map) {
+      if (!map.empty()) write_exr(folder / id.row().file, map);
+    };
+    write_png(folder / MapId("rgb").row().picture, output["rgb"]);
+    write("depth", output["depth"]);
+    write("behind_depth", depth_through_glass(output));
     progress.advance();
   }
 }

@@ -12,7 +12,7 @@ namespace glint {
 
 // A surface that becomes a mesh and is scored.
 struct MeshLayer {
-  const char* map;     // in renders_train/<view>/
+  MapId map;           // in renders_train/<view>/
   const char* mesh;    // in a run folder
   const char* truth;   // in a dataset folder
   const char* prefix;  // of its metrics' ids

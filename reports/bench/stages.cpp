@@ -55,17 +55,18 @@ void render_stage(const RunSpec& spec, const Scene& scene, Method& method) {
   fs::remove_all(spec.folder / "renders", code);
   for (const View& view : scene.test) {
     throw_if_interrupted();
-    const RenderOutput output = method.render(view.camera);
+    const MapSet output = method.render(view.camera);
+    const Image& rgb = output["rgb"];
     synchronize();
     GLINT_CHECK(
-        output.rgb.size() == view.camera.size() && output.rgb.channels() == 3,
+        rgb.size() == view.camera.size() && rgb.channels() == 3,
         kBadPrediction,
         "{} rendered {} as {}x{}x{}, expected {}x{}x3",
         spec.method,
         view.name,
-        output.rgb.width(),
-        output.rgb.height(),
-        output.rgb.channels(),
+        rgb.width(),
+        rgb.height(),
+        rgb.channels(),
         view.camera.width,
         view.camera.height
     );

@@ -11,8 +11,8 @@ namespace glint {
 namespace {
 
 std::size_t glass_pixels(const View& view) {
-  const auto mask = view.truth.glass.values();
-  return static_cast<std::size_t>(std::count_if(mask.begin(), mask.end(), [](unsigned char glass) {
+  const auto mask = view.truth["glass"].values();
+  return static_cast<std::size_t>(std::count_if(mask.begin(), mask.end(), [](float glass) {
     return glass != 0;
   }));
 }
@@ -43,7 +43,7 @@ FigureScene figure_scene(const PageScene& scene, const Truth& truth) {
   FigureScene result;
   result.name = scene.name;
   result.view = view.name;
-  result.glass = view.truth.glass;
+  result.glass = mask_of_map(view.truth["glass"]);
   result.truth = true_layers(view);
   result.data = truth.folder;
   result.camera = view.camera;

@@ -12,7 +12,7 @@ namespace glint {
 
 namespace {
 
-constexpr float kMirroredGain = 4;  // mirrored light is faint
+constexpr float kReflectedGain = 4;  // what glass mirrors is faint
 
 const LayerMaps* maps_of(const FigureScene& scene, const std::string& method) {
   const auto it = scene.methods.find(method);
@@ -24,7 +24,7 @@ bool has(const LayerMaps* maps, const std::string& id) { return maps && maps->co
 // The layer's picture in its own size; empty where there is none.
 Image picture_of(const LayerMaps* maps, const std::string& id, const DepthScale& scale) {
   if (!has(maps, id)) return {};
-  const auto& layers = page_layers();
+  const std::vector<PageLayer> layers = page_layers();
   const auto layer = std::find_if(layers.begin(), layers.end(), [&](const PageLayer& candidate) {
     return id == candidate.id;
   });
@@ -82,7 +82,7 @@ LegendLine error_line() {
       fmt::format("{:g} and more", kPageErrorHigh)};
 }
 
-LegendLine share_line() { return {"t: 0 (opaque)", LegendBar::kShare, "1 (transparent)"}; }
+LegendLine share_line() { return {"shares: 0", LegendBar::kShare, "1"}; }
 
 // A row of one layer: the truth, then every method.
 std::vector<Image> layer_row(
@@ -102,32 +102,54 @@ void add_row(PictureGrid& grid, const std::string& title, std::vector<Image> row
   grid.rows.push_back(std::move(row));
 }
 
+constexpr MapId kImageAndSurface[] = {"rgb", "depth", "normal"};
+
+std::string row_title(const FigureScene& scene, const MapRow& map) {
+  return fmt::format("{}\n{}", scene.name, map.title);
+}
+
 void add_qualitative_rows(
     PictureGrid& grid, const FigureScene& scene, const std::set<std::string>& methods
 ) {
   const std::vector<Crop> crops = crops_of(scene, methods);
   std::vector<const LayerMaps*> columns{&scene.truth};
   for (const std::string& method : methods) columns.push_back(maps_of(scene, method));
-  const std::pair<const char*, const char*> layers[] = {
-      {"render", "image"}, {"depth", "depth"}, {"normal", "normal"}};
-  for (const auto& [layer, title] : layers) {
+  for (const MapId map : kImageAndSurface) {
     std::vector<Image> whole, parts;
     for (const LayerMaps* maps : columns) {
-      const Image picture = picture_of(maps, layer, scene.scale);
+      const Image picture = picture_of(maps, std::string(map.row().id), scene.scale);
       whole.push_back(outlined(picture, crops));
       parts.push_back(crop_panel(picture, crops));
     }
-    add_row(grid, fmt::format("{}\n{}", scene.name, title), std::move(whole));
-    add_row(grid, fmt::format("{}\n{}, crops", scene.name, title), std::move(parts));
+    add_row(grid, row_title(scene, map.row()), std::move(whole));
+    add_row(grid, row_title(scene, map.row()) + ", crops", std::move(parts));
   }
 }
 
 struct FigureColumn {
   std::string title;
-  const char* layer;
+  std::string layer;
   bool truth = false;
   float gain = 1;
 };
+
+// The map, and behind it its truth where the table has one.
+void add_columns(const MapRow& map, float gain, std::vector<FigureColumn>& columns) {
+  const std::string id(map.id), title(map.title);
+  const std::string times = gain == 1 ? "" : fmt::format(", x{:g}", gain);
+  columns.push_back({title + times, id, false, gain});
+  if (!map.truth.empty() || id == "rgb")
+    columns.push_back({title + ", truth" + times, id, true, gain});
+}
+
+// Columns of the image and of every map of these kinds that methods render.
+std::vector<FigureColumn> columns_of(std::initializer_list<MapKind> kinds) {
+  std::vector<FigureColumn> columns;
+  for (const MapRow& row : maps())
+    if (!row.shown_file().empty() && std::find(kinds.begin(), kinds.end(), row.kind) != kinds.end())
+      add_columns(row, row.id == "reflected" ? kReflectedGain : 1, columns);
+  return columns;
+}
 
 Image brightened(Image picture, float gain) {
   for (float& value : picture.values()) value = std::min(gain * value, 1.0f);
@@ -162,7 +184,7 @@ std::vector<std::pair<std::string, std::string>> ablation_methods(
     const std::vector<FigureScene>& scenes
 ) {
   std::vector<std::pair<std::string, std::string>> methods;
-  const auto rendered = methods_with(scenes, "render", true);
+  const auto rendered = methods_with(scenes, "rgb", true);
   for (const TableDefinition& definition : table_definitions())
     if (definition.paper_table == "3")
       for (const TableRowDefinition& row : definition.rows)
@@ -175,7 +197,7 @@ std::vector<std::pair<std::string, std::string>> ablation_methods(
 
 PictureGrid qualitative_figure(const std::vector<FigureScene>& scenes) {
   PictureGrid grid;
-  const auto methods = methods_with(scenes, "render", false);
+  const auto methods = methods_with(scenes, "rgb", false);
   if (methods.empty()) return grid;
   grid.titles.emplace_back("truth");
   for (const std::string& method : methods) grid.titles.push_back(method_title(method));
@@ -188,30 +210,29 @@ PictureGrid qualitative_figure(const std::vector<FigureScene>& scenes) {
 }
 
 PictureGrid depth_figure(const std::vector<FigureScene>& scenes) {
-  PictureGrid grid = method_rows(
-      scenes,
-      {{"image", "render"},
-       {"interface depth", "depth"},
-       {"true depth", "depth", true},
-       {"transmission depth", "behind"},
-       {"true depth behind", "behind", true}},
-      "behind"
-  );
+  std::vector<FigureColumn> columns{{"Image", "rgb"}};
+  for (FigureColumn& column : columns_of({MapKind::kDepth})) columns.push_back(std::move(column));
+  PictureGrid grid = method_rows(scenes, columns, "behind_depth");
   grid.legend = legend_of(scenes, true);
   return grid;
 }
 
 PictureGrid transparency_figure(const std::vector<FigureScene>& scenes) {
   PictureGrid grid;
-  const auto found = methods_with(scenes, "t", false);
-  if (found.empty()) return grid;
-  const std::vector<std::string> methods(found.begin(), found.end());
+  std::vector<std::pair<std::string, std::string>> panels;  // method, map
   grid.titles = {"image", "true glass"};
-  for (const std::string& method : methods) grid.titles.push_back(method_title(method) + ", t");
+  for (const MapRow& row : maps()) {
+    if (row.kind != MapKind::kShare) continue;
+    for (const std::string& method : methods_with(scenes, std::string(row.id), false)) {
+      panels.emplace_back(method, row.id);
+      grid.titles.push_back(fmt::format("{}, {}", method_title(method), row.title));
+    }
+  }
+  if (panels.empty()) return {};
   for (const FigureScene& scene : scenes) {
-    std::vector<Image> row = layer_row(scene, methods, "t");
-    row[0] = panel_of(&scene.truth, "render", scene.scale);
-    row.insert(row.begin() + 1, mask_panel(scene.glass));
+    std::vector<Image> row{panel_of(&scene.truth, "rgb", scene.scale), mask_panel(scene.glass)};
+    for (const auto& [method, map] : panels)
+      row.push_back(panel_of(maps_of(scene, method), map, scene.scale));
     add_row(grid, scene.name, std::move(row));
   }
   grid.legend = legend_of(scenes, false);
@@ -220,20 +241,8 @@ PictureGrid transparency_figure(const std::vector<FigureScene>& scenes) {
 }
 
 PictureGrid radiance_figure(const std::vector<FigureScene>& scenes) {
-  const std::string times = fmt::format(", x{:g}", kMirroredGain);
-  PictureGrid grid = method_rows(
-      scenes,
-      {{"truth", "render", true},
-       {"rendered", "render"},
-       {"base", "base"},
-       {"transmission", "transmission"},
-       {"reflection", "reflection"},
-       {"seen through glass", "through"},
-       {"seen through, truth", "through", true},
-       {"mirrored" + times, "mirrored", false, kMirroredGain},
-       {"mirrored, truth" + times, "mirrored", true, kMirroredGain}},
-      "through"
-  );
+  PictureGrid grid =
+      method_rows(scenes, columns_of({MapKind::kColor, MapKind::kPart}), "transmitted");
   grid.legend = legend_of(scenes, false);
   return grid;
 }
@@ -243,18 +252,19 @@ PictureGrid ablation_figure(const std::vector<FigureScene>& scenes) {
   const auto rows = ablation_methods(scenes);
   if (rows.size() < 2) return grid;
   std::vector<std::string> methods;
-  grid.titles.emplace_back("truth");
+  grid.titles.emplace_back("Truth");
   for (const auto& [method, title] : rows) {
     methods.push_back(method);
     grid.titles.push_back(title);
   }
   for (const FigureScene& scene : scenes) {
-    for (const auto& [layer, title] :
-         {std::pair("render", "image"), std::pair("depth", "depth"), std::pair("normal", "normal")})
-      add_row(grid, fmt::format("{}\n{}", scene.name, title), layer_row(scene, methods, layer));
+    for (const MapId map : kImageAndSurface)
+      add_row(
+          grid, row_title(scene, map.row()), layer_row(scene, methods, std::string(map.row().id))
+      );
     std::vector<Image> errors = layer_row(scene, methods, "error");
     errors[0] = mask_panel(scene.glass);
-    add_row(grid, scene.name + "\nerror; glass", std::move(errors));
+    add_row(grid, scene.name + "\nError; glass", std::move(errors));
   }
   grid.legend = legend_of(scenes, true);
   grid.legend.push_back(error_line());

@@ -13,11 +13,11 @@ namespace glint {
 // Methods (no variants) beside the truth: image, depth, normal, each with the same crops of all
 // (map_crops.h).
 PictureGrid qualitative_figure(const std::vector<FigureScene>& scenes);
-// Of methods with two depths: image, depth of the interface and behind it, each with its truth.
+// Of methods that look behind glass: image and every depth, each with its truth.
 PictureGrid depth_figure(const std::vector<FigureScene>& scenes);
-// t of every method that has it, beside the true glass.
+// Every share (t, k_s) of every method that has it, beside the true glass.
 PictureGrid transparency_figure(const std::vector<FigureScene>& scenes);
-// Base, transmission and reflection on their own, and their parts of the picture with their truth.
+// Image, radiance of each surfel set on its own, and the parts of the image, with their truth.
 PictureGrid radiance_figure(const std::vector<FigureScene>& scenes);
 // The rows of the ablation table as columns: image, error, depth, normal.
 PictureGrid ablation_figure(const std::vector<FigureScene>& scenes);

@@ -37,24 +37,18 @@ std::vector<std::string> names_of(const std::vector<View>& views) {
   return names;
 }
 
-RenderOutput read_view(
+MapSet read_view(
     const std::map<std::string, fs::path>& files, const View& view, const ImportOptions& options
 ) {
-  RenderOutput output;
-  for (const auto& [map, path] : files)
-    if (map == "rgb") {
-      output.rgb = read_for(path, 3, view);
-    } else if (map == "transmitted" || map == "reflected") {
-      output.layers[map] = read_for(path, 3, view);
-    } else if (map == "normal") {
-      output.normal = read_for(path, 3, view);
-      to_our_normals(output.normal, view.camera, options.normals);
-    } else {
-      Image& image = map == "depth" ? output.depth : output.layers[map];
-      image = read_for(path, 1, view);
-      if (map == "depth" || map == "behind_depth") to_our_depth(image, view.camera, options.depth);
-    }
-  return output;
+  MapSet rendered;
+  for (const MapRow& row : maps()) {
+    const auto file = files.find(std::string(row.id));
+    if (file == files.end()) continue;
+    Image& map = rendered[row] = read_for(file->second, row.channels(), view);
+    if (row.kind == MapKind::kNormal) to_our_normals(map, view.camera, options.normals);
+    if (row.kind == MapKind::kDepth) to_our_depth(map, view.camera, options.depth);
+  }
+  return rendered;
 }
 
 // Mean error of the first views under each convention, when the data tells.
@@ -71,13 +65,13 @@ std::string better_convention(
 
 double absrel(Image depth, const View& view, DepthKind kind) {
   to_our_depth(depth, view.camera, kind);
-  const auto errors = depth_errors(depth, view.truth.depth);
+  const auto errors = depth_errors(depth, view.truth["depth"]);
   return errors ? errors->absrel : 0;
 }
 
 double mean_angle(Image normals, const View& view, NormalAxes axes) {
   to_our_normals(normals, view.camera, axes);
-  const auto errors = normal_errors(normals, view.truth.normal);
+  const auto errors = normal_errors(normals, view.truth["normal"]);
   return errors ? errors->mean_deg : 0;
 }
 
@@ -101,12 +95,12 @@ void note_conventions(
           better
       ));
   };
-  if (files.contains("depth") && !view.truth.depth.empty()) {
+  if (files.contains("depth") && !view.truth["depth"].empty()) {
     const Image depth = read_for(files.at("depth"), 1, view);
     const auto error = [&](DepthKind kind) { return absrel(depth, view, kind); };
     note("depth", better_convention<DepthKind>(options.depth, kDepths, error), "--depth-kind");
   }
-  if (files.contains("normal") && !view.truth.normal.empty()) {
+  if (files.contains("normal") && !view.truth["normal"].empty()) {
     const Image normals = read_for(files.at("normal"), 3, view);
     const auto error = [&](NormalAxes axes) { return mean_angle(normals, view, axes); };
     note("normals", better_convention<NormalAxes>(options.normals, kAxes, error), "--normal-axes");

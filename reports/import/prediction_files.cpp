@@ -9,11 +9,10 @@
 namespace glint {
 namespace {
 
-const std::vector<MapPlaces> kMapPlaces = {
+// Where other programs put their maps.
+const std::vector<MapPlaces> kOtherPrograms = {
     {"rgb",
-     {"renders/rgb.exr",
-      "renders/rgb.png",
-      "renders/*.exr",
+     {"renders/*.exr",
       "renders/*.png",
       "renders/*.jpg",
       "test/ours_*/renders/*.png",
@@ -30,9 +29,7 @@ const std::vector<MapPlaces> kMapPlaces = {
       "*.png",
       "*.jpg"}},
     {"depth",
-     {"renders/depth.exr",
-      "renders/depth.npy",
-      "depth/*.exr",
+     {"depth/*.exr",
       "depth/*.npy",
       "depths/*.exr",
       "depths/*.npy",
@@ -47,9 +44,7 @@ const std::vector<MapPlaces> kMapPlaces = {
       "*_depth.exr",
       "*_depth.npy"}},
     {"normal",
-     {"renders/normal.exr",
-      "renders/normal.npy",
-      "normal/*.exr",
+     {"normal/*.exr",
       "normal/*.npy",
       "normals/*.exr",
       "normals/*.npy",
@@ -61,15 +56,25 @@ const std::vector<MapPlaces> kMapPlaces = {
       "test/ours_*/normal/*.npy",
       "*_normal.exr",
       "*_normal.npy"}},
-    {"transparency",
-     {"renders/transparency.exr",
-      "transparency/*.exr",
-      "transparency/*.npy",
-      "transparency/*.png"}},
-    {"specularity", {"renders/specularity.exr"}},
-    {"transmitted", {"renders/transmitted.exr"}},
-    {"reflected", {"renders/reflected.exr"}},
-    {"behind_depth", {"renders/behind_depth.exr", "behind_depth/*.exr", "behind_depth/*.npy"}}};
+    {"transparency", {"transparency/*.png"}}};
+
+// Those of a run folder of ours, those of other programs, and a folder of the map's own name.
+MapPlaces places_of(const MapRow& row) {
+  MapPlaces found{std::string(row.id), {}};
+  const auto add = [&](std::string place) {
+    if (std::find(found.places.begin(), found.places.end(), place) == found.places.end())
+      found.places.push_back(std::move(place));
+  };
+  for (const std::string_view file : {row.file, row.picture})
+    if (!file.empty()) add(fmt::format("renders/{}", file));
+  if (!row.file.empty()) add(fmt::format("renders/{}.npy", row.id));
+  for (const MapPlaces& other : kOtherPrograms)
+    if (other.map == row.id)
+      for (const std::string& place : other.places) add(place);
+  if (!row.file.empty())
+    for (const char* extension : {"exr", "npy"}) add(fmt::format("{}/*.{}", row.id, extension));
+  return found;
+}
 
 struct FoundFile {
   std::string name;  // of the file without extension, or of its view's folder
@@ -177,7 +182,12 @@ fs::path find_mesh(const fs::path& root) {
 
 }  // namespace
 
-const std::vector<MapPlaces>& map_places() { return kMapPlaces; }
+std::vector<MapPlaces> map_places() {
+  std::vector<MapPlaces> places;
+  for (const MapRow& row : maps())
+    if (!row.shown_file().empty()) places.push_back(places_of(row));
+  return places;
+}
 
 PredictionFiles find_predictions(
     const fs::path& folder, const std::vector<std::string>& view_names

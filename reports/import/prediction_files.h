@@ -14,13 +14,13 @@ namespace glint {
 // means its last match in natural order, in the file any name. A file may also lie in a folder per
 // view.
 struct MapPlaces {
-  std::string map;  // "rgb", "depth", ...: the names of docs/RECORDS.md
+  std::string map;  // id in the table (glint/scene/maps.h)
   std::vector<std::string> places;
 };
 // Own run folders, the layouts of 3DGS, 2DGS and PGSR (test/ours_*/renders), EasyVolcap, EnvGS and
 // GLINT (RENDER, DEPTH, NORMAL; val_depthZ_*.npy), nerfbaselines (color), and plain folders rgb,
-// depth, normal. Adding a layout is adding a line.
-const std::vector<MapPlaces>& map_places();
+// depth, normal. Adding a layout is adding a line. The image comes first.
+std::vector<MapPlaces> map_places();
 
 // How files were given to views.
 enum class Matching { kName, kOrder };

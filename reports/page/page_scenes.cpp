@@ -150,7 +150,7 @@ class SceneWriter {
     probe["step"] = probe_step(size);
     probe["size"] = json["size"];
     probe["truth"] = probe_values(reference, probe_step(size));
-    probe["glass"] = truth ? probe_glass(truth->truth.glass) : Json();
+    probe["glass"] = truth ? probe_glass(mask_of_map(truth->truth["glass"])) : Json();
     write_part(fmt::format("probe_{}_{}", index_, view), probe);
     return json;
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "reports/records/script_text.h"
 
@@ -10,18 +11,25 @@ namespace glint {
 
 namespace {
 
-struct ProbeLayer {
-  const char* id;
+// How the values of a layer are stored.
+struct ProbeCodes {
   int bits;
   float high;  // 0: the largest value of the map
 };
-constexpr ProbeLayer kProbeLayers[] = {
-    {"render", 8, 1},
-    {"depth", 16, 0},
-    {"behind", 16, 0},
-    {"angle", 16, 180},
-    {"t", 8, 1},
-    {"k_s", 8, 1}};
+
+// Of pictures the image alone; errors follow from it.
+std::optional<ProbeCodes> codes_of(const PageLayer& layer) {
+  switch (layer.style) {
+    case LayerStyle::kDepth:
+      return ProbeCodes{16, 0};
+    case LayerStyle::kAngle:
+      return ProbeCodes{16, 180};
+    case LayerStyle::kShare:
+      return ProbeCodes{8, 1};
+    default:
+      return layer.id == "rgb" ? std::optional(ProbeCodes{8, 1}) : std::nullopt;
+  }
+}
 
 std::vector<float> every_nth(const Image& map, int step) {
   std::vector<float> values;
@@ -60,7 +68,7 @@ std::vector<std::uint8_t> codes16(const std::vector<float>& values, float high, 
   return codes;
 }
 
-Json packed_layer(const ProbeLayer& layer, const Image& map, int step) {
+Json packed_layer(ProbeCodes layer, const Image& map, int step) {
   const std::vector<float> values = every_nth(map, step);
   const float high = layer.high > 0 ? layer.high : largest(values);
   const auto codes =
@@ -78,9 +86,10 @@ int probe_step(ImageSize size) {
 
 Json probe_values(const LayerMaps& maps, int step) {
   Json json = Json::object();
-  for (const ProbeLayer& layer : kProbeLayers)
-    if (const auto it = maps.find(layer.id); it != maps.end())
-      json[layer.id] = packed_layer(layer, it->second, step);
+  for (const PageLayer& layer : page_layers())
+    if (const auto codes = codes_of(layer))
+      if (const auto it = maps.find(layer.id); it != maps.end())
+        json[layer.id] = packed_layer(*codes, it->second, step);
   return json;
 }
 

@@ -12,7 +12,7 @@ namespace glint {
 inline constexpr std::size_t kProbePixels = 250'000;
 int probe_step(ImageSize size);
 
-// Per layer that the probe shows (render, depth, behind, angle, t, k_s): {"bits", "high", "data"}.
+// Per layer that the probe shows (rgb, depths, angle, shares): {"bits", "high", "data"}.
 // Value = high x code / (2^bits - 1); of 16 bits, code 0 stands for "none" and data holds all low
 // bytes, then all high bytes. Channels interleaved, rows from the top.
 Json probe_values(const LayerMaps& maps, int step);

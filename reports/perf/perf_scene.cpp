@@ -78,13 +78,13 @@ Scene perf_scene(const PerfOptions& options) {
   view.rgb = Image(options.width, options.height, 3);
   Rng rng(2);
   for (float& value : view.rgb.values()) value = rng.uniform(0.3f, 0.6f);
-  view.priors.normal = Image(options.width, options.height, 3);
-  for (std::size_t i = 0; i < view.priors.normal.num_pixels(); ++i)
-    view.priors.normal.data()[3 * i + 2] = -1;
-  view.priors.depth = Image(options.width, options.height, 1);
-  for (float& value : view.priors.depth.values()) value = rng.uniform(0.2f, 0.8f);
-  view.priors.albedo = Image(options.width, options.height, 3, 0.3f);
-  view.priors.basecolor = view.priors.albedo;
+  view.priors["normal"] = Image(options.width, options.height, 3);
+  for (std::size_t i = 0; i < view.priors["normal"].num_pixels(); ++i)
+    view.priors["normal"].data()[3 * i + 2] = -1;
+  view.priors["depth"] = Image(options.width, options.height, 1);
+  for (float& value : view.priors["depth"].values()) value = rng.uniform(0.2f, 0.8f);
+  view.priors["albedo"] = Image(options.width, options.height, 3, 0.3f);
+  view.priors["basecolor"] = view.priors["albedo"];
   scene.train.push_back(std::move(view));
   const SurfelCloud cloud = perf_cloud(options);
   for (std::size_t i = 0; i < cloud.size(); ++i) {

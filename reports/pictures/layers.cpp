@@ -36,6 +36,33 @@ Image angle_map(const Image& normal, const Image& truth) {
   return angles;
 }
 
+LayerStyle style_of(MapKind kind) {
+  switch (kind) {
+    case MapKind::kDepth:
+      return LayerStyle::kDepth;
+    case MapKind::kNormal:
+      return LayerStyle::kNormal;
+    case MapKind::kShare:
+    case MapKind::kMask:
+      return LayerStyle::kShare;
+    default:
+      return LayerStyle::kPicture;
+  }
+}
+
+// Its share of the displayed image; empty where the truth lacks the other parts.
+Image displayed_part(const View& view, const MapRow& part) {
+  Image others;
+  for (const MapRow& row : maps()) {
+    if (row.kind != MapKind::kPart || row.truth.empty() || row.id == part.id) continue;
+    const Image& other = view.truth[row];
+    if (other.empty()) return {};
+    if (others.empty()) others = Image(other.width(), other.height(), other.channels());
+    for (std::size_t i = 0; i < other.values().size(); ++i) others.values()[i] += other.values()[i];
+  }
+  return others.empty() ? Image() : displayed_component(view.rgb, view.truth[part], others);
+}
+
 // Empty where there is no file or none that can be read.
 Image read_layer(const fs::path& file, int channels) {
   if (!fs::exists(file)) return {};
@@ -51,7 +78,7 @@ Image read_layer(const fs::path& file, int channels) {
 class Collector {
  public:
   explicit Collector(ImageSize size) : size_(size) {}
-  void add(const std::string& id, Image map) {
+  void add(std::string_view id, Image map) {
     if (size_ == ImageSize{}) size_ = map.size();
     if (!map.empty() && map.size() == size_) maps_.emplace(id, std::move(map));
   }
@@ -118,49 +145,42 @@ Json colors_of(const PageLayer& layer, const DepthScale& scale) {
 
 }  // namespace
 
-const std::vector<PageLayer>& page_layers() {
-  static const std::vector<PageLayer> layers = {
-      {"render", "Image", LayerStyle::kPicture, "rgb.exr"},
-      {"error", "Error", LayerStyle::kError},
-      {"depth", "Depth", LayerStyle::kDepth, "depth.exr", 1},
-      {"normal", "Normal", LayerStyle::kNormal, "normal.exr"},
-      {"angle", "Angle error", LayerStyle::kAngle},
-      {"t", "Transparency t", LayerStyle::kShare, "transparency.exr", 1},
-      {"k_s", "Specularity k_s", LayerStyle::kShare, "specularity.exr", 1},
-      {"base", "Base", LayerStyle::kPicture, "interface.png"},
-      {"transmission", "Transmission", LayerStyle::kPicture, "transmission.png"},
-      {"reflection", "Reflection", LayerStyle::kPicture, "reflection.png"},
-      {"behind", "Depth behind", LayerStyle::kDepth, "behind_depth.exr", 1},
-      {"through", "Seen through", LayerStyle::kPicture, "transmitted.exr"},
-      {"mirrored", "Mirrored", LayerStyle::kPicture, "reflected.exr"}};
+PageLayer layer_of(const MapRow& row) {
+  return {std::string(row.id), std::string(row.title), style_of(row.kind)};
+}
+
+std::vector<PageLayer> page_layers() {
+  std::vector<PageLayer> layers;
+  for (const MapRow& row : maps()) {
+    if (!row.shown_file().empty()) layers.push_back(layer_of(row));
+    if (row.id == "rgb") layers.push_back({"error", "Error", LayerStyle::kError});
+    if (row.id == "normal") layers.push_back({"angle", "Angle error", LayerStyle::kAngle});
+  }
   return layers;
 }
 
 LayerMaps rendered_layers(const fs::path& view_folder, const View* view) {
-  Collector maps(view ? view->rgb.size() : ImageSize{});
-  for (const PageLayer& layer : page_layers())
-    if (layer.file != nullptr)
-      maps.add(layer.id, read_layer(view_folder / layer.file, layer.channels));
-  if (view == nullptr) return maps.take();
-  if (const Image* render = maps.find("render")) maps.add("error", error_map(*render, view->rgb));
-  const Image* normal = maps.find("normal");
-  if (normal != nullptr && view->truth.normal.size() == normal->size())
-    maps.add("angle", angle_map(*normal, view->truth.normal));
-  return maps.take();
+  Collector layers(view ? view->rgb.size() : ImageSize{});
+  for (const MapRow& row : maps())
+    if (!row.shown_file().empty())
+      layers.add(row.id, read_layer(view_folder / row.shown_file(), row.channels()));
+  if (view == nullptr) return layers.take();
+  if (const Image* rgb = layers.find("rgb")) layers.add("error", error_map(*rgb, view->rgb));
+  const Image& true_normal = view->truth["normal"];
+  const Image* normal = layers.find("normal");
+  if (normal != nullptr && true_normal.size() == normal->size())
+    layers.add("angle", angle_map(*normal, true_normal));
+  return layers.take();
 }
 
 LayerMaps true_layers(const View& view) {
-  const GroundTruth& truth = view.truth;
-  Collector maps(view.rgb.size());
-  maps.add("render", view.rgb);
-  maps.add("depth", truth.depth);
-  maps.add("normal", truth.normal);
-  maps.add("behind", truth.behind_depth);
-  if (!truth.transmitted.empty() && !truth.reflected.empty()) {
-    maps.add("through", displayed_component(view.rgb, truth.transmitted, truth.reflected));
-    maps.add("mirrored", displayed_component(view.rgb, truth.reflected, truth.transmitted));
-  }
-  return maps.take();
+  Collector layers(view.rgb.size());
+  layers.add("rgb", view.rgb);
+  view.truth.for_each([&](const MapRow& row, const Image& map) {
+    if (row.shown_file().empty()) return;
+    layers.add(row.id, row.kind == MapKind::kPart ? displayed_part(view, row) : map);
+  });
+  return layers.take();
 }
 
 Image layer_picture(const PageLayer& layer, const Image& map, const DepthScale& scale) {
@@ -190,6 +210,8 @@ Json layers_json(const DepthScale& scale) {
       entry["low"] = range.low;
       entry["high"] = range.high;
       entry["unit"] = range.unit;
+      if (layer.style != LayerStyle::kError)
+        entry["decimals"] = layer.style == LayerStyle::kAngle ? 1 : 3;  // in the probe
       entry["colors"] = colors_of(layer, scale);
     }
     json.push_back(std::move(entry));

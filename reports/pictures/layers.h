@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the page shows of a view: the maps of one render or of the truth under the ids of layers,
-// and how each becomes a picture. One range for all methods of a scene.
+// What the page, figures and strips show of a view: the maps of one render or of the truth, what
+// compares the two, and how each becomes a picture. One range for all methods of a scene.
 #pragma once
 
 #include <map>
@@ -18,13 +18,14 @@ namespace glint {
 enum class LayerStyle { kPicture, kDepth, kNormal, kShare, kError, kAngle };
 
 struct PageLayer {
-  const char* id;     // "render", "depth", ...
-  const char* title;  // as shown
-  LayerStyle style;
-  const char* file = nullptr;  // under renders/<view>/; null: computed
-  int channels = 3;
+  std::string id;     // of the map; "error", "angle"
+  std::string title;  // as shown
+  LayerStyle style = LayerStyle::kPicture;
 };
-const std::vector<PageLayer>& page_layers();
+// The maps of the table that methods render; behind the image its error, behind the normal its
+// angle to the true one.
+std::vector<PageLayer> page_layers();
+PageLayer layer_of(const MapRow& row);
 
 // Limits of the colours of errors (mean over channels of |render - truth|) and of angles (degrees).
 inline constexpr float kPageErrorHigh = 0.25f, kPageAngleHigh = 45;
@@ -34,12 +35,13 @@ inline constexpr float kPageErrorHigh = 0.25f, kPageAngleHigh = 45;
 // need `view`; nullptr: the truth is not at hand.
 using LayerMaps = std::map<std::string, Image>;
 LayerMaps rendered_layers(const fs::path& view_folder, const View* view);
-// The truth under the same ids: "render" is the image, "through" and "mirrored" its two parts.
+// The truth under the same ids; parts of the image as displayed.
 LayerMaps true_layers(const View& view);
 
 Image layer_picture(const PageLayer& layer, const Image& map, const DepthScale& scale);
 
-// Id, title, style, and for colour maps unit, limits and colours at equal steps from low to high.
+// Id, title, style, and for colour maps unit, limits, colours at equal steps from low to high, and
+// the decimals of the values that the page's probe has.
 Json layers_json(const DepthScale& scale);
 
 }  // namespace glint

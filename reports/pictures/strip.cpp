@@ -7,68 +7,43 @@
 #include "drawing/color_maps.h"
 #include "drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
+#include "reports/pictures/layers.h"
 #include "reports/records/run_folder.h"
 
 namespace glint {
 
 namespace {
 
-Image show_color(const Image& color, DepthScale) { return color; }
-Image show_grey(const Image& map, DepthScale) {
+Image grey_picture(const Image& map) {
   Image color(map.width(), map.height(), 3);
   for (std::size_t i = 0; i < color.values().size(); ++i)
     color.values()[i] = std::clamp(map.values()[i / 3], 0.0f, 1.0f);
   return color;
 }
-Image show_depth(const Image& depth, DepthScale scale) {
-  return colorize_depth(depth, scale.low, scale.high);
-}
-Image show_normal(const Image& normal, DepthScale) { return colorize_normal(normal); }
 
-// A map of a render, and the panel of its ground truth behind it where there is one.
+// A map of a render, and behind it a panel of its truth where any view has that.
 struct MapPanel {
-  const char* title;
-  const char* file;
-  int channels;
-  Image (*show)(const Image& map, DepthScale scale);
-  const char* true_title = nullptr;
-  const Image GroundTruth::*truth = nullptr;
+  MapRow map;
+  bool truth = false;
 };
-
-constexpr MapPanel kMapPanels[] = {
-    {"base colour", "interface.png", 3, show_color},
-    {"transmission", "transmission.png", 3, show_color},
-    {"reflection", "reflection.png", 3, show_color},
-    {"transparency t", "transparency.exr", 1, show_grey},
-    {"specularity k_s", "specularity.exr", 1, show_grey},
-    {"interface depth", "depth.exr", 1, show_depth, "true depth", &GroundTruth::depth},
-    {"transmission depth",
-     "behind_depth.exr",
-     1,
-     show_depth,
-     "true depth behind",
-     &GroundTruth::behind_depth},
-    {"normal", "normal.exr", 3, show_normal, "true normal", &GroundTruth::normal}};
 
 // What all strips of a run share.
 struct StripPlan {
   fs::path run;
-  std::vector<MapPanel> panels;  // truth is null where no view has any
+  std::vector<MapPanel> panels;
   DepthScale scale;
 };
 
 StripPlan plan_strips(const fs::path& run, const std::vector<View>& views) {
   StripPlan plan{run, {}, depth_scale({run}, views)};
-  for (MapPanel panel : kMapPanels) {
+  for (const MapRow& row : maps()) {
+    if (row.shown_file().empty() || row.id == "rgb") continue;  // the image leads every strip
     const auto rendered = [&](const View& view) {
-      return fs::exists(view_folder(run, view.name) / panel.file);
+      return fs::exists(view_folder(run, view.name) / row.shown_file());
     };
-    const auto has_truth = [&](const View& view) {
-      return panel.truth != nullptr && !(view.truth.*panel.truth).empty();
-    };
-    if (std::none_of(views.begin(), views.end(), rendered)) continue;
-    if (std::none_of(views.begin(), views.end(), has_truth)) panel.truth = nullptr;
-    plan.panels.push_back(panel);
+    const auto has_truth = [&](const View& view) { return view.truth.has(row); };
+    if (std::any_of(views.begin(), views.end(), rendered))
+      plan.panels.push_back({row, std::any_of(views.begin(), views.end(), has_truth)});
   }
   return plan;
 }
@@ -76,8 +51,8 @@ StripPlan plan_strips(const fs::path& run, const std::vector<View>& views) {
 std::vector<std::string> titles_of(const StripPlan& plan) {
   std::vector<std::string> titles = {"truth", "rendered", fmt::format("error x {}", kErrorGain)};
   for (const MapPanel& panel : plan.panels) {
-    titles.push_back(panel.title);
-    if (panel.truth != nullptr) titles.push_back(panel.true_title);
+    titles.emplace_back(panel.map.title);
+    if (panel.truth) titles.push_back(fmt::format("{}, truth", panel.map.title));
   }
   return titles;
 }
@@ -92,8 +67,12 @@ Image error_panel(const Image& render, const Image& truth) {
   return error;
 }
 
-Image shown(const Image& map, const MapPanel& panel, DepthScale scale) {
-  return map.empty() ? Image() : fit_panel(panel.show(map, scale));
+// Empty where there is no such map.
+Image panel_of(const LayerMaps& maps, const MapRow& row, DepthScale scale) {
+  const auto map = maps.find(std::string(row.id));
+  if (map == maps.end()) return {};
+  if (row.kind == MapKind::kShare) return fit_panel(grey_picture(map->second));
+  return fit_panel(layer_picture(layer_of(row), map->second, scale));
 }
 
 std::vector<Image> row_of(const StripPlan& plan, const View& view) {
@@ -101,11 +80,10 @@ std::vector<Image> row_of(const StripPlan& plan, const View& view) {
   const Image render = read_image(folder / "rgb.exr", 3);
   std::vector<Image> row = {
       fit_panel(view.rgb), fit_panel(render), fit_panel(error_panel(render, view.rgb))};
+  const LayerMaps rendered = rendered_layers(folder, &view), truth = true_layers(view);
   for (const MapPanel& panel : plan.panels) {
-    const fs::path file = folder / panel.file;
-    const Image map = fs::exists(file) ? read_image(file, panel.channels) : Image();
-    row.push_back(shown(map, panel, plan.scale));
-    if (panel.truth != nullptr) row.push_back(shown(view.truth.*panel.truth, panel, plan.scale));
+    row.push_back(panel_of(rendered, panel.map, plan.scale));
+    if (panel.truth) row.push_back(panel_of(truth, panel.map, plan.scale));
   }
   return row;
 }
@@ -113,16 +91,18 @@ std::vector<Image> row_of(const StripPlan& plan, const View& view) {
 std::vector<LegendLine> legend_of(const StripPlan& plan, const std::vector<const View*>& views) {
   std::string names;
   for (const View* view : views) names += (names.empty() ? "" : ", ") + view->name;
-  const auto shows = [&](auto show) {
-    return std::any_of(plan.panels.begin(), plan.panels.end(), [&](const MapPanel& panel) {
-      return panel.show == show;
-    });
-  };
+  std::string shares;
+  bool depths = false;
+  for (const MapPanel& panel : plan.panels) {
+    if (panel.map.kind == MapKind::kShare)
+      shares += fmt::format("{}{}", shares.empty() ? "" : ", ", panel.map.title);
+    depths = depths || panel.map.kind == MapKind::kDepth;
+  }
   std::vector<LegendLine> legend = {
       {fmt::format("views: {}", names)},
       {fmt::format("error: |rendered - truth| x {}, black: none", kErrorGain)}};
-  if (shows(show_grey)) legend.push_back({"t, k_s: black 0, white 1"});
-  if (shows(show_depth))
+  if (!shares.empty()) legend.push_back({shares + ": black 0, white 1"});
+  if (depths)
     legend.push_back(
         {fmt::format("depth: {:.2f} m", plan.scale.low),
          LegendBar::kDepth,

@@ -21,7 +21,8 @@ inline constexpr float kErrorGain = 4.0f;  // |render - truth| is shown this muc
 std::vector<std::string> strip_titles(const fs::path& run, const std::vector<View>& views);
 
 // renders/<view>/strip.png of every view and `run`/strip.png, from the files under `run`/renders. A
-// map that only this view lacks is grey. Errors (kBadReference): an image file is damaged.
+// map that only this view lacks, or that is damaged (a warning says so), is grey. Errors
+// (kBadReference): rgb.exr is missing or damaged.
 void write_strips(const fs::path& run, const std::vector<View>& views);
 
 }  // namespace glint

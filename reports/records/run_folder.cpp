@@ -25,27 +25,27 @@ void visit_spec(S& spec, V&& v) {
   v("dataset_hash", spec.dataset_hash);
 }
 
-void check_map(const fs::path& folder, const std::string& name, const Image& map, ImageSize size) {
+void check_map(const fs::path& folder, const MapRow& row, const Image& map, ImageSize size) {
   GLINT_CHECK(
-      map.size() == size && (map.channels() == 1 || map.channels() == 3),
+      map.size() == size && map.channels() == row.channels(),
       kBadPrediction,
-      "{}: the method rendered {} as {}x{}x{}, expected {}x{} pixels of 1 or 3 channels",
+      "{}: the method rendered {} as {}x{}x{}, expected {}x{}x{}",
       folder.string(),
-      name,
+      row.id,
       map.width(),
       map.height(),
       map.channels(),
       size.width,
-      size.height
+      size.height,
+      row.channels()
   );
-}
-
-void write_layer(const fs::path& folder, const std::string& name, const Image& layer) {
-  const bool for_people = name == "interface" || name == "transmission" || name == "reflection";
-  if (for_people)
-    write_png(folder / (name + ".png"), layer);
-  else
-    write_exr(folder / (name + ".exr"), layer);
+  GLINT_CHECK(
+      !row.shown_file().empty(),
+      kBadPrediction,
+      "{}: the method rendered {}, for which the table of maps (glint/scene/maps.h) has no file",
+      folder.string(),
+      row.id
+  );
 }
 
 }  // namespace
@@ -134,17 +134,13 @@ fs::path view_folder(const fs::path& run, const std::string& view_name) {
   return run / "renders" / flat_view_name(view_name);
 }
 
-void write_render(const fs::path& folder, const RenderOutput& output) {
-  write_exr(folder / "rgb.exr", output.rgb);
-  write_png(folder / "rgb.png", output.rgb);
-  const auto there = [&](const std::string& name, const Image& map) {
-    if (!map.empty()) check_map(folder, name, map, output.rgb.size());
-    return !map.empty();
-  };
-  if (there("depth", output.depth)) write_exr(folder / "depth.exr", output.depth);
-  if (there("normal", output.normal)) write_exr(folder / "normal.exr", output.normal, true);
-  for (const auto& [name, layer] : output.layers)
-    if (there(name, layer)) write_layer(folder, name, layer);
+void write_render(const fs::path& folder, const MapSet& rendered) {
+  const ImageSize size = rendered["rgb"].size();
+  rendered.for_each([&](const MapRow& row, const Image& map) {
+    check_map(folder, row, map, size);
+    if (!row.file.empty()) write_exr(folder / row.file, map, row.kind == MapKind::kNormal);
+    if (!row.picture.empty()) write_png(folder / row.picture, map);
+  });
 }
 
 std::vector<std::string> log_tail(const fs::path& run, std::size_t lines) {

@@ -52,11 +52,10 @@ std::optional<TrainedElsewhere> trained_elsewhere(const RunSpec& spec);
 // renders/<flat name>.
 fs::path view_folder(const fs::path& run, const std::string& view_name);
 
-// rgb.exr (as displayed, not clamped), rgb.png, depth.exr, normal.exr, and each layer under its
-// name (docs/RECORDS.md lists those that are scored): the radiance of a set ("interface",
-// "transmission", "reflection") as PNG, for people; everything else as EXR. Errors
-// (kBadPrediction): a map of another size than rgb, or with neither 1 nor 3 channels.
-void write_render(const fs::path& folder, const RenderOutput& output);
+// Every map under its names in the table (glint/scene/maps.h): values as EXR, pictures for people
+// as PNG. Errors (kBadPrediction): a map of another size than rgb, of other channels than the table
+// says, or without a file there.
+void write_render(const fs::path& folder, const MapSet& rendered);
 
 // Last lines of log.jsonl, for failure records.
 std::vector<std::string> log_tail(const fs::path& run, std::size_t lines = 50);

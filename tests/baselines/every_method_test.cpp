@@ -65,22 +65,22 @@ TEST_CASE("Every method renders colour, depth and unit normals that face the cam
   for (const auto& [id, spec] : method_registry()) {
     INFO(id);
     const View& view = small_room().test.front();
-    const RenderOutput out = after_60_steps(spec).render(view.camera);
-    REQUIRE(out.rgb.size() == view.camera.size());
-    REQUIRE(out.rgb.channels() == 3);
-    REQUIRE(out.depth.size() == view.camera.size());
-    REQUIRE(out.normal.size() == view.camera.size());
+    const MapSet out = after_60_steps(spec).render(view.camera);
+    REQUIRE(out["rgb"].size() == view.camera.size());
+    REQUIRE(out["rgb"].channels() == 3);
+    REQUIRE(out["depth"].size() == view.camera.size());
+    REQUIRE(out["normal"].size() == view.camera.size());
     std::size_t hits = 0;
     for (int y = 0; y < view.camera.height; ++y)
       for (int x = 0; x < view.camera.width; ++x) {
-        const float z = out.depth.at(x, y);
+        const float z = out["depth"].at(x, y);
         REQUIRE(std::isfinite(z));
-        const float* n = out.normal.pixel(x, y);
+        const float* n = out["normal"].pixel(x, y);
         const float norm = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         CHECK((norm == 0.0f || std::abs(norm - 1) < 1e-4f));
         hits += z > 0 && norm > 0;
       }
-    CHECK(hits > out.depth.num_pixels() / 2);
+    CHECK(hits > out["depth"].num_pixels() / 2);
   }
 }
 
@@ -93,9 +93,9 @@ TEST_CASE("Every method renders the same bytes after saving and loading") {
     const auto loaded = create_method(spec.id);
     loaded->load(folder.path().string());
     const Camera& camera = small_room().test.front().camera;
-    const RenderOutput a = method.render(camera), b = loaded->render(camera);
-    CHECK(same_bytes(a.rgb, b.rgb));
-    CHECK(same_bytes(a.depth, b.depth));
+    const MapSet a = method.render(camera), b = loaded->render(camera);
+    CHECK(same_bytes(a["rgb"], b["rgb"]));
+    CHECK(same_bytes(a["depth"], b["depth"]));
     CHECK(loaded->num_surfels() == method.num_surfels());
   }
 }
@@ -105,12 +105,12 @@ TEST_CASE("Every method trains to the same bytes with one and two threads") {
     INFO(id);
     const Camera& camera = small_room().test.front().camera;
     set_num_threads(1);
-    const RenderOutput one = trained(spec, 80, nullptr)->render(camera);
+    const MapSet one = trained(spec, 80, nullptr)->render(camera);
     set_num_threads(2);
-    const RenderOutput two = trained(spec, 80, nullptr)->render(camera);
+    const MapSet two = trained(spec, 80, nullptr)->render(camera);
     set_num_threads(0);
-    CHECK(same_bytes(one.rgb, two.rgb));
-    CHECK(same_bytes(one.depth, two.depth));
+    CHECK(same_bytes(one["rgb"], two["rgb"]));
+    CHECK(same_bytes(one["depth"], two["depth"]));
   }
 }
 

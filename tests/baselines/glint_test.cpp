@@ -119,33 +119,34 @@ TEST_CASE("Without glass GLINT trains as 2DGS does") {
     CHECK(a.loss == Approx(b.loss).epsilon(1e-4));
   }
   const Camera& camera = small_room().test.front().camera;
-  CHECK(largest_difference(glint->render(camera).rgb, two_dgs->render(camera).rgb) < 0.02f);
+  CHECK(largest_difference(glint->render(camera)["rgb"], two_dgs->render(camera)["rgb"]) < 0.02f);
 }
 
 TEST_CASE("The picture is the sum of what the maps say of it") {
   const auto method = started(Json::object());
   for (int i = 0; i < kIterations; ++i) method->step(i);
-  const RenderOutput out = method->render(small_room().test.front().camera);
-  Image sum = out.layers.at("transmitted");
+  const MapSet out = method->render(small_room().test.front().camera);
+  Image sum = out["transmitted"];
   for (std::size_t i = 0; i < sum.values().size(); ++i) {
-    const float t = out.layers.at("transparency").values()[i / 3];
-    const float k = out.layers.at("specularity").values()[i / 3];
-    sum.values()[i] += (1 - k) * (1 - t) * out.layers.at("interface").values()[i] +
-                       out.layers.at("reflected").values()[i];
+    const float t = out["transparency"].values()[i / 3];
+    const float k = out["specularity"].values()[i / 3];
+    sum.values()[i] +=
+        (1 - k) * (1 - t) * out["interface"].values()[i] + out["reflected"].values()[i];
   }
-  CHECK(largest_difference(sum, out.rgb) < 1e-5f);
+  CHECK(largest_difference(sum, out["rgb"]) < 1e-5f);
 }
 
 TEST_CASE("Ablated sets leave no map behind") {
-  for (const auto& [id, layer] :
-       {std::pair{"glint/no-trans", "transmission"}, {"glint/no-refl", "reflection"}}) {
+  const std::pair<const char*, MapId> ablations[] = {
+      {"glint/no-trans", "transmission"}, {"glint/no-refl", "reflection"}};
+  for (const auto& [id, map] : ablations) {
     const auto method = create_method(id);
     RunOptions options;
     options.iterations = kIterations;
     method->initialize(small_room(), options);
     for (int i = 0; i < kIterations; ++i) method->step(i);
-    const RenderOutput out = method->render(small_room().test.front().camera);
-    CHECK(out.layers.count(layer) == 0);
+    const MapSet out = method->render(small_room().test.front().camera);
+    CHECK_FALSE(out.has(map));
   }
 }
 

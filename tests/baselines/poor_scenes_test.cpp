@@ -22,8 +22,8 @@ std::vector<std::string> warnings_of_short_run(const MethodSpec& spec, const Sce
   }
   CHECK_NOTHROW(method->check_finite());
   CHECK(method->num_surfels() > 0);
-  const RenderOutput out = method->render(scene.test.front().camera);
-  for (const float value : out.rgb.values()) REQUIRE(std::isfinite(value));
+  const MapSet out = method->render(scene.test.front().camera);
+  for (const float value : out["rgb"].values()) REQUIRE(std::isfinite(value));
   return method->warnings();
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("Where LPIPS is wanted and has no weights, the record says that it is 
 
 TEST_CASE("A prior that one view lacks is off for all, and the warning counts the views") {
   Scene scene = small_room();
-  scene.train.front().priors.depth = {};
+  scene.train.front().priors["depth"] = {};
   for_every_method([&](const MethodSpec& spec) {
     if (!uses(spec, "lambda_depth")) return;
     const std::string expected = "no depth prior for 1 of ";
@@ -93,8 +93,8 @@ TEST_CASE("A prior that one view lacks is off for all, and the warning counts th
 TEST_CASE("Without glass every method trains") {
   Scene scene = small_room();
   for (View& view : scene.train) {
-    for (float& value : view.priors.albedo.values()) value = 0.5f;
-    view.truth.glass = {};
+    for (float& value : view.priors["albedo"].values()) value = 0.5f;
+    view.truth["glass"] = {};
   }
   for_every_method([&](const MethodSpec& spec) { warnings_of_short_run(spec, scene); });
 }

@@ -65,7 +65,7 @@ void to_ray_length(std::vector<View>& views) {
   for (View& view : views)
     for_each_pixel(view, [](View& v, int x, int y) {
       const double cosine = length(v.camera.ray_in_cam(x + 0.5, y + 0.5));
-      v.truth.depth.at(x, y) *= static_cast<float>(cosine);
+      v.truth["depth"].at(x, y) *= static_cast<float>(cosine);
     });
 }
 
@@ -113,8 +113,8 @@ TEST_CASE("noise on depth and priors is no defect") {
   Rng rng(3);
   const auto noisy = [&](std::vector<View>& views) {
     for (View& view : views) {
-      for (float& z : view.truth.depth.values()) z *= 1 + 0.003f * rng.normal();
-      for (float& n : view.priors.normal.values())
+      for (float& z : view.truth["depth"].values()) z *= 1 + 0.003f * rng.normal();
+      for (float& n : view.priors["normal"].values())
         n = std::clamp(n + 0.1f * rng.normal(), -1.0f, 1.0f);
     }
   };
@@ -130,7 +130,7 @@ TEST_CASE("every wrong sign pattern of true and prior normals is found") {
       for (View& view : views)
         for (int axis = 0; axis < 3; ++axis)
           if ((pattern >> axis & 1) != 0)
-            flip_axis(prior ? view.priors.normal : view.truth.normal, axis);
+            flip_axis(prior ? view.priors["normal"] : view.truth["normal"], axis);
     };
     for (const bool prior : {false, true}) {
       const Finding finding = only(
@@ -148,7 +148,7 @@ TEST_CASE("normals in world axes are found") {
       findings_after([](std::vector<View>& views) {
         for (View& view : views)
           for_each_pixel(view, [](View& v, int x, int y) {
-            float* n = v.truth.normal.pixel(x, y);
+            float* n = v.truth["normal"].pixel(x, y);
             const Vec3d world = transpose_times(
                 v.camera.rotation_cam_from_world, cast<double>(Vec3f{n[0], n[1], n[2]})
             );
@@ -164,7 +164,7 @@ TEST_CASE("prior normals that face away are found without true depth") {
   const Finding finding = only(
       findings_after(
           [](std::vector<View>& views) {
-            for (View& view : views) flip_axis(view.priors.normal, 2);
+            for (View& view : views) flip_axis(view.priors["normal"], 2);
           },
           [](const fs::path& folder) { fs::remove_all(folder / "gt"); }
       ),
@@ -176,7 +176,7 @@ TEST_CASE("prior normals that face away are found without true depth") {
 TEST_CASE("depth that does not belong to the poses is found") {
   const std::vector<Finding> findings = findings_after([](std::vector<View>& views) {
     for (View& view : views)
-      for (float& z : view.truth.depth.values()) z *= 1000;  // millimetres
+      for (float& z : view.truth["depth"].values()) z *= 1000;  // millimetres
   });
   CHECK_THAT(list(findings), Contains("[depth-poses]"));
 }
@@ -270,12 +270,13 @@ TEST_CASE("values that are not finite are found in maps and poses") {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   Finding finding = only(
-      findings_after([&](std::vector<View>& views) { views[2].truth.depth.at(5, 5) = infinity; }),
+      findings_after([&](std::vector<View>& views) { views[2].truth["depth"].at(5, 5) = infinity; }
+      ),
       "non-finite"
   );
   CHECK_THAT(finding.where, Contains("gt/depth/0002.exr"));
   finding = only(
-      findings_after([&](std::vector<View>& views) { views[2].truth.normal.at(5, 5, 1) = nan; }),
+      findings_after([&](std::vector<View>& views) { views[2].truth["normal"].at(5, 5, 1) = nan; }),
       "non-finite"
   );
   CHECK_THAT(finding.where, Contains("gt/normal/0002.exr"));
@@ -314,8 +315,8 @@ TEST_CASE("unreadable files and wrong sizes are found") {
 TEST_CASE("negative depth, normals without unit length and points in other axes are found") {
   const std::vector<Finding> findings = findings_after(
       [](std::vector<View>& views) {
-        views[1].truth.depth.at(3, 3) = -1;
-        for (float& n : views[2].truth.normal.values()) n *= 0.8f;
+        views[1].truth["depth"].at(3, 3) = -1;
+        for (float& n : views[2].truth["normal"].values()) n *= 0.8f;
       },
       [](const fs::path& folder) {
         PointCloud points = read_point_ply(folder / "sparse/0/points3D.ply");
@@ -352,7 +353,7 @@ TEST_CASE("several defects at once are all named") {
   const std::vector<Finding> findings = findings_after(
       [](std::vector<View>& views) {
         to_ray_length(views);
-        for (View& view : views) flip_axis(view.truth.normal, 1);
+        for (View& view : views) flip_axis(view.truth["normal"], 1);
       },
       [](const fs::path& folder) { fs::remove(folder / "images/0003/000000.png"); }
   );

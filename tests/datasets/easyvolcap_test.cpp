@@ -70,12 +70,14 @@ TEST_CASE("a folder in EasyVolcap's layout is loaded whole") {
   CHECK(loaded.camera.size() == kSize);
   CHECK(projection_difference(made.camera, loaded.camera) < 1e-9);
   CHECK(largest_difference(loaded.rgb, made.rgb) <= 0.5f / 255 + 1e-6f);
-  CHECK(largest_difference(loaded.truth.depth, made.truth.depth) == 0);
-  CHECK(largest_difference(loaded.truth.normal, made.truth.normal) == 0);
-  CHECK(largest_difference(loaded.priors.normal, made.truth.normal) < 0.01f);
-  CHECK(loaded.priors.depth.at(3, 4) == Approx(0.2f * made.truth.depth.at(3, 4)).margin(0.003));
-  CHECK(loaded.priors.albedo.empty());
-  CHECK(loaded.truth.glass.empty());
+  CHECK(largest_difference(loaded.truth["depth"], made.truth["depth"]) == 0);
+  CHECK(largest_difference(loaded.truth["normal"], made.truth["normal"]) == 0);
+  CHECK(largest_difference(loaded.priors["normal"], made.truth["normal"]) < 0.01f);
+  CHECK(
+      loaded.priors["depth"].at(3, 4) == Approx(0.2f * made.truth["depth"].at(3, 4)).margin(0.003)
+  );
+  CHECK(loaded.priors["albedo"].empty());
+  CHECK(loaded.truth["glass"].empty());
   CHECK(scene.points.positions.size() == 10 * 6 * 5);
   CHECK(scene.bounds_min.x == Approx(0).margin(0.01));
 }
@@ -115,10 +117,10 @@ TEST_CASE("options choose size, split, priors and truth") {
   Scene scene = load_scene(folder.path(), options);
   CHECK(scene.test.size() == 2);
   CHECK(scene.test[1].name == "0005");
-  CHECK(scene.train[0].priors.normal.empty());
+  CHECK(scene.train[0].priors["normal"].empty());
   CHECK(scene.train[0].rgb.size() == ImageSize{24, 18});
   CHECK(scene.train[0].camera.fx == Approx(0.5 * folder.views[1].camera.fx));
-  CHECK(scene.train[0].truth.depth.size() == ImageSize{24, 18});
+  CHECK(scene.train[0].truth["depth"].size() == ImageSize{24, 18});
   options = {};
   options.test_every = 0;
   options.max_pixels = 500;
@@ -128,7 +130,7 @@ TEST_CASE("options choose size, split, priors and truth") {
   CHECK(scene.train.size() == 10);
   CHECK(scene.train[0].rgb.num_pixels() <= 500);
   CHECK(scene.train[0].rgb.num_pixels() > 400);
-  CHECK(scene.train[0].truth.depth.empty());
+  CHECK(scene.train[0].truth["depth"].empty());
 }
 
 TEST_CASE("a halved scene is the scene rendered at half size, away from the room's edges") {
@@ -140,8 +142,8 @@ TEST_CASE("a halved scene is the scene rendered at half size, away from the room
   int same = 0, all = 0;
   for (int y = 0; y < 18; ++y)
     for (int x = 0; x < 24; ++x, ++all) {
-      const float expected = half.truth.depth.at(x, y);
-      if (std::abs(scene.train[2].truth.depth.at(x, y) - expected) < 1e-5f * expected) ++same;
+      const float expected = half.truth["depth"].at(x, y);
+      if (std::abs(scene.train[2].truth["depth"].at(x, y) - expected) < 1e-5f * expected) ++same;
     }
   // Only pixels whose footprint holds two walls differ.
   CHECK(same > 0.8 * all);

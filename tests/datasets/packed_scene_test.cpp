@@ -78,9 +78,9 @@ TEST_CASE("a packed scene is the folder's scene, bit for bit") {
   check_same(packed, small_room());
   CHECK(find_loader(file).name == "packed");
   CHECK(check_dataset(file).empty());
-  CHECK_FALSE(packed.train[0].truth.glass.empty());
-  CHECK_FALSE(packed.train[0].truth.transmitted.empty());
-  CHECK_FALSE(packed.train[0].priors.normal.empty());
+  CHECK_FALSE(packed.train[0].truth["glass"].empty());
+  CHECK_FALSE(packed.train[0].truth["transmitted"].empty());
+  CHECK_FALSE(packed.train[0].priors["normal"].empty());
 }
 
 TEST_CASE("scenes made by hand survive, with points without normals and odd names") {
@@ -136,8 +136,8 @@ TEST_CASE("options drop priors and truth and resize, as with folders") {
   options.with_truth = false;
   options.size = {4, 3};
   const Scene scene = load_scene(folder / "x", options);
-  CHECK(scene.train[0].priors.normal.empty());
-  CHECK(scene.train[0].truth.depth.empty());
+  CHECK(scene.train[0].priors["normal"].empty());
+  CHECK(scene.train[0].truth["depth"].empty());
   CHECK(scene.train[0].rgb.size() == ImageSize{4, 3});
   CHECK(scene.test[0].camera.width == 4);
 }
@@ -197,7 +197,7 @@ TEST_CASE("values that are no scene's are errors, when packed and when read") {
   const Scene good = box_scene();
   const float nan = std::numeric_limits<float>::quiet_NaN();
   CHECK_THAT(
-      write_error(good, [&](Scene& s) { s.train[1].truth.depth.data()[5] = nan; }),
+      write_error(good, [&](Scene& s) { s.train[1].truth["depth"].data()[5] = nan; }),
       Contains("train.1.truth.depth: value 5 is nan")
   );
   CHECK_THAT(
@@ -215,7 +215,7 @@ TEST_CASE("values that are no scene's are errors, when packed and when read") {
       Contains("test.0.camera: focal")
   );
   CHECK_THAT(
-      write_error(good, [](Scene& s) { s.test[0].truth.glass = MaskImage(3, 3, 1); }),
+      write_error(good, [](Scene& s) { s.test[0].truth["glass"] = Image(3, 3, 1); }),
       Contains("test.0.truth.glass: (3, 3, 1), expected (6, 8, 1)")
   );
   CHECK_THAT(

@@ -31,9 +31,9 @@ struct Maps {
   }
   ViewPair pair() const {
     ViewPair pair;
-    pair.true_rgb = displayed;
-    pair.transmitted = half, pair.reflected = half;
-    pair.true_transmitted = true_transmitted, pair.true_reflected = true_reflected;
+    pair.truth["rgb"] = displayed;
+    pair.rendered["transmitted"] = half, pair.rendered["reflected"] = half;
+    pair.truth["transmitted"] = true_transmitted, pair.truth["reflected"] = true_reflected;
     pair.glass = glass;
     return pair;
   }
@@ -92,7 +92,7 @@ TEST_CASE("true components as a prediction reach the cap, and predictions are cl
   ViewPair pair = maps.pair();
   const Image exact =
       displayed_component(maps.displayed, maps.true_transmitted, maps.true_reflected);
-  pair.transmitted = exact;
+  pair.rendered["transmitted"] = exact;
   CHECK(evaluate_view(pair).at("trans-psnr") == kPsnrCapDb);
   maps.displayed = Image(kWidth, kHeight, 3, 1.0f);
   maps.true_reflected = Image(kWidth, kHeight, 3);
@@ -103,11 +103,11 @@ TEST_CASE("true components as a prediction reach the cap, and predictions are cl
 TEST_CASE("a component without its layer, its truth or any glass is absent") {
   const Maps maps;
   ViewPair one_layer = maps.pair();
-  one_layer.transmitted = {};
+  one_layer.rendered["transmitted"] = {};
   CHECK(evaluate_view(one_layer).count("trans-psnr") == 0);
   CHECK(evaluate_view(one_layer).count("refl-psnr") == 1);
   ViewPair no_truth = maps.pair();
-  no_truth.true_reflected = {};
+  no_truth.truth["reflected"] = {};
   CHECK(evaluate_view(no_truth).empty());
   const MaskImage no_glass(kWidth, kHeight, 1);
   for (const MaskView glass : {MaskView(no_glass), MaskView{}}) {

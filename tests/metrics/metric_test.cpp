@@ -34,11 +34,11 @@ struct Maps {
   }
   ViewPair pair() const {
     ViewPair pair;
-    pair.rgb = rgb, pair.true_rgb = true_rgb;
-    pair.depth = depth, pair.true_depth = true_depth;
-    pair.normal = normal, pair.true_normal = true_normal;
-    pair.transparency = transparency;
-    pair.behind_depth = depth, pair.true_behind_depth = true_depth;
+    pair.rendered["rgb"] = rgb, pair.truth["rgb"] = true_rgb;
+    pair.rendered["depth"] = depth, pair.truth["depth"] = true_depth;
+    pair.rendered["normal"] = normal, pair.truth["normal"] = true_normal;
+    pair.rendered["transparency"] = transparency;
+    pair.rendered["behind_depth"] = depth, pair.truth["behind_depth"] = true_depth;
     pair.glass = glass;
     return pair;
   }
@@ -140,8 +140,8 @@ TEST_CASE("a method with one layer is scored by its depth behind glass, too") {
   const Maps maps;
   ViewPair pair = maps.pair();
   const Image behind(kWidth, kHeight, 1, 3.0f);
-  pair.behind_depth = {};
-  pair.true_behind_depth = behind;
+  pair.rendered["behind_depth"] = {};
+  pair.truth["behind_depth"] = behind;
   CHECK(
       evaluate_view(pair).at("behind-absrel") ==
       depth_errors(maps.depth, behind, maps.glass)->absrel
@@ -151,12 +151,12 @@ TEST_CASE("a method with one layer is scored by its depth behind glass, too") {
 TEST_CASE("glass may be found in a specularity, where there is no transparency") {
   const Maps maps;
   ViewPair pair = maps.pair();
-  pair.transparency = {};
+  pair.rendered["transparency"] = {};
   CHECK(evaluate_view(pair).count("glass-iou-best") == 0);
   Image faint(kWidth, kHeight, 1, 0.06f);
   for (int y = 10; y < 20; ++y)
     for (int x = 10; x < 20; ++x) faint.at(x, y) = 0.12f;
-  pair.specularity = faint;
+  pair.rendered["specularity"] = faint;
   CHECK(evaluate_view(pair).at("glass-iou-best") == 1);
   CHECK(evaluate_view(pair).count("transparency-iou") == 0);
 }
@@ -174,7 +174,8 @@ TEST_CASE("the release's depth scale is fitted on the whole view, whatever the r
 TEST_CASE("metrics without their map or truth are absent") {
   const Maps maps;
   ViewPair pair;
-  pair.rgb = maps.rgb, pair.true_rgb = maps.true_rgb, pair.depth = maps.depth;
+  pair.rendered["rgb"] = maps.rgb, pair.truth["rgb"] = maps.true_rgb,
+  pair.rendered["depth"] = maps.depth;
   const auto scores = evaluate_view(pair);
   CHECK(scores.size() == 4);
   CHECK(scores.count("ssim-3dgs") == 1);

@@ -40,13 +40,13 @@ class FakeMethod final : public Method {
     stats.terms["photometric"] = stats.loss;
     return stats;
   }
-  RenderOutput render(const Camera& camera) override {
+  MapSet render(const Camera& camera) override {
     fail_at("render");
-    RenderOutput output;
-    output.rgb = Image(camera.width, camera.height, 3, config_.grey);
-    output.depth = Image(camera.width, camera.height, 1, 2.0f);
-    output.layers["transparency"] = Image(camera.width, camera.height, 1, 0.25f);
-    output.layers["interface"] = output.rgb;
+    MapSet output;
+    output["rgb"] = Image(camera.width, camera.height, 3, config_.grey);
+    output["depth"] = Image(camera.width, camera.height, 1, 2.0f);
+    output["transparency"] = Image(camera.width, camera.height, 1, 0.25f);
+    output["interface"] = output["rgb"];
     return output;
   }
   void save(const std::string& folder) const override {
@@ -88,7 +88,7 @@ inline Scene fake_scene(const std::string& name, float grey = 0.6f) {
     view.camera.height = 12;
     view.camera.fx = view.camera.fy = 16;
     view.rgb = Image(16, 12, 3, grey);
-    view.truth.depth = Image(16, 12, 1, 2.5f);
+    view.truth["depth"] = Image(16, 12, 1, 2.5f);
     (i < 2 ? scene.train : scene.test).push_back(view);
   }
   return scene;

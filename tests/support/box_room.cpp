@@ -68,19 +68,19 @@ View box_room_view(std::string name, const Camera& camera) {
   View view;
   view.name = std::move(name);
   view.camera = camera;
-  view.rgb = view.truth.normal = Image(camera.width, camera.height, 3);
-  view.truth.depth = Image(camera.width, camera.height, 1);
+  view.rgb = view.truth["normal"] = Image(camera.width, camera.height, 3);
+  view.truth["depth"] = Image(camera.width, camera.height, 1);
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
       const Vec3d direction = camera.ray_in_world(x + 0.5, y + 0.5);
       const Hit wall = hit_wall(camera.center(), direction);
       const Hit pillar = hit_pillar(camera.center(), direction);
       const Hit& hit = pillar.t < wall.t ? pillar : wall;
-      view.truth.depth.at(x, y) = static_cast<float>(hit.t);
-      set(view.truth.normal, x, y, cast<float>(camera.rotation_cam_from_world * hit.normal));
+      view.truth["depth"].at(x, y) = static_cast<float>(hit.t);
+      set(view.truth["normal"], x, y, cast<float>(camera.rotation_cam_from_world * hit.normal));
       set(view.rgb, x, y, wall_color(camera.center() + hit.t * direction));
     }
-  view.priors.normal = view.truth.normal;
+  view.priors["normal"] = view.truth["normal"];
   return view;
 }
 
@@ -113,9 +113,9 @@ Image encode_normal(const Image& normal) {
 PointCloud wall_points(const std::vector<View>& views) {
   PointCloud points;
   for (const View& view : views)
-    for (int y = 1; y < view.truth.depth.height(); y += 8)  // tests change the camera's size
-      for (int x = 1; x < view.truth.depth.width(); x += 8) {
-        const double z = static_cast<double>(view.truth.depth.at(x, y));
+    for (int y = 1; y < view.truth["depth"].height(); y += 8)  // tests change the camera's size
+      for (int x = 1; x < view.truth["depth"].width(); x += 8) {
+        const double z = static_cast<double>(view.truth["depth"].at(x, y));
         const Vec3d p = view.camera.to_world(z * view.camera.ray_in_cam(x + 0.5, y + 0.5));
         points.positions.push_back(cast<float>(p));
         points.colors.push_back(wall_color(p));
@@ -170,11 +170,11 @@ void write_easyvolcap(const fs::path& folder, const std::vector<View>& views) {
   write_point_ply(folder / "sparse/0/points3D.ply", wall_points(views));
   for (const View& view : views) {
     write_png(folder / "images" / view.name / "000000.png", view.rgb);
-    write_exr(folder / "gt/depth" / (view.name + ".exr"), view.truth.depth);
-    write_exr(folder / "gt/normal" / (view.name + ".exr"), view.truth.normal, true);
+    write_exr(folder / "gt/depth" / (view.name + ".exr"), view.truth["depth"]);
+    write_exr(folder / "gt/normal" / (view.name + ".exr"), view.truth["normal"], true);
     const fs::path prior = fs::path(view.name) / "000000.png";
-    write_png(folder / "diffrens/normal" / prior, encode_normal(view.priors.normal));
-    Image relative = view.truth.depth;
+    write_png(folder / "diffrens/normal" / prior, encode_normal(view.priors["normal"]));
+    Image relative = view.truth["depth"];
     for (float& value : relative.values()) value *= 0.2f;
     write_png(folder / "diffrens/depth" / prior, relative);
   }

@@ -12,7 +12,7 @@
 namespace glint::test {
 
 // Views from a circle around the pillar, `step` radians apart, inside the room [0,4] x [0,3] x
-// [0,2.5] metres, z up. rgb, truth.depth, truth.normal and priors.normal are filled.
+// [0,2.5] metres, z up. rgb, the true depth and normal and the normal prior are filled.
 std::vector<View> box_room_views(int count, ImageSize size, double step = 0.15);
 
 // The views as an EasyVolcap folder with gt/, diffrens/normal, diffrens/depth and a point cloud.

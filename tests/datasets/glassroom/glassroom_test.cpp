@@ -70,8 +70,9 @@ TEST_CASE("A scene folder loads, and its maps agree with each other") {
       for (int c = 0; c < 3; ++c) {
         const float shown = std::clamp(srgb_encode(rgb.at(x, y, c)), 0.0f, 1.0f);
         REQUIRE(view.rgb.at(x, y, c) == Approx(shown).margin(0.51 / 255));
-        if (view.truth.glass.at(x, y) == 0) continue;
-        const float sum = view.truth.transmitted.at(x, y, c) + view.truth.reflected.at(x, y, c);
+        if (view.truth["glass"].at(x, y) == 0) continue;
+        const float sum =
+            view.truth["transmitted"].at(x, y, c) + view.truth["reflected"].at(x, y, c);
         REQUIRE(sum == Approx(rgb.at(x, y, c)).epsilon(1e-4).margin(1e-6));
       }
 }

@@ -101,7 +101,7 @@ TEST_CASE(
   int num_hits = 0;
   for (int i = 0; i < 64 * 36; ++i) {
     const int x = i % 64, y = i / 64;
-    if (out.depth.at(x, y) == 0.0f) continue;
+    if (out.maps["depth"].at(x, y) == 0.0f) continue;
     ++num_hits;
     CHECK(out.radiance.at(x, y) >= 0.5f - 1e-6f);
   }
@@ -212,9 +212,9 @@ TEST_CASE("A pane between two radiances shows R of one and (1 - R) tint of the o
     const Camera camera = narrow_camera({std::sin(a), 0, std::cos(a)}, {0, 0, 0});
     const PathTracerOutput out = tracer.render(camera, settings(4));
     CAPTURE(angle_deg);
-    CHECK(double(out.reflected.at(0, 0)) == Approx(reflectance * 2).epsilon(2e-4));
+    CHECK(double(out.maps["reflected"].at(0, 0)) == Approx(reflectance * 2).epsilon(2e-4));
     CHECK(
-        double(out.transmitted.at(0, 0)) ==
+        double(out.maps["transmitted"].at(0, 0)) ==
         Approx((1 - reflectance) * double(kTint) * 7).epsilon(2e-4)
     );
   }
@@ -238,8 +238,8 @@ TEST_CASE("Two parallel panes show the sum of all reflections between them") {
     auto s = settings(1024);
     s.seed = static_cast<std::uint64_t>(i);
     const PathTracerOutput out = tracer.render(camera, s);
-    CHECK(double(out.reflected.at(0, 0)) == Approx(r * kFront).epsilon(1e-3));
-    transmitted += mean_of(out.transmitted) / kSeeds;
+    CHECK(double(out.maps["reflected"].at(0, 0)) == Approx(r * kFront).epsilon(1e-3));
+    transmitted += mean_of(out.maps["transmitted"]) / kSeeds;
   }
   // One sample's spread is below |kBack - kFront|; 16 x 16 x 1024 samples.
   const double bound = 4 * (kBack - kFront) / std::sqrt(kSeeds * 16 * 1024.0);
@@ -277,9 +277,9 @@ TEST_CASE("Depth is planar z and the normal faces the camera in OpenCV axes") {
   const PathTracerOutput out = PathTracer(scene).render(camera, settings(1));
   for (int y = 0; y < 9; ++y)
     for (int x = 0; x < 16; ++x) {
-      CHECK(out.depth.at(x, y) == Approx(3).epsilon(1e-5));
-      CHECK(out.normal.at(x, y, 2) == Approx(-1).epsilon(1e-5));
-      CHECK(out.albedo.at(x, y) == 0.4f);
+      CHECK(out.maps["depth"].at(x, y) == Approx(3).epsilon(1e-5));
+      CHECK(out.maps["normal"].at(x, y, 2) == Approx(-1).epsilon(1e-5));
+      CHECK(out.maps["albedo"].at(x, y) == 0.4f);
     }
 }
 
@@ -292,9 +292,9 @@ TEST_CASE("A slanted plane has the depth and normal of its equation") {
   for (int y = 2; y < 9; ++y)
     for (int x = 0; x < 16; ++x) {
       const double depth = -2 / camera.ray_in_world(x + 0.5, y + 0.5).z;
-      CHECK(double(out.depth.at(x, y)) == Approx(depth).epsilon(1e-4));
+      CHECK(double(out.maps["depth"].at(x, y)) == Approx(depth).epsilon(1e-4));
       for (int c = 0; c < 3; ++c)
-        CHECK(double(out.normal.at(x, y, c)) == Approx(up_in_cam[c]).margin(1e-5));
+        CHECK(double(out.maps["normal"].at(x, y, c)) == Approx(up_in_cam[c]).margin(1e-5));
     }
 }
 
@@ -305,12 +305,12 @@ TEST_CASE("At glass the two components sum to the radiance to the bit, elsewhere
   for (int i = 0; i < 64 * 36; ++i)
     for (int c = 0; c < 3; ++c) {
       const int x = i % 64, y = i / 64;
-      const float t = out.transmitted.at(x, y, c), r = out.reflected.at(x, y, c);
-      if (out.glass.at(x, y) != 0) {
+      const float t = out.maps["transmitted"].at(x, y, c), r = out.maps["reflected"].at(x, y, c);
+      if (out.maps["glass"].at(x, y) != 0) {
         ++glass_pixels;
         CHECK(t + r == out.radiance.at(x, y, c));
-        CHECK(out.albedo.at(x, y, c) == 0.0f);
-        CHECK(out.basecolor.at(x, y, c) > 0.9f);
+        CHECK(out.maps["albedo"].at(x, y, c) == 0.0f);
+        CHECK(out.maps["basecolor"].at(x, y, c) > 0.9f);
       } else {
         CHECK(t == 0.0f);
         CHECK(r == 0.0f);
@@ -328,9 +328,9 @@ TEST_CASE("Depth and normal behind glass are those of the scene without panes") 
   const Camera camera = room_camera({64, 36});
   const PathTracerOutput a = PathTracer(with).render(camera, settings(1));
   const PathTracerOutput b = PathTracer(without).render(camera, settings(1));
-  CHECK(same_bytes(a.behind_depth, b.depth));
-  CHECK(same_bytes(a.behind_normal, b.normal));
-  CHECK(!same_bytes(a.depth, b.depth));
+  CHECK(same_bytes(a.maps["behind_depth"], b.maps["depth"]));
+  CHECK(same_bytes(a.maps["behind_normal"], b.maps["normal"]));
+  CHECK(!same_bytes(a.maps["depth"], b.maps["depth"]));
 }
 
 TEST_CASE("Any number of threads renders the same bytes, another seed or view does not") {
@@ -349,10 +349,10 @@ TEST_CASE("Any number of threads renders the same bytes, another seed or view do
   };
   const PathTracerOutput one = render(1, 5, 2), two = render(2, 5, 2);
   CHECK(same_bytes(one.radiance, two.radiance));
-  CHECK(same_bytes(one.transmitted, two.transmitted));
-  CHECK(same_bytes(one.reflected, two.reflected));
-  CHECK(same_bytes(one.depth, two.depth));
-  CHECK(same_bytes(one.normal, two.normal));
+  CHECK(same_bytes(one.maps["transmitted"], two.maps["transmitted"]));
+  CHECK(same_bytes(one.maps["reflected"], two.maps["reflected"]));
+  CHECK(same_bytes(one.maps["depth"], two.maps["depth"]));
+  CHECK(same_bytes(one.maps["normal"], two.maps["normal"]));
   CHECK(!same_bytes(one.radiance, render(2, 6, 2).radiance));
   CHECK(!same_bytes(one.radiance, render(2, 5, 3).radiance));
 }

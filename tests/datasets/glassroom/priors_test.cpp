@@ -26,25 +26,26 @@ struct Fake {
 
   Fake() {
     const Image rgb(kWidth, kHeight, 3, 0.0f), map(kWidth, kHeight, 1, 0.0f);
-    truth.normal = truth.behind_normal = truth.albedo = truth.basecolor = rgb;
-    truth.depth = truth.behind_depth = map;
-    truth.glass = MaskImage(kWidth, kHeight, 1);
+    truth.maps["normal"] = truth.maps["behind_normal"] = truth.maps["albedo"] =
+        truth.maps["basecolor"] = rgb;
+    truth.maps["depth"] = truth.maps["behind_depth"] = map;
+    truth.maps["glass"] = map;
     for (int y = 1; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) set_pixel(x, y, x > kWidth / 4 && x < 3 * kWidth / 4);
   }
   void set_pixel(int x, int y, bool glass) {
     const float z = 3 + 0.01f * static_cast<float>(x);
-    truth.behind_depth.at(x, y) = z;
-    truth.depth.at(x, y) = glass ? z - 1 : z;
-    truth.glass.at(x, y) = glass ? 255 : 0;
-    truth.normal.at(x, y, 2) = -1;
-    truth.behind_normal.at(x, y, 0) = -1;
+    truth.maps["behind_depth"].at(x, y) = z;
+    truth.maps["depth"].at(x, y) = glass ? z - 1 : z;
+    truth.maps["glass"].at(x, y) = glass ? 1.0f : 0.0f;
+    truth.maps["normal"].at(x, y, 2) = -1;
+    truth.maps["behind_normal"].at(x, y, 0) = -1;
     for (int c = 0; c < 3; ++c) {
-      truth.albedo.at(x, y, c) = glass ? 0.0f : 0.4f;
-      truth.basecolor.at(x, y, c) = glass ? 0.98f : 0.4f;
+      truth.maps["albedo"].at(x, y, c) = glass ? 0.0f : 0.4f;
+      truth.maps["basecolor"].at(x, y, c) = glass ? 0.98f : 0.4f;
     }
   }
-  Priors priors(std::uint64_t view, const PriorModel& model = {}) const {
+  MapSet priors(std::uint64_t view, const PriorModel& model = {}) const {
     return simulate_priors(truth, behind_albedo, model, 7, view);
   }
 };
@@ -63,10 +64,10 @@ TEST_CASE("Normal priors are unit vectors with the stated angular error") {
   double sum2 = 0;
   int count = 0;
   for (std::uint64_t view = 0; view < 24; ++view) {
-    const Image normal = fake.priors(view).normal;
+    const Image normal = fake.priors(view)["normal"];
     for (int y = 8; y < kHeight; y += 7)
       for (int x = 4; x < kWidth / 5; x += 7, ++count) {
-        sum2 += std::pow(angle_deg(normal, fake.truth.normal, x, y), 2);
+        sum2 += std::pow(angle_deg(normal, fake.truth.maps["normal"], x, y), 2);
         const float* n = normal.pixel(x, y);
         REQUIRE(std::hypot(n[0], n[1], n[2]) == Approx(1.0f).margin(1e-4));
       }
@@ -78,11 +79,11 @@ TEST_CASE("Priors see through glass at the stated rate, all maps in the same pat
   const Fake fake;
   int failures = 0, agree = 0, total = 0;
   for (std::uint64_t view = 0; view < 60; ++view) {
-    const Priors priors = fake.priors(view);
+    const MapSet priors = fake.priors(view);
     for (int y = 10; y < kHeight - 10; y += 5)
       for (int x = kWidth / 4 + 8; x < 3 * kWidth / 4 - 8; x += 5, ++total) {
-        const bool normal_fails = priors.normal.at(x, y, 0) < -0.7f;
-        const bool albedo_fails = priors.albedo.at(x, y) > 0.35f;
+        const bool normal_fails = priors["normal"].at(x, y, 0) < -0.7f;
+        const bool albedo_fails = priors["albedo"].at(x, y) > 0.35f;
         failures += normal_fails;
         agree += normal_fails == albedo_fails;
       }
@@ -95,18 +96,18 @@ TEST_CASE("Glass is nearly black in the albedo prior and bright in the base colo
   const Fake fake;
   PriorModel model;
   model.failure_rate = 1e-9f;
-  const Priors priors = fake.priors(3, model);
+  const MapSet priors = fake.priors(3, model);
   for (int y = 10; y < kHeight - 10; ++y)
     for (int x = kWidth / 4 + 6; x < 3 * kWidth / 4 - 6; ++x)
       for (int c = 0; c < 3; ++c) {
-        REQUIRE(priors.albedo.at(x, y, c) < 0.05f);
-        REQUIRE(priors.basecolor.at(x, y, c) > 0.6f);
+        REQUIRE(priors["albedo"].at(x, y, c) < 0.05f);
+        REQUIRE(priors["basecolor"].at(x, y, c) > 0.6f);
       }
 }
 
 TEST_CASE("Opaque albedo priors are the sRGB encoding of the truth within the noise") {
   const Fake fake;
-  const Image albedo = fake.priors(1).albedo;
+  const Image albedo = fake.priors(1)["albedo"];
   const float expected = srgb_encode(0.4f);
   double sum2 = 0;
   int count = 0;
@@ -120,11 +121,11 @@ TEST_CASE("Opaque albedo priors are the sRGB encoding of the truth within the no
 TEST_CASE("Depth priors are nearly affine in the true depth, larger is farther, 0 is invalid") {
   const Fake fake;
   for (std::uint64_t view = 0; view < 6; ++view) {
-    const Image depth = fake.priors(view).depth;
+    const Image depth = fake.priors(view)["depth"];
     double sz = 0, sp = 0, szz = 0, spp = 0, szp = 0, n = 0;
     for (int y = 4; y < kHeight; ++y)
       for (int x = 0; x < kWidth / 5; ++x) {
-        const double z = static_cast<double>(fake.truth.depth.at(x, y)),
+        const double z = static_cast<double>(fake.truth.maps["depth"].at(x, y)),
                      p = static_cast<double>(depth.at(x, y));
         sz += z, sp += p, szz += z * z, spp += p * p, szp += z * p, n += 1;
       }
@@ -154,7 +155,8 @@ TEST_CASE("Encoded depth keeps sixteen bits through an eight-bit file") {
 
 TEST_CASE("Priors are a function of seed and view") {
   const Fake fake;
-  const Image a = fake.priors(2).normal, b = fake.priors(2).normal, c = fake.priors(3).normal;
+  const Image a = fake.priors(2)["normal"], b = fake.priors(2)["normal"],
+              c = fake.priors(3)["normal"];
   CHECK(std::equal(a.values().begin(), a.values().end(), b.values().begin()));
   CHECK_FALSE(std::equal(a.values().begin(), a.values().end(), c.values().begin()));
 }

@@ -161,7 +161,7 @@ TEST_CASE("Transport between the sets is the same on a GPU") {
         {"image", read(image)},
         {"origins", read(buffer.reflected.origins)},
         {"directions", read(buffer.reflected.directions)},
-        {"mirrored", read(buffer.mirrored)},
+        {"specularity", read(buffer.specularity)},
         {"gradient of transmission", read(dL_dlayers.transmission)},
         {"gradient of features", read(g.features)},
         {"gradient of normal", read(g.normal)},
@@ -191,8 +191,8 @@ TEST_CASE("Losses on depth and normals are the same on a GPU") {
     View view;
     view.camera = test_camera();
     view.rgb = noise(3, 3, 0, 1);
-    view.priors.depth = noise(1, 4, 0.2f, 1);
-    view.priors.normal = unit_vectors(5);
+    view.priors["depth"] = noise(1, 4, 0.2f, 1);
+    view.priors["normal"] = unit_vectors(5);
     scene.train = {view};
     GeometryLossConfig config;
     config.lambda_depth = config.lambda_normal = config.lambda_consistency = config.lambda_smooth =

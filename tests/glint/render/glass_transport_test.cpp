@@ -163,6 +163,6 @@ TEST_CASE("pixels without a surface mirror nothing and show the interface as it 
   std::fill(f.interface.features.values().begin(), f.interface.features.values().end(), 0.0f);
   GlassTransport transport(f.options);
   const GlassBuffer& buffer = transport.read_interface(f.camera, f.interface);
-  for (const float value : buffer.mirrored.values()) CHECK(value == 0.0f);
+  for (const float value : buffer.specularity.values()) CHECK(value == 0.0f);
   for (const float value : buffer.reflected.directions.values()) CHECK(value == 0.0f);
 }

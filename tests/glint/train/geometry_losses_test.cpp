@@ -29,8 +29,8 @@ struct Fixture {
     View view;
     view.camera = random_camera(rng, kSize);
     view.rgb = random_map(rng, 3, 0, 1);
-    view.priors.depth = random_map(rng, 1, 1, 2);
-    view.priors.normal = random_map(rng, 3, -1, 1);
+    view.priors["depth"] = random_map(rng, 1, 1, 2);
+    view.priors["normal"] = random_map(rng, 3, -1, 1);
     scene.name = "test";
     scene.train = {view};
     output.alpha = random_map(rng, 1, 0.5f, 1);
@@ -105,7 +105,7 @@ TEST_CASE("The gate of the normal prior closes at its iteration") {
 TEST_CASE("A prior that a view lacks switches its loss off, with a warning") {
   Fixture f;
   f.scene.train.push_back(f.scene.train.front());
-  f.scene.train.back().priors.depth = {};
+  f.scene.train.back().priors["depth"] = {};
   GeometryLossConfig config;
   config.lambda_depth = config.lambda_normal = 1;
   GeometryLosses losses;

@@ -25,7 +25,7 @@ class Exploding final : public Method {
     stats.terms["sharpness"] = stats.loss;
     return stats;
   }
-  RenderOutput render(const Camera&) override { return {}; }
+  MapSet render(const Camera&) override { return {}; }
   void save(const std::string& folder) const override {
     write_file(fs::path(folder) / "state", "good");
   }

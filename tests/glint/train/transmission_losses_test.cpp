@@ -31,7 +31,7 @@ struct Fixture {
     View view;
     view.camera = look_at({0, 0, 0}, {0, 0, 1}, {0, -1, 0}, kSize, 60);
     view.rgb = constant(3, 0.3f);
-    view.priors.albedo = constant(3, 0.01f);
+    view.priors["albedo"] = constant(3, 0.01f);
     scene.name = "test";
     scene.train = {view};
     interface.normal = constant(3, 0);
@@ -118,11 +118,11 @@ TEST_CASE("Plausibility moves the set to the interface where it is opaque, and o
   for (const bool opaque : {false, true}) {
     Fixture f(2.5f);
     View& view = f.scene.train[0];
-    view.priors.basecolor = constant(3, 0.5f);
-    view.priors.albedo = constant(3, opaque ? 0.5f : 0.01f);
-    view.priors.normal = constant(3, 0);
+    view.priors["basecolor"] = constant(3, 0.5f);
+    view.priors["albedo"] = constant(3, opaque ? 0.5f : 0.01f);
+    view.priors["normal"] = constant(3, 0);
     for (std::size_t i = 0; i < kSize.num_pixels(); ++i)
-      view.priors.normal.data()[3 * i] = -1;  // across
+      view.priors["normal"].data()[3 * i] = -1;  // across
     for (std::size_t i = 0; i < kSize.num_pixels(); ++i)
       f.buffer.depth.data()[i] = 1.8f + 0.01f * static_cast<float>(i % 12);
     TransmissionLossConfig config;

@@ -139,7 +139,7 @@ TEST_CASE("Views have LPIPS where weights are, and say that the others have none
   const Image prediction = golden::prediction_image(kWidth, kHeight, 3);
   const Image reference = golden::reference_image(kWidth, kHeight, 3);
   ViewPair pair;
-  pair.rgb = prediction, pair.true_rgb = reference;
+  pair.rendered["rgb"] = prediction, pair.truth["rgb"] = reference;
   const auto scores = evaluate_view(pair);
   Lpips lpips(lpips_weights_at(files.folder.path(), "squeeze"));
   CHECK(scores.at("lpips-squeeze") == lpips.distance(prediction, reference));

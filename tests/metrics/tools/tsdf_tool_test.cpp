@@ -32,8 +32,8 @@ class Maps {
  public:
   Maps() {
     for (const View& view : small_room().test) {
-      write_exr(folder_ / "maps" / (view.name + "_z.exr"), view.truth.depth);
-      Image mask(view.truth.depth.width(), view.truth.depth.height(), 1);
+      write_exr(folder_ / "maps" / (view.name + "_z.exr"), view.truth["depth"]);
+      Image mask(view.truth["depth"].width(), view.truth["depth"].height(), 1);
       for (int y = 0; y < mask.height(); ++y)
         for (int x = 0; x < mask.width() / 2; ++x) mask.at(x, y) = 1;
       write_png(folder_ / "masks" / (view.name + ".png"), mask);
@@ -44,9 +44,9 @@ class Maps {
   static std::size_t num_depths(double part) {
     std::size_t count = 0;
     for (const View& view : small_room().test)
-      for (int y = 0; y < view.truth.depth.height(); ++y)
-        for (int x = 0; x < part * view.truth.depth.width(); ++x)
-          count += view.truth.depth.at(x, y) > 0;
+      for (int y = 0; y < view.truth["depth"].height(); ++y)
+        for (int x = 0; x < part * view.truth["depth"].width(); ++x)
+          count += view.truth["depth"].at(x, y) > 0;
     return count;
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }

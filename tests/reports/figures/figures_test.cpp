@@ -17,15 +17,15 @@ namespace {
 
 constexpr int kWidth = 16, kHeight = 12;
 
-RenderOutput output_of(float grey, bool layered) {
-  RenderOutput output;
-  output.rgb = Image(kWidth, kHeight, 3, grey);
-  output.depth = Image(kWidth, kHeight, 1, 2.0f);
+MapSet output_of(float grey, bool layered) {
+  MapSet output;
+  output["rgb"] = Image(kWidth, kHeight, 3, grey);
+  output["depth"] = Image(kWidth, kHeight, 1, 2.0f);
   if (!layered) return output;
-  for (const char* name : {"transparency", "behind_depth"})
-    output.layers[name] = Image(kWidth, kHeight, 1, 0.5f);
-  for (const char* name : {"transmitted", "reflected"})
-    output.layers[name] = Image(kWidth, kHeight, 3, 0.25f);
+  for (const MapId map : {MapId("transparency"), MapId("behind_depth")})
+    output[map] = Image(kWidth, kHeight, 1, 0.5f);
+  for (const MapId map : {MapId("transmitted"), MapId("reflected")})
+    output[map] = Image(kWidth, kHeight, 3, 0.25f);
   return output;
 }
 
@@ -59,7 +59,7 @@ FigureScene scene_of(std::map<std::string, LayerMaps> methods) {
   FigureScene scene;
   scene.name = "room_1";
   scene.view = "0002";
-  scene.truth["render"] = Image(kWidth, kHeight, 3, 0.5f);
+  scene.truth["rgb"] = Image(kWidth, kHeight, 3, 0.5f);
   scene.methods = std::move(methods);
   return scene;
 }
@@ -163,10 +163,10 @@ TEST_CASE("a damaged render is missing in its panel, not an error") {
 TEST_CASE("the view with the most glass is shown, without glass the middle one") {
   std::vector<View> views = fake_scene("room_1").test;
   CHECK(figure_view(views) == 1);
-  views[0].truth.glass = MaskImage(kWidth, kHeight, 1, 0);
-  views[1].truth.glass = views[0].truth.glass;
+  views[0].truth["glass"] = Image(kWidth, kHeight, 1);
+  views[1].truth["glass"] = views[0].truth["glass"];
   CHECK(figure_view(views) == 1);
-  views[0].truth.glass.at(3, 3) = 255;
+  views[0].truth["glass"].at(3, 3) = 1;
   CHECK(figure_view(views) == 0);
 }
 
@@ -210,15 +210,15 @@ TEST_CASE("each crop has its colour around the window and around the enlarged pa
 
 TEST_CASE("columns of a figure are the truth and every method, empty where one has no map") {
   const LayerMaps with_depth = {
-      {"render", Image(kWidth, kHeight, 3)},
+      {"rgb", Image(kWidth, kHeight, 3)},
       {"error", Image(kWidth, kHeight, 1, 0.1f)},
       {"depth", Image(kWidth, kHeight, 1, 1.0f)}};
-  const LayerMaps without = {{"render", Image(kWidth, kHeight, 3)}};
+  const LayerMaps without = {{"rgb", Image(kWidth, kHeight, 3)}};
   const PictureGrid grid =
       qualitative_figure({scene_of({{"a", with_depth}, {"a/variant", without}, {"b", without}})});
-  CHECK(grid.titles == std::vector<std::string>{"truth", "a", "b"});
+  CHECK(grid.titles == std::vector<std::string>{"Truth", "a", "b"});
   REQUIRE(grid.rows.size() == 4);  // image and depth with their crops; no normals
-  CHECK(grid.row_titles[2] == "room_1\ndepth");
+  CHECK(grid.row_titles[2] == "room_1\nDepth");
   CHECK(grid.rows[2][0].empty());
   CHECK_FALSE(grid.rows[2][1].empty());
   CHECK(grid.rows[2][2].empty());
@@ -226,12 +226,12 @@ TEST_CASE("columns of a figure are the truth and every method, empty where one h
 }
 
 TEST_CASE("the full model stands first in the ablation, variants keep the table's order") {
-  const LayerMaps maps = {{"render", Image(kWidth, kHeight, 3)}};
+  const LayerMaps maps = {{"rgb", Image(kWidth, kHeight, 3)}};
   const auto scene =
       scene_of({{"glint", maps}, {"glint/no-lgeo", maps}, {"glint/no-refl", maps}, {"2dgs", maps}});
   CHECK(
       ablation_figure({scene}).titles ==
-      std::vector<std::string>{"truth", "Full model", "w/o G_refl", "w/o L_geo"}
+      std::vector<std::string>{"Truth", "Full model", "w/o G_refl", "w/o L_geo"}
   );
   CHECK(ablation_figure({scene_of({{"glint", maps}})}).rows.empty());
 }

@@ -13,7 +13,7 @@ using namespace glint;
 namespace {
 
 Image ray_lengths(const View& view) {
-  Image depth = view.truth.depth;
+  Image depth = view.truth["depth"];
   for (int y = 0; y < depth.height(); ++y)
     for (int x = 0; x < depth.width(); ++x)
       depth.at(x, y) *= static_cast<float>(length(view.camera.ray_in_cam(x + 0.5, y + 0.5)));
@@ -21,14 +21,14 @@ Image ray_lengths(const View& view) {
 }
 
 Image opengl_normals(const View& view) {
-  Image normals = view.truth.normal;
+  Image normals = view.truth["normal"];
   for (std::size_t i = 0; i < normals.num_pixels(); ++i)
     for (const int c : {1, 2}) normals.data()[3 * i + static_cast<std::size_t>(c)] *= -1;
   return normals;
 }
 
 Image world_normals(const View& view) {
-  Image normals = view.truth.normal;
+  Image normals = view.truth["normal"];
   for (std::size_t i = 0; i < normals.num_pixels(); ++i) {
     float* n = normals.data() + 3 * i;
     const Vec3d world = transpose_times(

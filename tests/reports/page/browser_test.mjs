@@ -115,9 +115,9 @@ async function testModesAndLayers(page) {
     "depth",
     "normal",
     "angle",
-    "t",
-    "k_s",
-    "base",
+    "transparency",
+    "specularity",
+    "interface",
     "transmission",
     "reflection",
   ]) {
@@ -144,7 +144,7 @@ async function testModesAndLayers(page) {
   await page.keyboard.press("f");
   await page.waitForSelector('.viewer[data-mode="flicker"]');
   await page.keyboard.press("o");
-  await page.click('[data-value="render"]');
+  await page.click('[data-value="rgb"]');
   await page.keyboard.press("s");
   const current = () => page.locator(".frame[aria-current]").getAttribute("data-view");
   const first = await current();

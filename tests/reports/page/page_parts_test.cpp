@@ -112,11 +112,11 @@ TEST_CASE("an angle of zero degrees is a value, a missing one is none") {
 }
 
 TEST_CASE("the probe clamps colours to what is scored") {
-  Image render(1, 1, 3);
-  render.at(0, 0, 0) = -0.5f;
-  render.at(0, 0, 1) = 0.5f;
-  render.at(0, 0, 2) = 7.0f;
-  const auto bytes = unpacked(probe_values({{"render", render}}, 1)["render"]["data"], 3);
+  Image rgb(1, 1, 3);
+  rgb.at(0, 0, 0) = -0.5f;
+  rgb.at(0, 0, 1) = 0.5f;
+  rgb.at(0, 0, 2) = 7.0f;
+  const auto bytes = unpacked(probe_values({{"rgb", rgb}}, 1)["rgb"]["data"], 3);
   CHECK(bytes == std::vector<std::uint8_t>{0, 128, 255});
 }
 

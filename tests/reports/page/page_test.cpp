@@ -49,10 +49,10 @@ void write_run(const fs::path& out, const Record& record) {
   spec.dataset_folder = "data of it's own";
   spec.scene = record.cell.scene;
   write_run_spec(spec, Json::object());
-  RenderOutput output;
-  output.rgb = Image(16, 12, 3, 0.5f);
-  output.depth = Image(16, 12, 1, 2.0f);
-  output.layers["transparency"] = Image(16, 12, 1, 0.25f);
+  MapSet output;
+  output["rgb"] = Image(16, 12, 3, 0.5f);
+  output["depth"] = Image(16, 12, 1, 2.0f);
+  output["transparency"] = Image(16, 12, 1, 0.25f);
   Json metrics = {{"views", Json::array()}};
   for (const View& view : fake_scene("").test) {
     write_render(view_folder(spec.folder, view.name), output);
@@ -122,13 +122,13 @@ TEST_CASE("a store becomes pictures, values, scores, curves and commands of ever
   REQUIRE(scene["views"].size() == 2);
   CHECK(scene["views"][0]["name"] == "0002");
   CHECK(scene["views"][0]["size"] == Json({16, 12}));
-  CHECK(scene["views"][0]["truth"] == Json({"render", "depth"}));
-  CHECK(scene["views"][0]["runs"][0] == Json({"render", "error", "depth", "t"}));
+  CHECK(scene["views"][0]["truth"] == Json({"rgb", "depth"}));
+  CHECK(scene["views"][0]["runs"][0] == Json({"rgb", "error", "depth", "transparency"}));
   CHECK(scene["metrics"] == Json({"psnr"}));
   CHECK(scene["runs"][0]["scores"] == Json::parse("[[20.0], [20.0]]"));
   CHECK(scene["runs"][0]["curve"]["loss"] == Json({0.5}));  // the torn line is left out
 
-  CHECK(fs::exists(store.asset("pictures/s0/v0_t_render.png")));
+  CHECK(fs::exists(store.asset("pictures/s0/v0_t_rgb.png")));
   const Image error = read_image(store.asset("pictures/s0/v1_r0_error.png"), 3);
   CHECK(error.size() == ImageSize{16, 12});
   const Json probe = part(store, "probe_0_1");
@@ -171,7 +171,7 @@ TEST_CASE("what is missing is said and never stops the page") {
   const Json scene = part(store, "scene_0");
   CHECK(scene["views"][0]["runs"][1].empty());
   CHECK(scene["views"][0]["runs"][2].empty());
-  CHECK(scene["views"][1]["runs"][2] == Json({"depth", "t"}));
+  CHECK(scene["views"][1]["runs"][2] == Json({"depth", "transparency"}));
   CHECK(scene["runs"][2]["scores"] == Json::parse("[null, null]"));
   CHECK(scene["runs"][2]["meshes"].empty());
   CHECK(scene["runs"][1]["curve"].is_null());
@@ -195,8 +195,8 @@ TEST_CASE("without the data there is no reference, and the renders are shown all
   CHECK(scene["note"] == "No reference: the folder is gone");
   CHECK(scene["views"][0]["truth"].empty());
   CHECK(scene["views"][0]["size"] == Json({16, 12}));
-  CHECK(scene["views"][0]["runs"][0] == Json({"render", "depth", "t"}));
-  CHECK(fs::exists(store.asset("pictures/s0/v0_r0_render.png")));
+  CHECK(scene["views"][0]["runs"][0] == Json({"rgb", "depth", "transparency"}));
+  CHECK(fs::exists(store.asset("pictures/s0/v0_r0_rgb.png")));
 }
 
 TEST_CASE("a torn last record and an empty store still give a page") {
@@ -247,7 +247,7 @@ TEST_CASE("a single file needs nothing beside it") {
   CHECK(!fs::exists(store.options.folder / "report" / "assets"));
   CHECK(page.find("src=\"assets") == std::string::npos);
   CHECK(
-      page.find("\"pictures/s0/v0_r0_render.png\":\"data:image/png;base64,iVBORw0KGgo") !=
+      page.find("\"pictures/s0/v0_r0_rgb.png\":\"data:image/png;base64,iVBORw0KGgo") !=
       std::string::npos
   );
   CHECK(page.find("GLINT_MESH_VIEW") != std::string::npos);
@@ -275,7 +275,7 @@ TEST_CASE("records that cannot be read leave the page before as it was") {
 TEST_CASE("depths of all methods of a scene have one range") {
   const Store store;
   Scene scene = fake_scene("room_1");
-  for (View& view : scene.test) view.truth.depth = {};
+  for (View& view : scene.test) view.truth["depth"] = {};
   std::vector<fs::path> runs;
   for (const char* method : {"near", "far"}) {
     const Record record = record_of("room_1", method);
@@ -295,10 +295,10 @@ TEST_CASE("the colour bar has the colours of the pictures") {
   for (const Json& layer : layers_json(scale)) {
     if (!layer.contains("colors")) continue;
     INFO(layer["id"]);
-    const auto it =
-        std::find_if(page_layers().begin(), page_layers().end(), [&](const PageLayer& candidate) {
-          return layer["id"] == candidate.id;
-        });
+    const auto layers = page_layers();
+    const auto it = std::find_if(layers.begin(), layers.end(), [&](const PageLayer& candidate) {
+      return layer["id"] == candidate.id;
+    });
     REQUIRE(layer["colors"].size() == 256);
     const float low = layer["low"].get<float>(), high = layer["high"].get<float>();
     for (const int step : {1, 100, 255}) {

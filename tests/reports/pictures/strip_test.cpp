@@ -16,24 +16,21 @@ namespace {
 
 constexpr int kWidth = 16, kHeight = 12;
 
-// The test views of the fake scene, as a run folder of a method that gives `layers`.
-std::vector<View> render_views(const fs::path& run, const std::map<std::string, Image>& layers) {
+// The test views of the fake scene, as a run folder of a method that gives `output`, too.
+std::vector<View> render_views(const fs::path& run, MapSet output) {
   const std::vector<View> views = fake_scene("room_1").test;
-  RenderOutput output;
-  output.rgb = Image(kWidth, kHeight, 3, 0.5f);
-  output.depth = Image(kWidth, kHeight, 1, 2.0f);
-  output.layers = layers;
+  output["rgb"] = Image(kWidth, kHeight, 3, 0.5f);
+  output["depth"] = Image(kWidth, kHeight, 1, 2.0f);
   for (const View& view : views) write_render(view_folder(run, view.name), output);
   return views;
 }
 
-std::map<std::string, Image> all_layers() {
-  std::map<std::string, Image> layers;
-  for (const char* name : {"transparency", "specularity", "behind_depth"})
-    layers[name] = Image(kWidth, kHeight, 1, 0.25f);
-  for (const char* name : {"interface", "transmission", "reflection", "transmitted", "reflected"})
-    layers[name] = Image(kWidth, kHeight, 3, 0.75f);
-  return layers;
+MapSet decomposed() {
+  MapSet output;
+  for (const MapRow& row : maps())
+    if (!row.shown_file().empty() && row.kind != MapKind::kNormal)
+      output[row] = Image(kWidth, kHeight, row.channels(), 0.25f);
+  return output;
 }
 
 }  // namespace
@@ -43,35 +40,37 @@ TEST_CASE("a strip leaves out what the method does not render") {
   const auto views = render_views(run.path(), {});
   CHECK(
       strip_titles(run.path(), views) ==
-      Titles{"truth", "rendered", "error x 4", "interface depth", "true depth"}
+      Titles{"truth", "rendered", "error x 4", "Depth", "Depth, truth"}
   );
 }
 
 TEST_CASE("a strip shows every map of a decomposition, beside its truth where there is any") {
   const test::TempFolder run;
-  auto views = render_views(run.path(), all_layers());
-  views[1].truth.behind_depth = Image(kWidth, kHeight, 1, 4.0f);
-  views[0].truth.depth = views[1].truth.depth = {};
+  auto views = render_views(run.path(), decomposed());
+  views[1].truth["behind_depth"] = Image(kWidth, kHeight, 1, 4.0f);
+  views[0].truth["depth"] = views[1].truth["depth"] = {};
   CHECK(
       strip_titles(run.path(), views) ==
       Titles{
           "truth",
           "rendered",
           "error x 4",
-          "base colour",
-          "transmission",
-          "reflection",
-          "transparency t",
-          "specularity k_s",
-          "interface depth",
-          "transmission depth",
-          "true depth behind"}
+          "Depth",
+          "Transparency t",
+          "Specularity k_s",
+          "Depth behind glass",
+          "Depth behind glass, truth",
+          "Interface",
+          "Transmission",
+          "Reflection",
+          "Transmitted part",
+          "Reflected part"}
   );
 }
 
 TEST_CASE("strips of a run are written for each view and for the run, alike in width") {
   const test::TempFolder run;
-  const auto views = render_views(run.path(), all_layers());
+  const auto views = render_views(run.path(), decomposed());
   write_strips(run.path(), views);
   const Image all = read_image(run / "strip.png", 3);
   for (const View& view : views) {
@@ -94,22 +93,22 @@ TEST_CASE("errors are shown with the gain that the strip prints") {
 TEST_CASE("depth has the scale of the true depths, whatever a method rendered") {
   const test::TempFolder run;
   auto views = render_views(run.path(), {});
-  views[0].truth.depth = Image(kWidth, kHeight, 1, 1.5f);
-  views[1].truth.behind_depth = Image(kWidth, kHeight, 1, 5.5f);
-  views[1].truth.behind_depth.at(0, 0) = 0;  // none
+  views[0].truth["depth"] = Image(kWidth, kHeight, 1, 1.5f);
+  views[1].truth["behind_depth"] = Image(kWidth, kHeight, 1, 5.5f);
+  views[1].truth["behind_depth"].at(0, 0) = 0;  // none
   const DepthScale scale = depth_scale({run.path()}, views);
   CHECK(scale.from_truth);
   CHECK(scale.low == 1.5f);
   CHECK(scale.high == 5.5f);
   const test::TempFolder other;
-  render_views(other.path(), all_layers());
+  render_views(other.path(), decomposed());
   CHECK(depth_scale({other.path()}, views).high == scale.high);
 }
 
 TEST_CASE("without true depths, the rendered ones give the scale") {
   const test::TempFolder run;
   auto views = render_views(run.path(), {});
-  for (View& view : views) view.truth.depth = {};
+  for (View& view : views) view.truth["depth"] = {};
   const DepthScale scale = depth_scale({run.path()}, views);
   CHECK_FALSE(scale.from_truth);
   CHECK(scale.low == 2.0f);
@@ -119,8 +118,8 @@ TEST_CASE("without true depths, the rendered ones give the scale") {
 TEST_CASE("one stray depth in a hundred does not set the scale") {
   const test::TempFolder run;
   auto views = render_views(run.path(), {});
-  views[0].truth.depth.at(3, 3) = 1000.0f;
-  views[0].truth.depth.at(4, 4) = 0.01f;
+  views[0].truth["depth"].at(3, 3) = 1000.0f;
+  views[0].truth["depth"].at(4, 4) = 0.01f;
   const DepthScale scale = depth_scale({run.path()}, views);
   CHECK(scale.low == 2.5f);
   CHECK(scale.high == 2.5f);

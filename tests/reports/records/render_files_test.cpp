@@ -23,27 +23,24 @@ Image map(float value) { return Image(kWidth, kHeight, 1, value); }
 View glass_view() {
   View view;
   view.rgb = grey(0.8f);
-  view.truth.glass = MaskImage(kWidth, kHeight, 1, 255);
-  view.truth.behind_depth = map(4.0f);
-  view.truth.transmitted = grey(3.0f);
-  view.truth.reflected = grey(1.0f);
+  view.truth["glass"] = map(1);
+  view.truth["behind_depth"] = map(4.0f);
+  view.truth["transmitted"] = grey(3.0f);
+  view.truth["reflected"] = grey(1.0f);
   return view;
 }
 
-RenderOutput decomposed() {
-  RenderOutput output;
-  output.rgb = grey(0.8f);
-  output.layers = {
-      {"transparency", map(0.9f)},
-      {"specularity", map(0.1f)},
-      {"behind_depth", map(5.0f)},
-      {"transmitted", grey(0.5f)},
-      {"reflected", grey(0.3f)},
-      {"interface", grey(0.2f)},
-      {"transmission", grey(0.7f)},
-      {"reflection", grey(2.0f)},
-      {"uncertainty", map(7.0f)},
-      {"not_rendered", {}}};
+MapSet decomposed() {
+  MapSet output;
+  output["rgb"] = grey(0.8f);
+  output["transparency"] = map(0.9f);
+  output["specularity"] = map(0.1f);
+  output["behind_depth"] = map(5.0f);
+  output["transmitted"] = grey(0.5f);
+  output["reflected"] = grey(0.3f);
+  output["interface"] = grey(0.2f);
+  output["transmission"] = grey(0.7f);
+  output["reflection"] = grey(2.0f);
   return output;
 }
 
@@ -59,9 +56,8 @@ TEST_CASE("measured layers are EXR under their names, pictures of a set's radian
     CHECK(fs::exists(folder / (std::string(name) + ".png")));
     CHECK_FALSE(fs::exists(folder / (std::string(name) + ".exr")));
   }
-  CHECK(read_image(folder / "uncertainty.exr", 1).at(5, 3) == 7.0f);
   CHECK(read_image(folder / "transmitted.exr", 3).at(5, 3, 2) == 0.5f);
-  CHECK_FALSE(fs::exists(folder / "not_rendered.exr"));
+  CHECK_FALSE(fs::exists(folder / "depth.exr"));  // not rendered
 }
 
 TEST_CASE("a decomposition is scored from its files") {
@@ -76,8 +72,8 @@ TEST_CASE("a decomposition is scored from its files") {
 
 TEST_CASE("scores of layers that were not rendered are absent") {
   const test::TempFolder folder;
-  RenderOutput output;
-  output.rgb = grey(0.8f);
+  MapSet output;
+  output["rgb"] = grey(0.8f);
   write_render(folder.path(), output);
   const Scores scores = score_view(folder.path(), glass_view());
   CHECK(scores.count("psnr") == 1);
@@ -94,11 +90,21 @@ TEST_CASE("scores of layers that were not rendered are absent") {
 TEST_CASE("a layer of another size or with two channels is refused by name") {
   const test::TempFolder folder;
   for (const Image& wrong : {Image(kWidth, kHeight + 1, 1), Image(kWidth, kHeight, 2)}) {
-    RenderOutput output = decomposed();
-    output.layers["specularity"] = wrong;
+    MapSet output = decomposed();
+    output["specularity"] = wrong;
     const std::string error =
         test::error_of(ExitCode::kBadPrediction, [&] { write_render(folder.path(), output); });
     CHECK_THAT(error, Catch::Contains("specularity"));
-    CHECK_THAT(error, Catch::Contains("expected 6x4"));
+    CHECK_THAT(error, Catch::Contains("expected 6x4x1"));
   }
+}
+
+TEST_CASE("a map that no file is for is refused by name") {
+  const test::TempFolder folder;
+  MapSet output = decomposed();
+  output["albedo"] = grey(0.5f);
+  CHECK_THAT(
+      test::error_of(ExitCode::kBadPrediction, [&] { write_render(folder.path(), output); }),
+      Catch::Contains("albedo, for which the table of maps")
+  );
 }

@@ -28,9 +28,9 @@ export function sortedViews(scene, { run, metric, order }) {
 
 function thumbnail(state, view) {
   const { truth, runs } = state.scene.views[view];
-  const owner = truth.includes("render")
+  const owner = truth.includes("rgb")
     ? "t"
-    : runs?.[state.run]?.includes("render")
+    : runs?.[state.run]?.includes("rgb")
       ? `r${state.run}`
       : null;
   if (!owner) return h("span", { class: "thumb missing" }, "missing");
@@ -38,7 +38,7 @@ function thumbnail(state, view) {
     class: "thumb",
     loading: "lazy",
     alt: "",
-    src: pictureUrl(state.index, view, owner, "render"),
+    src: pictureUrl(state.index, view, owner, "rgb"),
   });
 }
 

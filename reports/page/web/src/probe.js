@@ -2,13 +2,8 @@
 import { codes16, loadPart, runTitle, unpack } from "./data.js";
 import { h, replace } from "./dom.js";
 
-const kLayers = [
-  ["depth", "Depth (m)", 3],
-  ["behind", "Behind (m)", 3],
-  ["angle", "Angle error (°)", 1],
-  ["t", "t", 3],
-  ["k_s", "k_s", 3],
-];
+// Layers of one value a pixel; colours and errors have columns of their own.
+const valueLayers = (scene) => scene.layers.filter(({ decimals }) => decimals !== undefined);
 
 async function decodeLayer({ bits, high, data }) {
   const bytes = await unpack(data);
@@ -32,7 +27,7 @@ function valueAt(layer, i) {
 }
 
 const colorAt = (layers, i) =>
-  layers.render ? [0, 1, 2].map((c) => valueAt(layers.render, 3 * i + c)) : null;
+  layers.rgb ? [0, 1, 2].map((c) => valueAt(layers.rgb, 3 * i + c)) : null;
 
 // Values of one view, decoded.
 export class ViewValues {
@@ -58,14 +53,13 @@ export class ViewValues {
       run >= 0 && color && truth
         ? color.reduce((sum, c, k) => sum + Math.abs(c - truth[k]) / 3, 0)
         : null;
-    const scalars = Object.fromEntries(kLayers.map(([id]) => [id, valueAt(layers[id], i)]));
-    return { color, error, ...scalars };
+    return { color, error, of: (id) => valueAt(layers[id], i) };
   }
 }
 
 const number = (value, decimals) => (value === null ? "–" : value.toFixed(decimals));
 
-function probeRow(title, value) {
+function probeRow(scene, title, value) {
   const css = value.color ? `rgb(${value.color.map((c) => Math.round(c * 255)).join(" ")})` : null;
   return h(
     "tr",
@@ -78,7 +72,7 @@ function probeRow(title, value) {
       value.color ? value.color.map((c) => c.toFixed(3)).join("  ") : "missing",
     ),
     h("td", {}, number(value.error, 4)),
-    kLayers.map(([id, , decimals]) => h("td", {}, number(value[id], decimals))),
+    valueLayers(scene).map(({ id, decimals }) => h("td", {}, number(value.of(id), decimals))),
   );
 }
 
@@ -98,7 +92,12 @@ export function showProbe(container, scene, values, pixel, pinned) {
   const [x, y] = pixel;
   const coarse = values.step > 1 ? `, every ${values.step} pixels` : "";
   const glass = values.glass?.[y * values.width + x] ? " · glass" : "";
-  const titles = ["", "RGB", "Error", ...kLayers.map(([, title]) => title)];
+  const titles = [
+    "",
+    "RGB",
+    "Error",
+    ...valueLayers(scene).map(({ title, unit }) => (unit ? `${title} (${unit})` : title)),
+  ];
   replace(
     container,
     h("p", { class: "probe-title" }, `Pixel ${x}, ${y}${coarse}${glass}${pinned ? " · held" : ""}`),
@@ -120,8 +119,8 @@ export function showProbe(container, scene, values, pixel, pinned) {
         h(
           "tbody",
           {},
-          probeRow("Reference", values.at(-1, x, y)),
-          scene.runs.map((run, i) => probeRow(runTitle(scene, run), values.at(i, x, y))),
+          probeRow(scene, "Reference", values.at(-1, x, y)),
+          scene.runs.map((run, i) => probeRow(scene, runTitle(scene, run), values.at(i, x, y))),
         ),
       ),
     ),

@@ -11,7 +11,7 @@ export class SceneState {
   run = 0;
   metric = "psnr";
   order = "worst";
-  layerId = "render";
+  layerId = "rgb";
   mode = "slider";
   left = -1;
   right = 0;

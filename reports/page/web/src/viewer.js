@@ -62,7 +62,7 @@ export class Viewer {
     const entry = scene.views[view];
     const there = owner < 0 ? entry.truth : (entry.runs?.[owner] ?? []);
     if (there.includes(layer.id)) return layer;
-    return owner < 0 ? scene.layers.find(({ id }) => id === "render" && there.includes(id)) : null;
+    return owner < 0 ? scene.layers.find(({ id }) => id === "rgb" && there.includes(id)) : null;
   }
 
   #picture(owner) {
