@@ -43,7 +43,8 @@ std::string format_vector(Vec3f v) {
 
 }  // namespace
 
-bool register_loader(LoaderSpec spec) {
+bool register_loader(LoaderSpec spec, const char* source) {
+  spec.source = source;
   registry().push_back(std::move(spec));
   return true;
 }

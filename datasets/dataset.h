@@ -28,9 +28,10 @@ struct LoaderSpec {
   std::string looks_for = {};  // e.g. "transforms.json"; listed when no loader knows a folder
   // What check_dataset() calls; empty: it only tries load().
   std::function<std::vector<Finding>(const fs::path&)> check = {};
+  std::string source = {};  // the file that registers it, as the compiler calls it
 };
 
-bool register_loader(LoaderSpec spec);
+bool register_loader(LoaderSpec spec, const char* source = "");
 const std::vector<LoaderSpec>& loader_registry();
 // The loader that knows the folder. Errors (kBadReference): none does; what each looks for is
 // listed.
@@ -47,7 +48,7 @@ std::vector<Finding> check_dataset(const fs::path& folder);
 
 }  // namespace glint
 
-#define GLINT_REGISTER_LOADER(...)                                                       \
-  namespace {                                                                            \
-  [[maybe_unused]] const bool loader_registered = ::glint::register_loader(__VA_ARGS__); \
+#define GLINT_REGISTER_LOADER(...)                                                                 \
+  namespace {                                                                                      \
+  [[maybe_unused]] const bool loader_registered = ::glint::register_loader(__VA_ARGS__, __FILE__); \
   }

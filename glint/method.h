@@ -59,6 +59,7 @@ struct MethodSpec {
   Json overrides = Json::object();  // config fields that make this variant
   // From a config with all overrides. Call create_method(), which adds the variant's own.
   std::function<std::unique_ptr<Method>(const Json& config)> create;
+  std::string source = {};  // the file that registers it, as the compiler calls it
 };
 
 // All registered methods by id, in the order of their ids.
@@ -68,7 +69,7 @@ const MethodSpec& find_method(const std::string& id);
 // The method with its variant's overrides, and the user's on top. Errors (kUsage): unknown id or
 // config field.
 std::unique_ptr<Method> create_method(const std::string& id, const Json& config = Json::object());
-bool register_method(MethodSpec spec);
+bool register_method(MethodSpec spec, const char* source = "");
 
 }  // namespace glint
 
@@ -78,5 +79,5 @@ bool register_method(MethodSpec spec);
 #define GLINT_REGISTER(...)                                                  \
   namespace {                                                                \
   [[maybe_unused]] const bool GLINT_REGISTER_CONCAT(registered_, __LINE__) = \
-      ::glint::register_method(__VA_ARGS__);                                 \
+      ::glint::register_method(__VA_ARGS__, __FILE__);                       \
   }

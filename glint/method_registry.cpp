@@ -32,8 +32,9 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 const std::map<std::string, MethodSpec>& method_registry() { return registry(); }
 
-bool register_method(MethodSpec spec) {
+bool register_method(MethodSpec spec, const char* source) {
   const std::string id = spec.id;
+  spec.source = source;
   return registry().emplace(id, std::move(spec)).second;
 }
 

@@ -277,8 +277,8 @@ std::string glassroom_hash(const GlassRoomOptions& options) {
   return fmt::format("{:016x}", hash_name(key.dump()));
 }
 
-bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder) {
-  if (stored_hash(folder) == glassroom_hash(options)) {
+bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder, bool again) {
+  if (stored_hash(folder) == glassroom_hash(options) && !again) {
     // Made before there was such a file: the scene is the same, so nothing is rendered again.
     if (!fs::exists(folder / "gt" / kBehindMeshFile))
       write_meshes(build_glassroom_scene(options)->room.scene, folder);

@@ -36,9 +36,10 @@ struct GlassRoomOptions {
 // Hash of the options and of the generator's version: the cache key, written to scene.json.
 std::string glassroom_hash(const GlassRoomOptions& options);
 
-// Makes the scene in `folder` unless it is there already with the same hash (then returns false).
+// Makes the scene in `folder` unless it is there already with the same hash (then returns false;
+// with `again` it is made all the same).
 // Rendered into a temporary folder and renamed, so an interrupted run leaves no half scene. A scene
 // of an earlier release gets gt/mesh_behind.ply added.
-bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder);
+bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder, bool again = false);
 
 }  // namespace glint

@@ -22,6 +22,6 @@ namespace {
 }  // namespace
 
 std::string glassroom_hash(const GlassRoomOptions& options) { fail(options); }
-bool make_glassroom(const GlassRoomOptions& options, const fs::path&) { fail(options); }
+bool make_glassroom(const GlassRoomOptions& options, const fs::path&, bool) { fail(options); }
 
 }  // namespace glint

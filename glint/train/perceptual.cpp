@@ -26,17 +26,28 @@ class LpipsLoss final : public PerceptualLoss {
   Lpips lpips_;
 };
 
+std::shared_ptr<const LpipsWeights> weights_here() {
+  for (const char* network : {"vgg", "alex"})
+    if (auto weights = lpips_weights_at(lpips_weights_place(), network)) return weights;
+  return nullptr;
+}
+
+std::string name_of(const LpipsWeights* weights) {
+  return weights ? fmt::format("{}, sha256 {}", weights->network, weights->sha256) : "";
+}
+
 }  // namespace
 
 std::unique_ptr<PerceptualLoss> make_perceptual_loss(bool unit_range, std::string& note) {
   const LpipsRange range = unit_range ? LpipsRange::kUnit : LpipsRange::kSymmetric;
-  for (const char* network : {"vgg", "alex"})
-    if (auto weights = lpips_weights_at(lpips_weights_place(), network)) {
-      note = fmt::format("{}, sha256 {}", network, weights->sha256);
-      return std::make_unique<LpipsLoss>(std::move(weights), range);
-    }
-  note = "no weights";
-  return nullptr;
+  auto weights = weights_here();
+  note = weights ? name_of(weights.get()) : "no weights";
+  return weights ? std::make_unique<LpipsLoss>(std::move(weights), range) : nullptr;
+}
+
+std::string perceptual_network() {
+  static const std::string name = name_of(weights_here().get());
+  return name;
 }
 
 std::unique_ptr<PerceptualLoss> wanted_perceptual_loss(

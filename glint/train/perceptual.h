@@ -41,6 +41,10 @@ struct PerceptualConfig {
 // weights; `note` says so. Errors (kEnvironment): weights that cannot be used.
 std::unique_ptr<PerceptualLoss> make_perceptual_loss(bool unit_range, std::string& note);
 
+// The network that it finds on this machine, "vgg, sha256 ..."; empty: none. Looked for once in a
+// process.
+std::string perceptual_network();
+
 // The loss that the config asks for, null without; where there is none, or some training view is
 // too small for it, its weight becomes 0. A warning says which network it is, or why there is none,
 // so that the record of the run has it.

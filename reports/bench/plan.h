@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The cells of a profile (scene x method x seed), filtered, and what is known about each.
+// The cells of a profile (scene x method x seed), filtered, and how long each will take.
 #pragma once
 
 #include <string>
@@ -21,8 +21,7 @@ bool filter_accepts(const CellFilter& filter, const CellKey& cell);
 struct PlanCell {
   CellKey cell;
   SceneSource source;
-  Json config;              // overrides for MethodSpec::create
-  std::string config_hash;  // method, resolved config, iterations, seed and the code's sources
+  Json config;  // overrides for MethodSpec::create
 };
 
 // Cells scene by scene, so that each scene is loaded once. Errors (kUsage): unknown method, a
@@ -31,15 +30,10 @@ std::vector<PlanCell> make_plan(
     const Profile& profile, const CellFilter& filter, const std::vector<std::string>& assignments
 );
 
-enum class CellState { kDone, kFailed, kStale, kPending };
-// kStale: a record exists, but of another configuration, code or dataset. An empty `dataset_hash`
-// (not made yet) compares as equal to any.
-CellState state_of(
-    const PlanCell& cell, const std::vector<Record>& records, const std::string& dataset_hash
+// Seconds that these stages of the cell will take, from the mean of finished cells of the same
+// method; 0: unknown.
+double estimated_seconds(
+    const PlanCell& cell, const std::vector<Record>& records, const std::vector<std::string>& stages
 );
-std::string_view state_name(CellState state);  // "done", "failed", "stale", "pending"
-
-// Seconds the cell will take, from the mean of finished cells of the same method; 0: unknown.
-double estimated_seconds(const PlanCell& cell, const std::vector<Record>& records);
 
 }  // namespace glint

@@ -3,10 +3,8 @@
 // too, and the next one starts: an unattended night gives every number that can be had.
 #pragma once
 
-#include <map>
-
 #include "reports/bench/plan.h"
-#include "reports/bench/stages.h"
+#include "reports/records/scene_source.h"
 
 namespace glint {
 
@@ -16,7 +14,7 @@ struct RunnerOptions {
   std::vector<std::string> assignments;  // of --set
   fs::path out;                          // the profile's folder: records.jsonl, runs/, tables/
   bool force = false;                    // run finished cells again, training included
-  bool rescore = false;  // runs that other code trained are rendered and scored, not trained again
+  SceneIdentifier identify;
   SceneLoader load;
 };
 
@@ -25,23 +23,8 @@ struct RunSummary {
   bool interrupted = false;
 };
 
-// Finished cells are reused when configuration, code and data hash alike; a cell that was trained
-// but not scored is scored. Errors: kUsage from the plan, kEnvironment when records cannot be
-// written.
+// Only the stages of a cell run whose keys have changed (cell_stages.h); cells of which all are
+// done are reused. Errors: kUsage from the plan, kEnvironment when records cannot be written.
 RunSummary run_profile(const RunnerOptions& options);
-
-struct RunScores {
-  std::map<std::string, double> means;              // by id
-  std::map<std::string, std::string> not_measured;  // id -> why
-  std::vector<std::string> not_applicable;          // see not_applicable()
-};
-// Everything behind training: renders, strip, FPS, meshes, metrics.
-RunScores render_and_score(
-    const RunSpec& spec, const Scene& scene, Method& method, const Profile& profile
-);
-
-// Of a failure in `stage`: "bad-input", "usage", "environment", "not-finite" (training diverged),
-// "out-of-memory", "unknown".
-std::string failure_kind(const std::exception& error, const std::string& stage);
 
 }  // namespace glint

@@ -7,6 +7,7 @@
 #include "glint/core/progress.h"
 #include "reports/bench/evaluate.h"
 #include "reports/bench/mesh_eval.h"
+#include "reports/bench/run_stage.h"
 #include "reports/pictures/strip.h"
 
 namespace glint {
@@ -39,12 +40,7 @@ void write_metrics(
 }  // namespace
 
 std::unique_ptr<Method> load_trained(const RunSpec& spec) {
-  GLINT_CHECK(
-      trained_cost(spec).has_value(),
-      kBadPrediction,
-      "{}: training has not finished here; run `glint-bench train` first",
-      spec.folder.string()
-  );
+  finished_stage(spec.folder, Stage::kTrain, "train");
   auto method = create_method(spec.method, spec.config);
   with_exit_code(ExitCode::kBadPrediction, [&] { method->load(spec.folder.string()); });
   return method;

@@ -3,6 +3,7 @@
 
 #include "glint/core/machine.h"
 #include "glint/train/trainer.h"
+#include "reports/bench/run_stage.h"
 #include "reports/bench/stages.h"
 
 namespace glint {
@@ -32,7 +33,8 @@ std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
   const TrainReport report = train(*method, scene, train_options(spec));
   const double peak_memory = peak_memory_mb();
   method->save(spec.folder.string());
-  write_trained(spec, {report.seconds, peak_memory});
+  write_trained(spec, {report.seconds, peak_memory, method->warnings()});
+  end_stage(spec.folder, Stage::kTrain, spec.train_document);
   return method;
 }
 

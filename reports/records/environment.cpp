@@ -37,7 +37,6 @@ Json environment_json() {
       {"memory_bytes", machine.memory_bytes},
       {"compiler", fmt::format("g++ {}", __VERSION__)},
       {"git_revision", git_revision()},
-      {"source_hash", source_hash()},
       {"date", utc_now()}};
 }
 

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "glint/core/progress.h"
-#include "glint/core/rng.h"
 
 namespace glint {
 
@@ -23,7 +22,8 @@ void visit_fields(R& record, V&& v) {
   v("seed", record.cell.seed);
   v("resolution", record.resolution);
   v("imported", record.imported);
-  v("config_hash", record.config_hash);
+  v("train_key", record.train_key);
+  v("score_key", record.score_key);
   v("dataset_hash", record.dataset_hash);
   v("num_surfels", record.num_surfels);
   v("warnings", record.warnings);
@@ -152,7 +152,5 @@ const Record* find_record(const std::vector<Record>& records, const CellKey& cel
   });
   return it == records.end() ? nullptr : &*it;
 }
-
-std::string hash_text(std::string_view text) { return fmt::format("{:016x}", hash_name(text)); }
 
 }  // namespace glint

@@ -15,7 +15,7 @@
 
 namespace glint {
 
-inline constexpr int kRecordSchema = 1;
+inline constexpr int kRecordSchema = 2;
 
 // One entry of scene x method x seed.
 struct CellKey {
@@ -26,7 +26,7 @@ struct CellKey {
 };
 
 struct Failure {
-  std::string stage;  // "dataset", "train", "render", "eval"
+  std::string stage;  // of stage_name(): "data", "train", "render", "mesh", "score"
   std::string
       kind;  // "bad-input", "usage", "environment", "not-finite", "out-of-memory", "unknown"
   std::string message;
@@ -43,7 +43,9 @@ struct Record {
   std::vector<std::string> not_applicable;  // ids that neither the method nor the data allow
   std::string resolution;                   // of the test views, "160x90"
   std::string imported;  // where another program's renders lay; empty: trained here
-  std::string config_hash, dataset_hash;  // equal hashes: nothing to do again
+  // What trained it and what scored it (stage_files.h); records of schema 1 have none.
+  std::string train_key, score_key;
+  std::string dataset_hash;  // as the loader knows the data
   std::size_t num_surfels = 0;
   std::vector<std::string> warnings;  // of the method: losses off, missing priors
   Json timings = Json::object();      // stage -> seconds
@@ -65,8 +67,5 @@ void append_record(const fs::path& file, const Record& record);
 std::vector<Record> read_records(const fs::path& file);
 
 const Record* find_record(const std::vector<Record>& records, const CellKey& cell);
-
-// 16 hex digits of the 64-bit FNV-1a of the text.
-std::string hash_text(std::string_view text);
 
 }  // namespace glint

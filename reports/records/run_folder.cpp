@@ -21,7 +21,6 @@ void visit_spec(S& spec, V&& v) {
   v("dataset", spec.dataset);
   v("scene", spec.scene);
   v("max_pixels", spec.max_pixels);
-  v("config_hash", spec.config_hash);
   v("dataset_hash", spec.dataset_hash);
 }
 
@@ -100,10 +99,9 @@ void clear_run_folder(const fs::path& folder) {
 
 void write_trained(const RunSpec& spec, const TrainCost& cost) {
   Json json = environment_json();
-  json["config_hash"] = spec.config_hash;
-  json["dataset_hash"] = spec.dataset_hash;
   json["train_seconds"] = cost.seconds;
   json["peak_memory_mb"] = cost.peak_memory_mb;
+  json["warnings"] = cost.warnings;
   write_file(spec.folder / "env.json", json.dump(2) + "\n");
 }
 
@@ -111,23 +109,10 @@ std::optional<TrainCost> trained_cost(const RunSpec& spec) {
   const fs::path path = spec.folder / "env.json";
   if (!fs::exists(path)) return std::nullopt;
   const Json json = read_json_object(path, ExitCode::kBadPrediction);
-  const bool same = json.value("config_hash", "") == spec.config_hash &&
-                    json.value("dataset_hash", "") == spec.dataset_hash;
-  if (!same) return std::nullopt;
-  return TrainCost{json.value("train_seconds", 0.0), json.value("peak_memory_mb", 0.0)};
-}
-
-std::optional<TrainedElsewhere> trained_elsewhere(const RunSpec& spec) {
-  if (!fs::exists(spec.folder / "config.json") || !fs::exists(spec.folder / "env.json"))
-    return std::nullopt;
-  RunSpec there = read_run_spec(spec.folder);
-  const bool same = there.method == spec.method && there.config == spec.config &&
-                    there.options.iterations == spec.options.iterations &&
-                    there.options.seed == spec.options.seed &&
-                    there.dataset_hash == spec.dataset_hash;
-  if (!same || !trained_cost(there)) return std::nullopt;
-  const Json environment = read_json_object(spec.folder / "env.json", ExitCode::kBadPrediction);
-  return TrainedElsewhere{there.config_hash, environment.value("git_revision", "unknown")};
+  return TrainCost{
+      json.value("train_seconds", 0.0),
+      json.value("peak_memory_mb", 0.0),
+      json.value("warnings", std::vector<std::string>{})};
 }
 
 fs::path view_folder(const fs::path& run, const std::string& view_name) {

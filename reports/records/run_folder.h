@@ -22,7 +22,8 @@ struct RunSpec {
   fs::path dataset_folder;
   std::string dataset, scene;  // names
   double max_pixels = 0;
-  std::string config_hash, dataset_hash;
+  std::string dataset_hash;  // as the loader knows the data
+  Json train_document;       // what the training goes by (stage_documents.h); not in config.json
 };
 
 fs::path run_folder(const fs::path& out, const CellKey& cell);
@@ -34,20 +35,13 @@ RunSpec read_run_spec(const fs::path& folder);
 // An empty folder for a new run. Errors (kUsage): it holds something that is not an earlier run.
 void clear_run_folder(const fs::path& folder);
 
-// What training cost. env.json holds it and appears last, so that its presence with equal hashes
-// says "trained"; nothing: not trained, or as something else.
+// What training cost and had to say, in env.json; nothing: no training has ended there.
 struct TrainCost {
   double seconds = 0, peak_memory_mb = 0;
+  std::vector<std::string> warnings;
 };
 void write_trained(const RunSpec& spec, const TrainCost& cost);
 std::optional<TrainCost> trained_cost(const RunSpec& spec);
-
-// What another revision's training of the same thing (method, overrides, iterations, seed, data)
-// left in spec.folder; nothing: it holds no such run.
-struct TrainedElsewhere {
-  std::string config_hash, revision;
-};
-std::optional<TrainedElsewhere> trained_elsewhere(const RunSpec& spec);
 
 // renders/<flat name>.
 fs::path view_folder(const fs::path& run, const std::string& view_name);

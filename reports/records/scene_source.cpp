@@ -3,6 +3,10 @@
 
 #include "datasets/dataset.h"
 #include "datasets/glassroom/glassroom.h"
+#include "glint/core/progress.h"
+#include "glint/core/sha256.h"
+#include "reports/records/code_hashes.h"
+#include "reports/records/stage_files.h"
 
 namespace glint {
 
@@ -20,27 +24,98 @@ GlassRoomOptions glassroom_options(const SceneSource& source) {
   return options;
 }
 
+// Named by its options alone: what other code makes of them takes its place.
 fs::path made_folder(const SceneSource& source, const fs::path& data_folder) {
-  const std::string hash = scene_hash(source).substr(0, 8);
+  const std::string hash = glassroom_hash(glassroom_options(source)).substr(0, 8);
   return data_folder / source.dataset / fmt::format("{}-{}", source.scene, hash);
+}
+
+fs::path folder_of(const SceneSource& source, const fs::path& data_folder) {
+  return source.made() ? made_folder(source, data_folder) : data_folder / source.folder;
+}
+
+fs::path hash_cache(const fs::path& data_folder) { return data_folder / ".hashes"; }
+
+// The options of a room. Of assets the content counts, not where they lie.
+Json room_json(const SceneSource& source, const fs::path& data_folder) {
+  Json json = config_to_json(glassroom_options(source));
+  if (!source.assets.empty()) json["assets"] = content_hash(source.assets, hash_cache(data_folder));
+  return json;
+}
+
+Json make_document(const SceneSource& source, const fs::path& data_folder) {
+  return {{"scene", room_json(source, data_folder)}, {"code", code_json({"make"})}};
+}
+
+// Empty: the folder holds what this program would make.
+std::string why_make(
+    const SceneSource& source, const fs::path& folder, const fs::path& data_folder
+) {
+  if (!fs::exists(folder)) return "not made yet";
+  const auto made = read_stage(folder, Stage::kData);
+  if (!made) return "made by an earlier version, without a key, or not to the end";
+  const auto differences = stage_differences(made->document, make_document(source, data_folder));
+  return differences.empty() ? what_is_damaged(folder, *made) : differences.front();
+}
+
+// GlassRoom lists the hashes of what it made.
+std::string made_content(const fs::path& folder) {
+  const Json description = read_json_object(folder / "scene.json");
+  return sha256(description.value("files", Json::object()).dump());
+}
+
+Json load_code(const fs::path& folder) {
+  return code_json({"load", code_entry_of(find_loader(folder).source)});
+}
+
+SceneIdentity made_identity(const SceneSource& source, const fs::path& data_folder) {
+  const fs::path folder = made_folder(source, data_folder);
+  SceneIdentity identity{
+      {{"scene", room_json(source, data_folder)}}, why_make(source, folder, data_folder)};
+  identity.document["scene"]["max_pixels"] = source.max_pixels;
+  if (!identity.why_not.empty()) return identity;
+  identity.document["content"] = made_content(folder);
+  identity.document["code"] = load_code(folder);
+  return identity;
+}
+
+void make_source(const SceneSource& source, const fs::path& folder, const fs::path& data_folder) {
+  const std::string why = why_make(source, folder, data_folder);
+  if (why.empty()) return;
+  log::info(fmt::format("{}: {}; making it", folder.string(), why));
+  make_glassroom(glassroom_options(source), folder, true);
+  write_stage(folder, Stage::kData, make_document(source, data_folder), {"."});
 }
 
 }  // namespace
 
-std::string scene_hash(const SceneSource& source) {
-  return source.made() ? glassroom_hash(glassroom_options(source)) : "";
+SceneIdentity identify_source(const SceneSource& source, const fs::path& data_folder) {
+  if (source.made()) return made_identity(source, data_folder);
+  const fs::path folder = folder_of(source, data_folder);
+  if (!fs::exists(folder))
+    return {
+        {{"scene", {{"max_pixels", source.max_pixels}}}},
+        folder.string() + ": no such folder or file"};
+  return {data_document(folder, source.max_pixels, data_folder), ""};
+}
+
+Json data_document(const fs::path& dataset, double max_pixels, const fs::path& data_folder) {
+  return {
+      {"scene", {{"max_pixels", max_pixels}}},
+      {"content", content_hash(dataset, hash_cache(data_folder))},
+      {"code", load_code(dataset)}};
 }
 
 LoadedScene load_source(const SceneSource& source, const fs::path& data_folder) {
   LoadedScene loaded;
   LoadOptions options;
   options.max_pixels = source.max_pixels;
-  loaded.folder = source.made() ? made_folder(source, data_folder) : data_folder / source.folder;
-  if (source.made()) make_glassroom(glassroom_options(source), loaded.folder);
+  loaded.folder = folder_of(source, data_folder);
+  if (source.made()) make_source(source, loaded.folder, data_folder);
   loaded.scene = load_scene(loaded.folder, options);
   loaded.scene.name = source.scene;
   loaded.scene.dataset = source.dataset;
-  if (source.made()) loaded.scene.spec_hash = scene_hash(source);
+  if (source.made()) loaded.scene.spec_hash = glassroom_hash(glassroom_options(source));
   return loaded;
 }
 

@@ -16,12 +16,23 @@ struct LoadedScene {
   fs::path folder;  // where it lies
 };
 
-// What a scene is without loading it: its generator's options and version for made scenes; empty
-// for folders, whose loader hashes the data.
-std::string scene_hash(const SceneSource& source);
+// What a scene is, without loading it: the options that made it or choose from it, the content of
+// its files, the code that reads them. Part of what every training goes by.
+struct SceneIdentity {
+  Json document;
+  std::string why_not;  // it has to be made (again) first, or is not there at all; empty: it is
+};
+// Errors (kBadReference): files that cannot be read; kEnvironment: a scene that this build cannot
+// make.
+SceneIdentity identify_source(const SceneSource& source, const fs::path& data_folder);
+using SceneIdentifier = std::function<SceneIdentity(const SceneSource&)>;
 
-// Makes the scene first when it is missing. Errors (kBadReference, kEnvironment): as make_glassroom
-// and load_scene.
+// Of a folder or packed file of the user's; hashes are kept below `data_folder`. Errors
+// (kBadReference): as identify_source, and nothing there that a loader knows.
+Json data_document(const fs::path& dataset, double max_pixels, const fs::path& data_folder);
+
+// Makes the scene first when it is missing, or was made by other code. Errors (kBadReference,
+// kEnvironment): as make_glassroom and load_scene.
 LoadedScene load_source(const SceneSource& source, const fs::path& data_folder);
 
 using SceneLoader = std::function<LoadedScene(const SceneSource&)>;

@@ -35,7 +35,7 @@ void print_summary_json(
   print_json(json);
 }
 
-int run_all(const CommonOptions& common, bool force, bool rescore) {
+int run_all(const CommonOptions& common, bool force) {
   install_interrupt_handler();
   RunnerOptions options;
   options.profile = common.resolved_profile();
@@ -43,7 +43,7 @@ int run_all(const CommonOptions& common, bool force, bool rescore) {
   options.assignments = common.set;
   options.out = common.profile_folder(options.profile);
   options.force = force;
-  options.rescore = rescore;
+  options.identify = common.scene_identifier();
   options.load = common.scene_loader();
   const RunSummary summary = run_profile(options);
   const auto tables = result_tables(options.out);
@@ -69,19 +69,14 @@ int run_all(const CommonOptions& common, bool force, bool rescore) {
 }  // namespace
 
 void add_all_verb(CommandLine& line) {
-  auto force = std::make_shared<bool>(false), rescore = std::make_shared<bool>(false);
+  auto force = std::make_shared<bool>(false);
   CLI::App* verb = line.add_verb(
       line.app,
       "all",
       "run every cell of a profile, print the tables and write the report",
-      [&line, force, rescore] { return run_all(line.common, *force, *rescore); }
+      [&line, force] { return run_all(line.common, *force); }
   );
-  verb->add_flag("--force", *force, "run finished cells again");
-  verb->add_flag(
-      "--rescore",
-      *rescore,
-      "render and score runs that an earlier version trained; records say which"
-  );
+  verb->add_flag("--force", *force, "run finished cells again, training included");
 }
 
 }  // namespace glint

@@ -68,6 +68,12 @@ SceneLoader CommonOptions::scene_loader() const {
       [folder = fs::path(data)](const SceneSource& source) { return load_source(source, folder); };
 }
 
+SceneIdentifier CommonOptions::scene_identifier() const {
+  return [folder = fs::path(data)](const SceneSource& source) {
+    return identify_source(source, folder);
+  };
+}
+
 Profile CommonOptions::resolved_profile() const {
   Profile resolved = load_profile(profile);
   if (seed) resolved.seeds = {*seed};

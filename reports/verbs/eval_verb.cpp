@@ -5,6 +5,8 @@
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf.h"
 #include "reports/bench/evaluate.h"
+#include "reports/bench/run_stage.h"
+#include "reports/bench/stage_documents.h"
 #include "reports/import/import_predictions.h"
 #include "reports/records/environment.h"
 #include "reports/verbs/single_run.h"
@@ -59,11 +61,33 @@ int print_scores(const CommonOptions& common, const fs::path& folder, const Scor
   return 0;
 }
 
+// The frames behind the cost that an earlier scoring found; nothing: none were timed.
+std::optional<TimingOptions> earlier_timing(const fs::path& run) {
+  const auto scored = read_stage(run, Stage::kScore);
+  if (!scored || !scored->document.value("timing_frames", Json()).is_number()) return std::nullopt;
+  return TimingOptions{scored->document["timing_frames"], scored->document["timing_warmup"]};
+}
+
+// Of renders and meshes without a key (an earlier version's, another program's): none.
+std::string key_of(const fs::path& run, Stage stage) {
+  const auto done = read_stage(run, stage);
+  return done ? stage_key(done->document) : "";
+}
+
 int eval_run(const CommonOptions& common, const std::string& folder) {
   const SingleRun single = open_single_run(folder);
-  const Scores means = eval_stage(
-      single.spec, single.scene, earlier_cost(single.spec), mesh_protocol_of(single.spec)
+  const MeshProtocol protocol = mesh_protocol_of(single.spec);
+  const Json document = score_document(
+      single.spec.method,
+      {key_of(folder, Stage::kRender), key_of(folder, Stage::kMesh)},
+      protocol,
+      earlier_timing(folder)
   );
+  Scores means;
+  run_stage(folder, Stage::kScore, document, [&] {
+    means = eval_stage(single.spec, single.scene, earlier_cost(single.spec), protocol);
+    return std::string();
+  });
   return print_scores(common, folder, means);
 }
 
@@ -77,7 +101,6 @@ Record record_of(const RunSpec& spec, const Profile& profile, const std::string&
   record.profile = profile.name;
   record.dataset = spec.dataset;
   record.cell = {spec.scene, spec.method, spec.options.seed};
-  record.config_hash = spec.config_hash;
   record.dataset_hash = spec.dataset_hash;
   record.imported = predictions;
   record.environment = environment_json();
@@ -89,7 +112,6 @@ RunSpec spec_of(
     const CommonOptions& common, const PredictionArguments& arguments, const Scene& scene
 ) {
   RunSpec spec;
-  const fs::path predictions = fs::absolute(arguments.predictions).lexically_normal();
   spec.method = arguments.method;
   spec.dataset_folder = fs::absolute(arguments.dataset);
   spec.dataset = scene.dataset;
@@ -97,7 +119,6 @@ RunSpec spec_of(
   spec.options.seed = common.seed.value_or(0);
   spec.max_pixels = arguments.max_pixels;
   spec.dataset_hash = scene.spec_hash;
-  spec.config_hash = hash_text("imported " + predictions.string());
   spec.folder = run_folder(
       common.profile_folder(common.resolved_profile()), {spec.scene, spec.method, spec.options.seed}
   );
@@ -128,7 +149,17 @@ int eval_predictions(const CommonOptions& common, const PredictionArguments& arg
   Record record = record_of(spec, profile, arguments.predictions);
   record.warnings = import_predictions(arguments.predictions, scene, spec, options);
   for (const std::string& note : record.warnings) log::info(note);
-  record.metrics = eval_stage(spec, scene, {}, profile.mesh_protocol());
+  const Json document = score_document(
+      spec.method,
+      {content_hash(arguments.predictions, fs::path(common.data) / ".hashes"), ""},
+      profile.mesh_protocol(),
+      std::nullopt
+  );
+  record.score_key = stage_key(document);
+  run_stage(spec.folder, Stage::kScore, document, [&] {
+    record.metrics = eval_stage(spec, scene, {}, profile.mesh_protocol());
+    return std::string();
+  });
   record.not_applicable = not_applicable(record.metrics, record.not_measured);
   const Camera& camera = scene.test.front().camera;
   record.resolution = fmt::format("{}x{}", camera.width, camera.height);

@@ -3,6 +3,8 @@
 
 #include "glint/core/interrupt.h"
 #include "reports/bench/mesh_stage.h"
+#include "reports/bench/run_stage.h"
+#include "reports/bench/stage_documents.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {
@@ -19,8 +21,20 @@ int run_mesh(const CommonOptions& common, const MeshArguments& arguments) {
   install_interrupt_handler();
   const SingleRun single = open_single_run(arguments.run);
   const auto method = load_trained(single.spec);
-  const Json result =
-      mesh_stage(single.spec, single.scene, *method, arguments.options, arguments.keep_renders);
+  const std::string& run = arguments.run;
+  const std::string train_key = stage_key(finished_stage(run, Stage::kTrain, "train").document);
+  Json result;
+  run_stage(
+      run,
+      Stage::kMesh,
+      mesh_document(single.spec.method, train_key, arguments.options),
+      [&] {
+        result = mesh_stage(
+            single.spec, single.scene, *method, arguments.options, arguments.keep_renders
+        );
+        return std::string();
+      }
+  );
   if (common.json) {
     print_json(result);
     return 0;

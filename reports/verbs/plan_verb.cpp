@@ -2,67 +2,90 @@
 #include <algorithm>
 
 #include "glint/core/progress.h"
-#include "reports/verbs/verb.h"
+#include "reports/verbs/planned_cells.h"
 
 namespace glint {
 
 namespace {
 
 struct PlanRow {
-  PlanCell cell;
-  CellState state = CellState::kPending;
-  double seconds = 0;  // estimated; 0: unknown
+  PlannedCell planned;
+  double seconds = 0;  // estimated, of what is to do; 0: unknown
 };
 
-std::vector<PlanRow> plan_rows(const CommonOptions& common) {
-  const Profile profile = common.resolved_profile();
-  const auto records = read_records(common.records_file(profile));
+std::vector<std::string> stages_to_do(const CellStages& stages) {
+  std::vector<std::string> names;
+  for (const Stage stage : kStages)
+    if (!stages[stage].done && stage != Stage::kData) names.emplace_back(stage_name(stage));
+  return names;
+}
+
+std::vector<PlanRow> plan_rows(
+    const std::vector<PlannedCell>& cells, const std::vector<Record>& records
+) {
   std::vector<PlanRow> rows;
-  for (const PlanCell& cell : make_plan(profile, common.filter(), common.set))
-    rows.push_back(
-        {cell, state_of(cell, records, scene_hash(cell.source)), estimated_seconds(cell, records)}
-    );
+  for (const PlannedCell& cell : cells)
+    rows.push_back({cell, estimated_seconds(cell.cell, records, stages_to_do(cell.stages))});
   return rows;
 }
 
+std::vector<std::string> plan_line(const PlanRow& row) {
+  std::vector<std::string> line{row.planned.cell.cell.text()};
+  for (const Stage stage : kStages)
+    line.emplace_back(row.planned.stages[stage].done ? "done" : "to do");
+  const bool done = row.planned.stages.done();
+  line.push_back(done ? "" : row.seconds > 0 ? format_duration(row.seconds) : "unknown");
+  line.push_back(row.planned.stages.why());
+  return line;
+}
+
 std::string plan_text(const std::vector<PlanRow>& rows) {
-  std::vector<std::vector<std::string>> lines{{"cell", "state", "estimate"}};
+  std::vector<std::vector<std::string>> lines{{"cell"}};
+  for (const Stage stage : kStages) lines[0].emplace_back(stage_name(stage));
+  lines[0].insert(lines[0].end(), {"estimate", "why"});
   double left = 0;
   for (const PlanRow& row : rows) {
-    lines.push_back(
-        {row.cell.cell.text(),
-         std::string(state_name(row.state)),
-         row.seconds > 0 ? format_duration(row.seconds) : "unknown"}
-    );
-    if (row.state != CellState::kDone) left += row.seconds;
+    lines.push_back(plan_line(row));
+    left += row.seconds;
   }
   const auto todo = std::count_if(rows.begin(), rows.end(), [](const PlanRow& row) {
-    return row.state != CellState::kDone;
+    return !row.planned.stages.done();
   });
-  return aligned_rows(lines) + fmt::format(
-                                   "{} of {} cells to run, {}\n",
-                                   todo,
-                                   rows.size(),
-                                   left > 0 ? "about " + format_duration(left) : "time unknown"
-                               );
+  const std::string time = left > 0 ? "about " + format_duration(left) : "time unknown";
+  return aligned_rows(lines) +
+         fmt::format(
+             "{} of {} cells to run{}\n", todo, rows.size(), todo > 0 ? ", " + time : std::string()
+         );
+}
+
+Json stages_json(const CellStages& stages) {
+  Json json = Json::object();
+  for (const Stage stage : kStages) {
+    const StageState& state = stages[stage];
+    json[std::string(stage_name(stage))] = {
+        {"done", state.done}, {"why", state.why}, {"key", state.key()}};
+  }
+  return json;
 }
 
 Json plan_json(const std::vector<PlanRow>& rows) {
   Json json = Json::array();
   for (const PlanRow& row : rows)
     json.push_back(
-        {{"scene", row.cell.cell.scene},
-         {"method", row.cell.cell.method},
-         {"seed", row.cell.cell.seed},
-         {"state", state_name(row.state)},
-         {"config_hash", row.cell.config_hash},
+        {{"scene", row.planned.cell.cell.scene},
+         {"method", row.planned.cell.cell.method},
+         {"seed", row.planned.cell.cell.seed},
+         {"state", row.planned.state()},
+         {"stages", stages_json(row.planned.stages)},
          {"estimated_seconds", row.seconds}}
     );
   return {{"cells", json}};
 }
 
 int run_plan(const CommonOptions& common) {
-  const auto rows = plan_rows(common);
+  const Profile profile = common.resolved_profile();
+  const auto records = read_records(common.records_file(profile));
+  const auto rows = plan_rows(planned_cells(common, profile, records), records);
   if (common.json)
     print_json(plan_json(rows));
   else
@@ -73,9 +96,12 @@ int run_plan(const CommonOptions& common) {
 }  // namespace
 
 void add_plan_verb(CommandLine& line) {
-  line.add_verb(line.app, "plan", "list the cells that `all` would run", [&line] {
-    return run_plan(line.common);
-  });
+  line.add_verb(
+      line.app,
+      "plan",
+      "list the cells that `all` would run: which stages are done, and why the others are not",
+      [&line] { return run_plan(line.common); }
+  );
 }
 
 }  // namespace glint

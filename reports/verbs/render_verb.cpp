@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
+#include "reports/bench/run_stage.h"
+#include "reports/bench/stage_documents.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {
@@ -10,7 +12,11 @@ namespace {
 int run_render(const CommonOptions& common, const std::string& folder) {
   const SingleRun single = open_single_run(folder);
   const auto method = load_trained(single.spec);
-  render_stage(single.spec, single.scene, *method);
+  const std::string train_key = stage_key(finished_stage(folder, Stage::kTrain, "train").document);
+  run_stage(folder, Stage::kRender, render_document(single.spec.method, train_key), [&] {
+    render_stage(single.spec, single.scene, *method);
+    return std::string();
+  });
   const std::string renders = (single.spec.folder / "renders").string();
   if (common.json)
     print_json({{"renders", renders}, {"views", single.scene.test.size()}});

@@ -2,7 +2,7 @@
 #include "reports/verbs/single_run.h"
 
 #include "datasets/dataset.h"
-#include "reports/records/revision.h"
+#include "reports/bench/stage_documents.h"
 
 namespace glint {
 
@@ -14,16 +14,6 @@ Scene load_dataset(const fs::path& folder, double max_pixels) {
   LoadOptions options;
   options.max_pixels = max_pixels;
   return with_exit_code(ExitCode::kBadReference, [&] { return load_scene(folder, options); });
-}
-
-std::string config_hash_of(const RunSpec& spec) {
-  const Json identity = {
-      {"method", spec.method},
-      {"overrides", spec.config},
-      {"iterations", spec.options.iterations},
-      {"seed", spec.options.seed},
-      {"sources", source_hash()}};
-  return hash_text(identity.dump());
 }
 
 }  // namespace
@@ -42,7 +32,12 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
   spec.dataset = single.scene.dataset;
   spec.scene = single.scene.name;
   spec.dataset_hash = single.scene.spec_hash;
-  spec.config_hash = config_hash_of(spec);
+  spec.train_document = train_document(
+      spec.method,
+      spec.config,
+      spec.options,
+      data_document(spec.dataset_folder, spec.max_pixels, common.data)
+  );
   spec.folder = options.run.empty() ? run_folder(
                                           fs::path(common.out) / "single",
                                           {spec.scene, spec.method, spec.options.seed}

@@ -3,7 +3,7 @@
 
 #include "glint/core/progress.h"
 #include "reports/records/run_folder.h"
-#include "reports/verbs/verb.h"
+#include "reports/verbs/planned_cells.h"
 
 namespace glint {
 
@@ -11,8 +11,8 @@ namespace {
 
 struct StatusRow {
   CellKey cell;
-  std::string state;   // of state_name(); "started" and "trained" for cells without a record
-  std::string detail;  // PSNR of a finished cell, failure, last logged step
+  std::string state;   // PlannedCell's; "started" and "trained" for cells without a record
+  std::string detail;  // PSNR of a finished cell, failure, last logged step, what has changed
 };
 
 // The last step that an unfinished run logged; empty when there is none.
@@ -27,18 +27,15 @@ std::string last_step(const fs::path& run) {
   return "";
 }
 
-StatusRow status_of(
-    const PlanCell& cell, const std::vector<Record>& records, const fs::path& folder
-) {
-  const CellState state = state_of(cell, records, scene_hash(cell.source));
-  StatusRow row{cell.cell, std::string(state_name(state)), ""};
-  const Record* record = find_record(records, cell.cell);
-  if (state == CellState::kDone && record->metrics.count("psnr"))
-    row.detail = fmt::format("PSNR {:.2f}", record->metrics.at("psnr"));
-  if (state == CellState::kFailed)
-    row.detail = fmt::format("{}: {}", record->failure->stage, record->failure->message);
-  const fs::path run = run_folder(folder, cell.cell);
-  if (state == CellState::kPending && fs::exists(run / "config.json")) {
+StatusRow status_of(const PlannedCell& planned, const fs::path& folder) {
+  StatusRow row{planned.cell.cell, planned.state(), planned.stages.why()};
+  if (row.state == "done" && planned.record->metrics.count("psnr"))
+    row.detail = fmt::format("PSNR {:.2f}", planned.record->metrics.at("psnr"));
+  if (row.state == "failed")
+    row.detail =
+        fmt::format("{}: {}", planned.record->failure->stage, planned.record->failure->message);
+  const fs::path run = run_folder(folder, row.cell);
+  if (row.state == "pending" && fs::exists(run / "config.json")) {
     row.state = fs::exists(run / "env.json") ? "trained" : "started";
     row.detail = last_step(run);
   }
@@ -75,8 +72,8 @@ int run_status(const CommonOptions& common) {
   const Profile profile = common.resolved_profile();
   const auto records = read_records(common.records_file(profile));
   std::vector<StatusRow> rows;
-  for (const PlanCell& cell : make_plan(profile, common.filter(), common.set))
-    rows.push_back(status_of(cell, records, common.profile_folder(profile)));
+  for (const PlannedCell& planned : planned_cells(common, profile, records))
+    rows.push_back(status_of(planned, common.profile_folder(profile)));
   if (common.json)
     print_json(status_json(rows));
   else

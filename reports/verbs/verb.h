@@ -31,6 +31,7 @@ struct CommonOptions {
   fs::path records_file(const Profile& p) const { return profile_folder(p) / "records.jsonl"; }
   CellFilter filter() const { return {only, skip}; }
   SceneLoader scene_loader() const;
+  SceneIdentifier scene_identifier() const;
   // The profile with --seed and --iterations applied.
   Profile resolved_profile() const;
   // --threads, --quiet and --device take effect. Errors: as choose_device.

@@ -94,4 +94,9 @@ inline Scene fake_scene(const std::string& name, float grey = 0.6f) {
   return scene;
 }
 
+// There, without a file.
+inline SceneIdentity fake_identity(const SceneSource& source) {
+  return {{{"scene", {{"max_pixels", source.max_pixels}}}, {"content", "fake-data"}}, ""};
+}
+
 }  // namespace glint

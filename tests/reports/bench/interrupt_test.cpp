@@ -25,6 +25,7 @@ TEST_CASE("Ctrl-C ends a run after what is finished, and an unfinished cell leav
   options.profile.scenes = {
       {{"scene", "room_1"}, {"folder", "a"}}, {{"scene", "room_2"}, {"folder", "b"}}};
   options.out = folder.path();
+  options.identify = fake_identity;
   options.load = [](const SceneSource& source) {
     if (source.scene == "room_2") std::raise(SIGINT);
     return LoadedScene{fake_scene(source.scene), "nowhere"};

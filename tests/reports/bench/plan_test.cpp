@@ -54,22 +54,6 @@ TEST_CASE("filters that leave nothing are a usage error") {
   CHECK_THROWS_WITH(count({{"room_9"}, {}}), Catch::Contains("no cell left"));
 }
 
-TEST_CASE("the hash follows whatever changes a result") {
-  Profile profile = fake_profile();
-  const CellFilter one{{"room_1/fake/0"}, {}};
-  const std::string hash = make_plan(profile, one, {})[0].config_hash;
-  CHECK(make_plan(profile, one, {"grey=0.5"})[0].config_hash == hash);  // the default, spelled out
-  CHECK(make_plan(profile, one, {"grey=0.75"})[0].config_hash != hash);
-  CHECK(make_plan(profile, one, {"fake.grey=0.75"})[0].config_hash != hash);
-  CHECK(make_plan(profile, one, {"fake/other.grey=0.75"})[0].config_hash == hash);
-  profile.overrides["fake"] = {{"grey", 0.75}};
-  CHECK(make_plan(profile, one, {})[0].config_hash != hash);
-  CHECK(make_plan(profile, one, {"grey=0.5"})[0].config_hash == hash);  // --set wins
-  profile = fake_profile();
-  profile.iterations += 1;
-  CHECK(make_plan(profile, one, {})[0].config_hash != hash);
-}
-
 TEST_CASE("unknown methods and fields stop a plan before anything runs") {
   Profile profile = fake_profile();
   CHECK_THROWS_WITH(make_plan(profile, {}, {"gray=1"}), Catch::Contains("no field 'gray'"));
@@ -78,31 +62,16 @@ TEST_CASE("unknown methods and fields stop a plan before anything runs") {
   CHECK_THROWS_WITH(make_plan(profile, {}, {}), Catch::Contains("'fake'"));
 }
 
-TEST_CASE("a cell is done only with the same configuration and data") {
-  const PlanCell cell = make_plan(fake_profile(), {{"room_1/fake/0"}, {}}, {})[0];
-  Record record;
-  record.cell = cell.cell;
-  record.config_hash = cell.config_hash;
-  record.dataset_hash = "d";
-  CHECK(state_of(cell, {}, "d") == CellState::kPending);
-  CHECK(state_of(cell, {record}, "d") == CellState::kDone);
-  CHECK(state_of(cell, {record}, "other") == CellState::kStale);
-  record.config_hash = "old";
-  CHECK(state_of(cell, {record}, "d") == CellState::kStale);
-  record.config_hash = cell.config_hash;
-  record.failure = Failure{};
-  CHECK(state_of(cell, {record}, "d") == CellState::kFailed);
-}
-
-TEST_CASE("time is estimated from finished cells of the same method, without the dataset's") {
+TEST_CASE("time is estimated for the stages to do, from finished cells of the same method") {
   const PlanCell cell = make_plan(fake_profile(), {{"room_1/fake/0"}, {}}, {})[0];
   Record a, b;
   a.cell = {"room_1", "fake", 1};
-  a.timings = {{"dataset", 100.0}, {"train", 10.0}, {"eval", 2.0}};
+  a.timings = {{"train", 10.0}, {"mesh", 4.0}, {"score", 2.0}};
   b.cell = {"room_1", "fake/other", 1};
   b.timings = {{"train", 1000.0}};
-  CHECK(estimated_seconds(cell, {a, b}) == 12.0);
-  CHECK(estimated_seconds(cell, {b}) == 0.0);
+  CHECK(estimated_seconds(cell, {a, b}, {"train", "render", "mesh", "score"}) == 16.0);
+  CHECK(estimated_seconds(cell, {a, b}, {"mesh", "score"}) == 6.0);
+  CHECK(estimated_seconds(cell, {b}, {"train"}) == 0.0);
 }
 
 TEST_CASE("every built-in profile is valid") {

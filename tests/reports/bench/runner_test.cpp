@@ -8,6 +8,8 @@
 
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
+#include "reports/bench/cell_stages.h"
+#include "reports/bench/stages.h"
 #include "reports/verbs/result_tables.h"
 #include "tests/reports/fake_method.h"
 #include "tests/support/temp_folder.h"
@@ -28,11 +30,41 @@ RunnerOptions fake_run(const fs::path& out) {
   for (const char* scene : {"room_1", "room_2"})
     options.profile.scenes.push_back({{"scene", scene}, {"folder", "nowhere"}});
   options.out = out;
+  options.identify = fake_identity;
   options.load = [](const SceneSource& source) {
     return LoadedScene{fake_scene(source.scene), "nowhere"};
   };
   return options;
 }
+
+// One cell, and what can be said of it after a run.
+struct OneCell {
+  test::TempFolder folder;
+  RunnerOptions options = fake_run(folder.path());
+  fs::path run = folder.path() / "runs/room_1/fake/0";
+
+  OneCell() {
+    options.filter.only = {"room_1/fake/0"};
+    run_profile(options);
+  }
+  CellStages stages() const {
+    const PlanCell cell = make_plan(options.profile, options.filter, options.assignments)[0];
+    const auto records = read_records(folder.path() / "records.jsonl");
+    const Record* record = find_record(records, cell.cell);
+    return cell_stages(cell, options.profile, options.identify(cell.source), record, run);
+  }
+  // The stages that a run would do now, then does; `trainings` of them really trained.
+  std::string run_again(int trainings) {
+    std::string to_do;
+    for (const CellStages now = stages(); const Stage stage : kStages)
+      if (!now[stage].done) to_do += (to_do.empty() ? "" : " ") + std::string(stage_name(stage));
+    const int before = FakeMethod::trainings;
+    CHECK(run_profile(options).ran == (to_do.empty() ? 0 : 1));
+    CHECK(FakeMethod::trainings - before == trainings);
+    CHECK(stages().why() == "");
+    return to_do;
+  }
+};
 
 }  // namespace
 
@@ -107,43 +139,129 @@ TEST_CASE("a second run reuses finished cells, a changed configuration runs agai
   CHECK(run_profile(options).ran == 4);
 }
 
-TEST_CASE("a run that other code trained is scored again on request, and the record says so") {
-  const test::TempFolder folder;
-  RunnerOptions options = fake_run(folder.path());
-  run_profile(options);
-  const int trainings = FakeMethod::trainings;
-  const fs::path run = folder.path() / "runs/room_1/fake/0";
-  for (const char* file : {"config.json", "env.json"}) {
-    Json json = Json::parse(read_file(run / file));
-    json["config_hash"] = "0123456789abcdef";
-    json["git_revision"] = "abc1234";
-    write_file(run / file, json.dump());
-  }
-  fs::remove(folder.path() / "records.jsonl");
-  options.rescore = true;
-  CHECK(run_profile(options).ran == 4);
-  CHECK(FakeMethod::trainings == trainings);
-  const auto records = read_records(folder.path() / "records.jsonl");
-  CHECK(records[0].config_hash == "0123456789abcdef");
-  CHECK(records[0].warnings.at(0) == "trained by revision abc1234");
-  options.profile.iterations = 20;  // that is no such run
-  run_profile(options);
-  CHECK(FakeMethod::trainings == trainings + 4);
+TEST_CASE("a finished cell has a key for each stage, and its record the two that count") {
+  OneCell cell;
+  CHECK(cell.stages().done());
+  for (const char* stage : {"train", "render", "mesh", "score"})
+    CHECK(fs::exists(cell.run / "keys" / (std::string(stage) + ".json")));
+  const auto records = read_records(cell.folder.path() / "records.jsonl");
+  const CellStages stages = cell.stages();
+  CHECK(records[0].train_key == stages[Stage::kTrain].key());
+  CHECK(records[0].score_key == stages[Stage::kScore].key());
+  CHECK(records[0].train_key.size() == 20);
+  CHECK(cell.run_again(0) == "");
+}
+
+TEST_CASE("only what has changed runs again, and the plan says why") {
+  OneCell cell;
+  cell.options.profile.mesh_metrics["num_samples"] = 10;
+  CHECK(cell.stages().why() == "score: mesh_metrics.num_samples 1000000 -> 10");
+  CHECK(cell.run_again(0) == "score");
+  cell.options.profile.mesh["voxel"] = 0.5;
+  CHECK(
+      cell.stages().why() ==
+      "mesh: mesh.voxel 0.01 -> 0.5; score: mesh_metrics.cull_tolerance_m 0.02 -> 1"
+  );
+  CHECK(cell.run_again(0) == "mesh score");
+  cell.options.profile.timing_frames = 3;
+  CHECK(cell.run_again(0) == "score");
+  cell.options.profile.iterations = 20;
+  CHECK(
+      cell.stages().why() ==
+      "train: iterations 10 -> 20; render: after train; mesh: after train; score: after render, "
+      "after mesh"
+  );
+  CHECK(cell.run_again(1) == "train render mesh score");
+  cell.options.identify = [](const SceneSource& source) {
+    SceneIdentity identity = fake_identity(source);
+    identity.document["content"] = "other";
+    return identity;
+  };
+  CHECK(cell.stages()[Stage::kTrain].why == "other files in the data");
+  CHECK(cell.run_again(1) == "train render mesh score");
+}
+
+TEST_CASE("a stage whose files are damaged or gone is not done") {
+  OneCell cell;
+  fs::remove(cell.run / "renders/0002/rgb.exr");
+  CHECK(cell.stages()[Stage::kRender].why == "renders/0002/rgb.exr is missing");
+  CHECK(cell.run_again(0) == "render score");
+  write_file(cell.run / "renders/0002/rgb.exr", "half");
+  CHECK_THAT(cell.stages()[Stage::kRender].why, Catch::Contains("has 4 bytes, had"));
+  CHECK(cell.run_again(0) == "render score");
+  fs::remove(cell.run / "metrics.json");
+  CHECK(cell.run_again(0) == "score");
+  fs::remove(cell.run / "interface.ply");
+  CHECK(cell.run_again(1) == "train render mesh score");
+}
+
+TEST_CASE("a stage that was interrupted is not done") {
+  OneCell cell;
+  fs::remove(cell.run / "keys/mesh.json");
+  CHECK(cell.run_again(0) == "mesh score");
+  write_file(cell.run / "keys/render.json", "{\"key\": \"torn");
+  CHECK(cell.run_again(0) == "render score");
+}
+
+TEST_CASE("runs and records of earlier versions are run again, with a line that says why") {
+  OneCell cell;
+  fs::remove_all(cell.run / "keys");
+  CHECK_THAT(cell.stages().why(), Catch::Contains("trained by an earlier version, without a key"));
+  fs::remove_all(cell.run);
+  Record record;
+  record.cell = {"room_1", "fake", 0};
+  record.schema = 1;
+  record.metrics = {{"psnr", 20.0}};
+  append_record(cell.folder.path() / "records.jsonl", record);
+  CHECK_THAT(cell.stages().why(), Catch::Contains("recorded by an earlier version"));
+  CHECK(cell.run_again(1) == "train render mesh score");
+}
+
+TEST_CASE("what was scored with files that have gone since stays scored; gained ones count") {
+  OneCell cell;
+  const fs::path records = cell.folder.path() / "records.jsonl";
+  const auto scored_with = [&](const Json& lpips) {
+    Json document = read_stage(cell.run, Stage::kScore)->document;
+    document["machine"]["lpips-alex"] = lpips;
+    write_stage(cell.run, Stage::kScore, document, {"metrics.json"});
+    Record record = read_records(records)[0];
+    record.score_key = stage_key(document);
+    append_record(records, record);
+  };
+  scored_with({{"sha256", "a"}});
+  CHECK(cell.run_again(0) == "");
+  CHECK(cell.stages()[Stage::kScore].key() == read_records(records)[0].score_key);
 }
 
 TEST_CASE("a trained cell without a record is scored without training again") {
-  const test::TempFolder folder;
-  const RunnerOptions options = fake_run(folder.path());
-  run_profile(options);
-  const int trainings = FakeMethod::trainings;
-  fs::remove(folder.path() / "records.jsonl");
-  CHECK(run_profile(options).ran == 4);
-  CHECK(FakeMethod::trainings == trainings);
+  OneCell cell;
+  fs::remove(cell.folder.path() / "records.jsonl");
+  CHECK(cell.stages().why() == "score: not in the records");
+  CHECK(cell.run_again(0) == "score");
+}
+
+TEST_CASE("data that were made again to the same bytes change nothing") {
+  OneCell cell;
+  bool made = false;
+  cell.options.identify = [&](const SceneSource& source) {
+    SceneIdentity identity = fake_identity(source);
+    if (made) return identity;
+    identity.document.erase("content");
+    identity.why_not = "code of datasets/glassroom/room.cpp";
+    return identity;
+  };
+  cell.options.load = [&](const SceneSource& source) {
+    made = true;
+    return LoadedScene{fake_scene(source.scene), "nowhere"};
+  };
+  CHECK_THAT(cell.stages().why(), Catch::StartsWith("data: code of datasets/glassroom/room.cpp"));
+  CHECK(run_profile(cell.options).reused == 1);
+  CHECK(made);
 }
 
 TEST_CASE("a method that throws becomes a failure record and the others go on") {
   const std::pair<const char*, const char*> cases[] = {
-      {"initialize", "train"}, {"step", "train"}, {"render", "eval"}};
+      {"initialize", "train"}, {"step", "train"}, {"render", "render"}};
   for (const auto& [place, stage] : cases) {
     const test::TempFolder folder;
     RunnerOptions options = fake_run(folder.path());
@@ -185,7 +303,7 @@ TEST_CASE("a scene that cannot be had fails its cells and no others") {
   CHECK(summary.failed == 2);
   CHECK(summary.ran == 2);
   const auto records = read_records(folder.path() / "records.jsonl");
-  CHECK(records[0].failure->stage == "dataset");
+  CHECK(records[0].failure->stage == "data");
   CHECK(records[0].failure->kind == "bad-input");
 }
 

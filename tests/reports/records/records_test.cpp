@@ -19,7 +19,8 @@ Record sample_record() {
   record.dataset = "glassroom";
   record.cell = {"room_1", "glint/no-trans", 3};
   record.metrics = {{"psnr", 31.23456789012345}, {"psnr@glass", 27.5}};
-  record.config_hash = "c0ffee";
+  record.train_key = "c0ffee";
+  record.score_key = "beef";
   record.num_surfels = 20000;
   record.not_applicable = {"transparency-iou"};
   record.timings["train"] = 12.5;
@@ -85,6 +86,15 @@ TEST_CASE("an older record without later fields reads with defaults, unknown fie
   CHECK(record.cell.text() == "a/b/0");
   CHECK(record.ok());
   CHECK(record.metrics.empty());
+}
+
+TEST_CASE("a record of schema 1 reads, and has no keys") {
+  const Record record = record_from_json(
+      Json::parse(R"({"schema":1,"scene":"a","method":"b","config_hash":"c0ffee"})"), "line 1"
+  );
+  CHECK(record.schema == 1);
+  CHECK(record.train_key.empty());
+  CHECK(record.score_key.empty());
 }
 
 TEST_CASE("records that cannot be trusted are errors naming the line") {

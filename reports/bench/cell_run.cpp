@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "reports/bench/cell_run.h"
+
+#include <chrono>
+#include <new>
+
+#include "glint/core/interrupt.h"
+#include "glint/core/progress.h"
+#include "metrics/fusion/tsdf_volume.h"
+#include "metrics/metric.h"
+#include "reports/bench/evaluate.h"
+#include "reports/bench/mesh_stage.h"
+#include "reports/bench/run_stage.h"
+#include "reports/bench/stages.h"
+#include "reports/records/environment.h"
+
+namespace glint {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Which stage runs, how long each took: for records.
+class StageClock {
+ public:
+  explicit StageClock(Json& timings) : timings_(timings) {}
+  void enter(const std::string& stage) {
+    leave();
+    stage_ = stage;
+    start_ = Clock::now();
+  }
+  void leave() {
+    if (!stage_.empty())
+      timings_[stage_] = std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+  const std::string& stage() const { return stage_; }
+
+ private:
+  Json& timings_;
+  std::string stage_;
+  Clock::time_point start_;
+};
+
+RunSpec spec_of(
+    const PlanCell& cell,
+    const RunnerOptions& options,
+    const LoadedScene& loaded,
+    const CellStages& stages
+) {
+  RunSpec spec;
+  spec.folder = run_folder(options.out, cell.cell);
+  spec.method = cell.cell.method;
+  spec.config = cell.config;
+  spec.options.iterations = options.profile.iterations;
+  spec.options.seed = cell.cell.seed;
+  spec.dataset_folder = loaded.folder;
+  spec.dataset = cell.source.dataset;
+  spec.scene = cell.cell.scene;
+  spec.max_pixels = cell.source.max_pixels;
+  spec.dataset_hash = loaded.scene.spec_hash;
+  spec.train_document = stages[Stage::kTrain].document;
+  return spec;
+}
+
+Record record_of(const PlanCell& cell, const RunnerOptions& options) {
+  Record record;
+  record.profile = options.profile.name;
+  record.dataset = cell.source.dataset;
+  record.cell = cell.cell;
+  record.environment = environment_json();
+  return record;
+}
+
+Failure failure_of(const std::exception& error, const std::string& stage, const fs::path& run) {
+  return {stage, failure_kind(error, stage), error.what(), log_tail(run)};
+}
+
+// Makes the meshes. A run whose depth gives none has its other numbers all the same; empty: made.
+std::string why_no_mesh(
+    const RunSpec& spec, const Scene& scene, const Method& method, const TsdfOptions& options
+) {
+  for (const MeshLayer& layer : kMeshLayers) fs::remove(spec.folder / layer.mesh);
+  if (!has_tsdf_volume()) return "no Open3D";
+  try {
+    mesh_stage(spec, scene, method, options);
+    return {};
+  } catch (const Error& error) {
+    if (error.code() == ExitCode::kEnvironment) throw;  // nothing that another run would lack
+    log::warn(fmt::format("{}: no mesh: {}", spec.folder.string(), error.what()));
+    return fmt::format("no mesh: {}", error.what());
+  }
+}
+
+class CellRun {
+ public:
+  CellRun(
+      const PlanCell& cell,
+      const RunnerOptions& options,
+      const LoadedScene& loaded,
+      const CellStages& stages
+  )
+      : profile_(options.profile),
+        scene_(loaded.scene),
+        stages_(stages),
+        spec_(spec_of(cell, options, loaded, stages)),
+        record_(record_of(cell, options)),
+        clock_(record_.timings) {
+    record_.dataset_hash = scene_.spec_hash;
+    record_.train_key = stages[Stage::kTrain].key();
+    record_.score_key = stages[Stage::kScore].key();
+  }
+
+  Record run(const Record* earlier) {
+    if (earlier && earlier->ok()) keep_timings(*earlier);
+    try {
+      run_stages();
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const std::exception& error) {
+      record_.metrics.clear();
+      record_.failure = failure_of(error, clock_.stage(), spec_.folder);
+    }
+    return std::move(record_);
+  }
+
+ private:
+  // What a stage took counts for as long as its files do.
+  void keep_timings(const Record& earlier) {
+    for (const Stage stage : kStages)
+      if (const std::string name(stage_name(stage)); stages_[stage].done)
+        if (const auto found = earlier.timings.find(name); found != earlier.timings.end())
+          record_.timings[name] = *found;
+  }
+
+  void run_stages() {
+    enter(Stage::kTrain);
+    method_ = stages_[Stage::kTrain].done ? load_trained(spec_) : train_stage(spec_, scene_);
+    run(Stage::kRender, [&] {
+      render_stage(spec_, scene_, *method_);
+      return std::string();
+    });
+    run(Stage::kMesh,
+        [&] { return why_no_mesh(spec_, scene_, *method_, profile_.tsdf_options()); });
+    enter(Stage::kScore);
+    run_stage(spec_.folder, Stage::kScore, stages_[Stage::kScore].document, [&] {
+      score();
+      return std::string();
+    });
+    clock_.leave();
+    record_.timings["train"] = trained_cost(spec_)->seconds;
+  }
+
+  void run(Stage stage, const std::function<std::string()>& work) {
+    if (stages_[stage].done) return;
+    enter(stage);
+    run_stage(spec_.folder, stage, stages_[stage].document, work);
+    clock_.leave();
+  }
+  void enter(Stage stage) { clock_.enter(std::string(stage_name(stage))); }
+
+  void score() {
+    record_.not_measured = missing_metrics();
+    if (const std::string why = finished_stage(spec_.folder, Stage::kMesh, "mesh").note;
+        !why.empty())
+      for (const Metric& metric : mesh_metric_list()) record_.not_measured[metric.id] = why;
+    const TrainCost cost = trained_cost(spec_).value_or(TrainCost{});
+    const TimingOptions timing{profile_.timing_frames, profile_.timing_warmup};
+    record_.metrics = eval_stage(
+        spec_,
+        scene_,
+        {{"fps", measure_fps(*method_, scene_, timing)},
+         {"num-surfels", static_cast<double>(method_->num_surfels())},
+         {"train-minutes", cost.seconds / 60},
+         {"peak-memory", cost.peak_memory_mb}},
+        profile_.mesh_protocol()
+    );
+    record_.not_applicable = not_applicable(record_.metrics, record_.not_measured);
+    record_.num_surfels = method_->num_surfels();
+    record_.warnings = cost.warnings;
+    const Camera& camera = scene_.test.front().camera;
+    record_.resolution = fmt::format("{}x{}", camera.width, camera.height);
+  }
+
+  const Profile& profile_;
+  const Scene& scene_;
+  const CellStages& stages_;
+  RunSpec spec_;
+  Record record_;
+  StageClock clock_;
+  std::unique_ptr<Method> method_;
+};
+
+}  // namespace
+
+Record run_cell(
+    const PlanCell& cell,
+    const RunnerOptions& options,
+    const LoadedScene& loaded,
+    const CellStages& stages,
+    const Record* earlier
+) {
+  return CellRun(cell, options, loaded, stages).run(earlier);
+}
+
+Record record_without_data(
+    const PlanCell& cell, const RunnerOptions& options, const std::exception& error
+) {
+  Record record = record_of(cell, options);
+  record.failure = failure_of(error, "data", {});
+  return record;
+}
+
+std::string failure_kind(const std::exception& error, const std::string& stage) {
+  if (dynamic_cast<const std::bad_alloc*>(&error)) return "out-of-memory";
+  const auto* ours = dynamic_cast<const Error*>(&error);
+  if (!ours) return "unknown";
+  switch (ours->code()) {
+    case ExitCode::kBadPrediction:
+      return stage == "train" ? "not-finite" : "bad-input";
+    case ExitCode::kBadReference:
+      return "bad-input";
+    case ExitCode::kUsage:
+      return "usage";
+    case ExitCode::kEnvironment:
+      return "environment";
+    default:
+      return "unknown";
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// One cell through those of its stages that are not done, to its record.
+#pragma once
+
+#include "reports/bench/cell_stages.h"
+#include "reports/bench/runner.h"
+
+namespace glint {
+
+// `earlier`: the cell's last record, or null. What fails becomes part of the record. Errors:
+// Interrupted passes through, an unfinished cell leaves no record.
+Record run_cell(
+    const PlanCell& cell,
+    const RunnerOptions& options,
+    const LoadedScene& loaded,
+    const CellStages& stages,
+    const Record* earlier
+);
+
+// Of a cell whose data cannot be had.
+Record record_without_data(
+    const PlanCell& cell, const RunnerOptions& options, const std::exception& error
+);
+
+// Of a failure in `stage`: "bad-input", "usage", "environment", "not-finite" (training diverged),
+// "out-of-memory", "unknown".
+std::string failure_kind(const std::exception& error, const std::string& stage);
+
+}  // namespace glint

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "reports/bench/run_stage.h"
+
+namespace glint {
+namespace {
+
+// The files of a stage, below the run's folder.
+std::vector<std::string> outputs_of(const fs::path& run, Stage stage) {
+  if (stage == Stage::kRender) return {"renders", "strip.png"};
+  if (stage == Stage::kMesh) return {"mesh.ply", "mesh_transmission.ply", "mesh.json"};
+  if (stage == Stage::kScore) return {"metrics.json"};
+  std::vector<std::string> trained;
+  for (const auto& entry : fs::directory_iterator(run)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_regular_file() && name != "log.jsonl" && name != "config.json" &&
+        name != "env.json")
+      trained.push_back(name);
+  }
+  return trained;
+}
+
+}  // namespace
+
+void begin_stage(const fs::path& run, Stage stage) {
+  for (const Stage undone : {stage, Stage::kScore}) forget_stage(run, undone);
+}
+
+void end_stage(const fs::path& run, Stage stage, const Json& document, const std::string& note) {
+  write_stage(run, stage, document, outputs_of(run, stage), note);
+}
+
+void run_stage(
+    const fs::path& run, Stage stage, const Json& document, const std::function<std::string()>& work
+) {
+  begin_stage(run, stage);
+  const std::string note = work();
+  end_stage(run, stage, document, note);
+}
+
+StageFile finished_stage(const fs::path& run, Stage stage, std::string_view verb) {
+  const auto found = read_stage(run, stage);
+  GLINT_CHECK(
+      found.has_value(),
+      kBadPrediction,
+      "{}: no keys/{}.json: the stage has not ended here, or an earlier version ran it; run "
+      "`glint-bench {}` first",
+      run.string(),
+      stage_name(stage),
+      verb
+  );
+  return *found;
+}
+
+}  // namespace glint

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// How a stage in a run folder begins and ends. Its key is forgotten first and written last, so that
+// a stage that is interrupted is not done.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "reports/records/stage_files.h"
+
+namespace glint {
+
+// Forgets the stage and the scores behind it.
+void begin_stage(const fs::path& run, Stage stage);
+void end_stage(
+    const fs::path& run, Stage stage, const Json& document, const std::string& note = {}
+);
+
+// Both, around `work`, which returns the note (StageFile).
+void run_stage(
+    const fs::path& run, Stage stage, const Json& document, const std::function<std::string()>& work
+);
+
+// The stage that ended in the folder, for what is made from it. Errors (kBadPrediction): none did,
+// or by an earlier version; `verb` of glint-bench runs it.
+StageFile finished_stage(const fs::path& run, Stage stage, std::string_view verb);
+
+}  // namespace glint

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// What each stage of a run is made from, field by field: the stages before (their keys), resolved
+// options, code, the device's kind, and what the machine has (weights, Open3D). The hash of such a
+// document is the stage's key (stage_files.h). Options are under the names of profiles and configs.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "glint/method.h"
+#include "metrics/fusion/tsdf.h"
+#include "metrics/mesh/mesh_protocol.h"
+#include "reports/bench/stages.h"
+
+namespace glint {
+
+// `data`: a document of scene_source.h. Errors (kUsage): unknown method or field.
+Json train_document(
+    const std::string& method, const Json& overrides, const RunOptions& options, const Json& data
+);
+Json render_document(const std::string& method, const std::string& train_key);
+Json mesh_document(
+    const std::string& method, const std::string& train_key, const TsdfOptions& options
+);
+
+struct ScoreInputs {
+  std::string render_key, mesh_key;
+};
+// Without timing: nothing was timed.
+Json score_document(
+    const std::string& method,
+    const ScoreInputs& inputs,
+    const MeshProtocol& protocol,
+    const std::optional<TimingOptions>& timing
+);
+
+}  // namespace glint

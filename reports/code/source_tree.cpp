@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "reports/code/source_tree.h"
+
+#include <set>
+
+#include "glint/core/error.h"
+#include "glint/core/sha256.h"
+#include "reports/code/source_text.h"
+
+namespace glint {
+namespace {
+
+constexpr std::string_view kLean = "_lean.cpp";
+constexpr std::size_t kHashDigits = 12;
+
+std::string extension_of(const std::string& file) { return fs::path(file).extension().string(); }
+bool is_source(const std::string& file) {
+  const std::string extension = extension_of(file);
+  return extension == ".h" || extension == ".cuh" || extension == ".cpp" || extension == ".cu";
+}
+bool is_unit(const std::string& file) {
+  return extension_of(file) == ".cpp" || extension_of(file) == ".cu";
+}
+fs::path folder_of(const std::string& file) { return fs::path(file).parent_path(); }
+
+// "a/x" of a/x.cpp, a/x.cu and a/x_lean.cpp.
+std::string stem_of(const std::string& file) {
+  if (file.ends_with(kLean)) return file.substr(0, file.size() - kLean.size());
+  return fs::path(file).replace_extension().string();
+}
+
+}  // namespace
+
+SourceTree::SourceTree(const fs::path& root, bool lean) {
+  for (const char* folder : {"glint", "metrics", "datasets", "baselines", "reports"}) {
+    if (!fs::exists(root / folder)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+      if (is_source(entry.path().string())) read(root, entry.path());
+  }
+  pick_lean(lean);
+  find_implementations();
+}
+
+void SourceTree::read(const fs::path& root, const fs::path& file) {
+  Source source;
+  source.code = code_of(read_file(file));
+  source.includes = quoted_includes(source.code);
+  const std::string name = file.lexically_relative(root).generic_string();
+  source.registers = is_unit(name) && !name.starts_with("reports/") &&
+                     source.code.find("GLINT_REGISTER") != std::string::npos;
+  sources_[name] = std::move(source);
+}
+
+void SourceTree::pick_lean(bool lean) {
+  std::vector<std::string> left_out;
+  for (const auto& [name, source] : sources_)
+    if (name.ends_with(kLean)) left_out.push_back(lean ? stem_of(name) + ".cpp" : name);
+  for (const std::string& name : left_out) sources_.erase(name);
+}
+
+void SourceTree::find_implementations() {
+  for (const auto& [name, source] : sources_) {
+    if (!is_unit(name) || source.registers) continue;
+    const std::string own = stem_of(name) + ".h";
+    const auto implements = [&, &file = name](const std::string& header) {
+      const auto found = sources_.find(header);
+      if (found != sources_.end()) found->second.implementations.push_back(file);
+    };
+    if (sources_.contains(own)) {
+      implements(own);
+      continue;
+    }
+    for (const std::string& header : source.includes)
+      if (folder_of(header) == folder_of(name)) implements(header);
+  }
+}
+
+std::vector<std::string> SourceTree::matching(const std::string& pattern) const {
+  std::vector<std::string> found;
+  for (const auto& [name, source] : sources_)
+    if (glob_match(pattern, name)) found.push_back(name);
+  GLINT_CHECK(
+      !found.empty(),
+      kBadReference,
+      "{}: no such source; reports/code/stage_sources.cpp names it",
+      pattern
+  );
+  return found;
+}
+
+std::vector<std::string> SourceTree::registering() const {
+  std::vector<std::string> found;
+  for (const auto& [name, source] : sources_)
+    if (source.registers) found.push_back(name);
+  return found;
+}
+
+std::vector<std::string> SourceTree::closure(const std::vector<std::string>& files) const {
+  std::set<std::string> reached(files.begin(), files.end());
+  std::vector<std::string> open(reached.begin(), reached.end());
+  const auto reach = [&](const std::vector<std::string>& names) {
+    for (const std::string& name : names)
+      if (sources_.contains(name) && !name.starts_with("reports/") && reached.insert(name).second)
+        open.push_back(name);
+  };
+  while (!open.empty()) {
+    const std::string name = open.back();
+    open.pop_back();
+    if (name.starts_with("reports/")) continue;
+    const Source& source = sources_.at(name);
+    reach(source.includes);
+    reach(source.implementations);
+  }
+  return {reached.begin(), reached.end()};
+}
+
+std::string SourceTree::hash_of(const std::string& file) const {
+  return sha256(sources_.at(file).code).substr(0, kHashDigits);
+}
+
+}  // namespace glint

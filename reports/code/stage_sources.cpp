@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "reports/code/stage_sources.h"
+
+namespace glint {
+
+const std::vector<StageSources>& stage_sources() {
+  static const std::vector<StageSources> all = {
+      {"make", {"datasets/glassroom/*.cpp"}},
+      {"load", {"datasets/dataset.h", "reports/records/scene_source.cpp"}},
+      {"cuda", {"glint/cuda/*"}},
+      {"render",
+       {"glint/method.h",
+        "glint/scene/image_files.h",
+        "reports/bench/stages.cpp",
+        "reports/records/run_folder.cpp"}},
+      {"mesh",
+       {"glint/scene/image_files.h",
+        "glint/scene/ply.h",
+        "metrics/fusion/*.cpp",
+        "reports/bench/mesh_stage.*"}},
+      {"score",
+       {"glint/scene/image_files.h",
+        "metrics/metric.h",
+        "metrics/view/*.cpp",
+        "metrics/mesh/*.cpp",
+        "metrics/tools/mesh_inputs.h",
+        "reports/bench/evaluate.cpp",
+        "reports/bench/mesh_eval*.cpp",
+        "reports/bench/stages.cpp"}}};
+  return all;
+}
+
+}  // namespace glint

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "reports/records/stage_files.h"
+
+#include <algorithm>
+
+#include "glint/core/sha256.h"
+
+namespace glint {
+namespace {
+
+constexpr std::size_t kKeyDigits = 20;
+
+fs::path file_of(const fs::path& folder, Stage stage) {
+  return folder / "keys" / fmt::format("{}.json", stage_name(stage));
+}
+
+std::string relative_name(const fs::path& file, const fs::path& folder) {
+  return file.lexically_normal().lexically_relative(folder.lexically_normal()).generic_string();
+}
+
+// Regular files below, but for hidden ones and keys/.
+std::vector<fs::path> files_below(const fs::path& place) {
+  std::error_code code;
+  if (fs::is_regular_file(place, code)) return {place};
+  std::vector<fs::path> files;
+  if (!fs::is_directory(place, code)) return files;
+  for (auto it = fs::recursive_directory_iterator(place); it != fs::end(it); ++it) {
+    const std::string name = it->path().filename().string();
+    if (it->is_directory() && (name == "keys" || name.starts_with(".")))
+      it.disable_recursion_pending();
+    else if (it->is_regular_file() && !name.starts_with("."))
+      files.push_back(it->path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// Hashes of files, by name, size and time of change.
+class HashCache {
+ public:
+  HashCache(const fs::path& data, const fs::path& cache)
+      : path_(cache / (sha256(fs::absolute(data).lexically_normal().string()) + ".json")) {
+    std::error_code code;
+    if (fs::exists(path_, code)) known_ = Json::parse(read_file(path_), nullptr, false);
+    if (!known_.is_object()) known_ = Json::object();
+  }
+
+  std::string hash_of(const fs::path& file, const std::string& name) {
+    const Json state = {fs::file_size(file), fs::last_write_time(file).time_since_epoch().count()};
+    const auto found = known_.find(name);
+    const bool same = found != known_.end() && found->is_object() && (*found)["state"] == state;
+    const std::string hash = same ? (*found)["hash"].get<std::string>() : sha256(read_file(file));
+    changed_ = changed_ || !same;
+    used_[name] = {{"state", state}, {"hash", hash}};
+    return hash;
+  }
+
+  // A cache that cannot be written is done without.
+  void save() const try {
+    if (changed_) write_file(path_, used_.dump());
+  } catch (const Error&) {
+  }
+
+ private:
+  fs::path path_;
+  Json known_, used_ = Json::object();
+  bool changed_ = false;
+};
+
+}  // namespace
+
+std::string_view stage_name(Stage stage) {
+  constexpr std::array<std::string_view, kStages.size()> kNames{
+      "data", "train", "render", "mesh", "score"};
+  return kNames[static_cast<std::size_t>(stage)];
+}
+
+std::string stage_key(const Json& document) {
+  return sha256(document.dump()).substr(0, kKeyDigits);
+}
+
+std::optional<StageFile> read_stage(const fs::path& folder, Stage stage) {
+  const fs::path path = file_of(folder, stage);
+  std::error_code code;
+  if (!fs::exists(path, code)) return std::nullopt;
+  const Json json = Json::parse(read_file(path), nullptr, false);
+  try {
+    StageFile file{json.at("made_from"), json.at("files"), json.at("note")};
+    if (json.at("key") != stage_key(file.document)) return std::nullopt;
+    return file;
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+}
+
+void write_stage(
+    const fs::path& folder,
+    Stage stage,
+    const Json& document,
+    const std::vector<std::string>& outputs,
+    const std::string& note
+) {
+  Json json = {{"key", stage_key(document)}, {"note", note}, {"files", Json::object()}};
+  for (const std::string& output : outputs)
+    for (const fs::path& file : files_below(folder / output))
+      json["files"][relative_name(file, folder)] = fs::file_size(file);
+  json["made_from"] = document;
+  write_file(file_of(folder, stage), json.dump(1) + "\n");
+}
+
+void forget_stage(const fs::path& folder, Stage stage) {
+  std::error_code code;
+  fs::remove(file_of(folder, stage), code);
+}
+
+std::string what_is_damaged(const fs::path& folder, const StageFile& stage) {
+  for (const auto& [name, bytes] : stage.files) {
+    std::error_code code;
+    const std::uintmax_t size = fs::file_size(folder / name, code);
+    if (code) return name + " is missing";
+    if (size != bytes) return fmt::format("{} has {} bytes, had {}", name, size, bytes);
+  }
+  return {};
+}
+
+Json with_machine_of(Json now, const Json& then) {
+  if (!now.contains("machine") || !then.contains("machine")) return now;
+  for (auto& [name, entry] : now["machine"].items()) {
+    const auto found = then["machine"].find(name);
+    if (entry.is_string() && found != then["machine"].end() && found->is_object()) entry = *found;
+  }
+  return now;
+}
+
+std::string content_hash(const fs::path& data, const fs::path& cache) {
+  HashCache hashes(data, cache);
+  std::string text;
+  for (const fs::path& file : files_below(data)) {
+    const std::string name = relative_name(file, data);
+    text += fmt::format("{} {}\n", hashes.hash_of(file, name), name);
+  }
+  hashes.save();
+  return sha256(text).substr(0, kKeyDigits);
+}
+
+}  // namespace glint
