@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Image files: PNG and JPEG through OpenCV (lean build: PNG through libpng, no JPEG, no resizing,
-// no letters), EXR through OpenEXR, NPY maps. Colours stay as stored (sRGB-encoded values in [0,
-// 1]); nothing here changes a transfer function. Writers are atomic. Errors (kBadReference) name
-// the file and say what was found and expected: truncated files, wrong channel counts, sizes that
-// do not match the header, cropped or deep EXR, missing EXR channels.
+// Image files: PNG (read by libdeflate, written by libpng), JPEG through libjpeg-turbo, EXR through
+// OpenEXR, NPY maps; resizing and letters are OpenCV's (lean build: neither). Colours stay as
+// stored (sRGB-encoded values in [0, 1]); nothing here changes a transfer function. Writers are
+// atomic. Errors (kBadReference) name the file and say what was found and expected: truncated
+// files, wrong channel counts, sizes that do not match the header, cropped or deep EXR, missing EXR
+// channels.
 #pragma once
 
 #include <string>
