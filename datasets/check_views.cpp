@@ -231,7 +231,7 @@ DepthKind check_depth(
     agreement.add_pair(from.camera, from.map, to.camera, to.map);
     agreement.add_pair(to.camera, to.map, from.camera, from.map);
   }
-  if (agreement.num_tested() < kEnoughSamples) return DepthKind::kPlanar;
+  if (agreement.num_tested(DepthKind::kPlanar) < kEnoughSamples) return DepthKind::kPlanar;
   report_depth(agreement, (index.views.front().truth.*file).parent_path().string(), findings);
   return agreement.best();
 }

@@ -35,6 +35,7 @@ LoadedScene load_source(const SceneSource& source, const fs::path& data_folder) 
   LoadedScene loaded;
   LoadOptions options;
   options.max_pixels = source.max_pixels;
+  options.loader = source.loader;
   loaded.folder = source.made() ? made_folder(source, data_folder) : data_folder / source.folder;
   if (source.made()) make_glassroom(glassroom_options(source), loaded.folder);
   loaded.scene = load_scene(loaded.folder, options);
