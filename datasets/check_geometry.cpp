@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace glint {
@@ -84,11 +85,32 @@ class CarriedSurface {
   static constexpr double kSmooth = 0.02;  // relative; below kAgreement, so that no cell bridges it
   static constexpr double kNearest = 1e-6;
 
+  // Either nearly at one depth, or on a plane with the pixels around them.
   bool is_one_surface(int x, int y) const {
     const auto [low, high] = std::minmax(
         {depth_.at(x, y), depth_.at(x + 1, y), depth_.at(x, y + 1), depth_.at(x + 1, y + 1)}
     );
-    return low > 0 && static_cast<double>(high) < (1 + kSmooth) * static_cast<double>(low);
+    if (!(low > 0)) return false;
+    return static_cast<double>(high) < (1 + kSmooth) * static_cast<double>(low) || is_plane(x, y);
+  }
+
+  // 1 / depth is linear in the image of a plane, however slanted: its second differences vanish.
+  bool is_plane(int x, int y) const {
+    if (x < 1 || y < 1 || x + 2 >= depth_.width || y + 2 >= depth_.height) return false;
+    for (const int v : {y, y + 1})
+      for (const int u : {x, x + 1})
+        if (!(bend(u, v, 1, 0) < kSmooth) || !(bend(u, v, 0, 1) < kSmooth)) return false;
+    return true;
+  }
+
+  // Second difference of 1 / depth at (x, y) along (dx, dy), relative; not a number beside holes.
+  double bend(int x, int y, int dx, int dy) const {
+    const auto inverse = [&](int u, int v) {
+      const double depth = static_cast<double>(depth_.at(u, v));
+      return depth > 0 ? 1 / depth : std::numeric_limits<double>::quiet_NaN();
+    };
+    const double center = inverse(x, y);
+    return std::abs(inverse(x - dx, y - dy) + inverse(x + dx, y + dy) - 2 * center) / center;
   }
 
   Corner seen(int x, int y) const {
