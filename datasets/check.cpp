@@ -97,7 +97,16 @@ void check_points(const SceneIndex& index, std::vector<Finding>& findings) {
   std::size_t seen = 0, all = 0;
   for (std::size_t i = 0; i < points.positions.size(); i += step, ++all)
     if (is_seen(cast<double>(points.positions[i]), index.views)) ++seen;
-  if (all == 0) findings.push_back({"points", where, "holds no points; expected at least 4"});
+  if (points.positions.size() < kFewestPoints)
+    findings.push_back(
+        {"points",
+         where,
+         fmt::format(
+             "{} points, expected at least {}; without the file training starts from random ones",
+             points.positions.size(),
+             kFewestPoints
+         )}
+    );
   if (2 * seen < all)
     findings.push_back(
         {"points",

@@ -16,16 +16,15 @@ namespace glint {
 // What a depth map holds: planar z, or the distance along the ray.
 enum class DepthKind { kPlanar, kRayLength };
 
-// Depth of view `from`, carried into view `to` and compared with what is stored there: relative
-// differences, for each reading of both maps. Depth [H][W][1], 0 where missing.
+// The surface that the depth of view `from` describes, carried into view `to` and compared with
+// what is stored at the pixels there: relative differences, for each reading of both maps. Depth
+// [H][W][1], 0 where missing.
 class DepthAgreement {
  public:
   void add_pair(const Camera& from, ImageView from_depth, const Camera& to, ImageView to_depth);
 
-  std::size_t num_tested() const { return num_tested_; }
-  // Samples that agree to 5 % under at least one reading.
-  std::size_t num_agreeing() const { return differences_[0].size(); }
-  double median_error(DepthKind kind) const;  // over the agreeing samples
+  std::size_t num_tested(DepthKind kind) const { return of(kind).num_tested; }
+  double median_error(DepthKind kind) const;  // over the samples that agree to 5 %
   // Share of the tested samples that come out more than 5 % in front of what `to` sees. A surface
   // may be hidden from `to`, but nothing can stand in front of what it sees: about 0 when all is
   // well.
@@ -34,9 +33,18 @@ class DepthAgreement {
   DepthKind best() const;
 
  private:
-  std::array<std::vector<double>, 2> differences_;  // absolute, by DepthKind
-  std::array<std::size_t, 2> num_in_front_{};
-  std::size_t num_tested_ = 0;
+  struct Reading {
+    std::vector<double> differences;  // absolute, of the samples that agree
+    std::size_t num_in_front = 0;
+    std::size_t num_tested = 0;
+  };
+
+  const Reading& of(DepthKind kind) const { return readings_[static_cast<std::size_t>(kind)]; }
+  void add_reading(
+      const Camera& from, ImageView from_depth, const Camera& to, ImageView to_depth, DepthKind kind
+  );
+
+  std::array<Reading, 2> readings_;  // by DepthKind
 };
 
 // Stored normals against normals of the surface that the depth map describes: mean cosine for each

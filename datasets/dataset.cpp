@@ -37,6 +37,68 @@ std::string describe_maps(const std::vector<View>& views, MapSet View::*set) {
   return text.empty() ? "none" : text;
 }
 
+struct Candidate {
+  const LoaderSpec* loader;
+  LoaderMatch match;
+};
+
+// By name: the order of registration depends on the linker.
+std::vector<const LoaderSpec*> sorted_loaders() {
+  std::vector<const LoaderSpec*> loaders;
+  for (const LoaderSpec& loader : registry()) loaders.push_back(&loader);
+  std::sort(loaders.begin(), loaders.end(), [](const LoaderSpec* a, const LoaderSpec* b) {
+    return a->name < b->name;
+  });
+  return loaders;
+}
+
+std::string list_loaders() {
+  std::string text;
+  for (const LoaderSpec* loader : sorted_loaders())
+    text += fmt::format("\n  {}: {}", loader->name, loader->looks_for);
+  return text;
+}
+
+const LoaderSpec& loader_called(const std::string& id) {
+  for (const LoaderSpec& loader : registry())
+    if (loader.name == id) return loader;
+  throw Error(
+      ExitCode::kUsage, fmt::format("loader {}: no such loader. There are:{}", id, list_loaders())
+  );
+}
+
+// Several only when they are as sure as each other; none when no loader knows the folder.
+std::vector<Candidate> surest_loaders(const fs::path& folder) {
+  std::vector<Candidate> surest;
+  for (const LoaderSpec* loader : sorted_loaders()) {
+    LoaderMatch match = loader->match(folder);
+    const Sureness best = surest.empty() ? Sureness::kNone : surest.front().match.sureness;
+    if (match.sureness > best) surest.clear();
+    if (match.sureness >= best && match.sureness != Sureness::kNone)
+      surest.push_back({loader, std::move(match)});
+  }
+  return surest;
+}
+
+[[noreturn]] void throw_tie(const fs::path& folder, const std::vector<Candidate>& surest) {
+  std::string found, options;
+  for (const Candidate& candidate : surest) {
+    found += fmt::format("\n  {}: {}", candidate.loader->name, candidate.match.reason);
+    options += fmt::format("{}{}", options.empty() ? "" : " or ", candidate.loader->name);
+  }
+  throw Error(
+      ExitCode::kBadReference,
+      fmt::format(
+          "{}: several loaders know it:{}\nSay which with --loader ({}) of `dataset info`, `check` "
+          "and `pack`, or with the field loader of a profile's scene; other verbs take the file "
+          "that `dataset pack` writes. Or move the files that do not belong to it away",
+          folder.string(),
+          found,
+          options
+      )
+  );
+}
+
 std::string format_vector(Vec3f v) {
   return fmt::format("({:.3f}, {:.3f}, {:.3f})", v.x, v.y, v.z);
 }
@@ -51,34 +113,30 @@ bool register_loader(LoaderSpec spec, const char* source) {
 
 const std::vector<LoaderSpec>& loader_registry() { return registry(); }
 
-const LoaderSpec& find_loader(const fs::path& folder) {
+const LoaderSpec& find_loader(const fs::path& folder, const std::string& id) {
   std::error_code code;
   GLINT_CHECK(
       fs::exists(folder, code), kBadReference, "{}: no such folder or file", folder.string()
   );
-  // Registration order depends on the linker; names do not.
-  const LoaderSpec* found = nullptr;
-  std::string known;
-  for (const LoaderSpec& loader : registry()) {
-    known += fmt::format("\n  {}: {}", loader.name, loader.looks_for);
-    if (loader.can_load(folder) && (found == nullptr || loader.name < found->name)) found = &loader;
-  }
+  if (!id.empty()) return loader_called(id);
+  const std::vector<Candidate> surest = surest_loaders(folder);
   GLINT_CHECK(
-      found != nullptr,
+      !surest.empty(),
       kBadReference,
       "{}: no dataset that a loader knows. Loaders and what they look for:{}",
       folder.string(),
-      known
+      list_loaders()
   );
-  return *found;
+  if (surest.size() > 1) throw_tie(folder, surest);
+  return *surest.front().loader;
 }
 
 Scene load_scene(const fs::path& folder, const LoadOptions& options) {
-  return find_loader(folder).load(folder, options);
+  return find_loader(folder, options.loader).load(folder, options);
 }
 
-std::vector<Finding> check_dataset(const fs::path& folder) {
-  const LoaderSpec& loader = find_loader(folder);
+std::vector<Finding> check_dataset(const fs::path& folder, const std::string& id) {
+  const LoaderSpec& loader = find_loader(folder, id);
   try {
     if (loader.check) return loader.check(folder);
     loader.load(folder, {});

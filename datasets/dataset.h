@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Loaders: one file each, registered by name; load_scene() asks each whether it knows the folder
-// (or the file of a packed scene).
+// Loaders: one file each, registered by name; load_scene() asks each how sure it is that the folder
+// (or the file of a packed scene) is its own, and takes the surest.
 #pragma once
 
 #include <functional>
@@ -19,11 +19,23 @@ struct LoadOptions {
   int test_every = 8;       // view index % test_every == 0 is a test view (unless the data says)
   bool with_truth = true;   // read gt/
   bool with_priors = true;  // read diffrens/
+  std::string loader;       // id of the loader to take; empty: the surest
+};
+
+enum class Sureness {
+  kNone,      // not its data
+  kName,      // a file has the right name; load() will say what is missing
+  kContents,  // all that it needs is there, and what was looked into holds the right things
+};
+
+struct LoaderMatch {
+  Sureness sureness = Sureness::kNone;
+  std::string reason = {};  // what was found: "intri.yml, extri.yml and images"
 };
 
 struct LoaderSpec {
   std::string name;
-  std::function<bool(const fs::path&)> can_load;
+  std::function<LoaderMatch(const fs::path&)> match;
   std::function<Scene(const fs::path&, const LoadOptions&)> load;
   std::string looks_for = {};  // e.g. "transforms.json"; listed when no loader knows a folder
   // What check_dataset() calls; empty: it only tries load().
@@ -33,9 +45,10 @@ struct LoaderSpec {
 
 bool register_loader(LoaderSpec spec, const char* source = "");
 const std::vector<LoaderSpec>& loader_registry();
-// The loader that knows the folder. Errors (kBadReference): none does; what each looks for is
-// listed.
-const LoaderSpec& find_loader(const fs::path& folder);
+// The loader called `id`; if empty, the one that is surest of the folder. Errors (kBadReference):
+// none knows it, and what each looks for is listed; two are as sure, both are named with what they
+// found and the ways to say which; (kUsage): no loader is called `id`.
+const LoaderSpec& find_loader(const fs::path& folder, const std::string& id = "");
 // Errors (kBadReference): find_loader()'s, bad data.
 Scene load_scene(const fs::path& folder, const LoadOptions& options);
 
@@ -43,8 +56,8 @@ Scene load_scene(const fs::path& folder, const LoadOptions& options);
 std::string describe_scene(const Scene& scene);
 
 // Everything wrong with a dataset folder, not only the first thing; of a packed scene the first.
-// Empty: clean. Errors (kBadReference): no loader knows the folder; kEnvironment: load_scene()'s.
-std::vector<Finding> check_dataset(const fs::path& folder);
+// Empty: clean. Errors: find_loader()'s; kEnvironment: load_scene()'s.
+std::vector<Finding> check_dataset(const fs::path& folder, const std::string& loader = "");
 
 }  // namespace glint
 

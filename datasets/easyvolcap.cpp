@@ -23,9 +23,13 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, code);
 }
 
-bool can_load(const fs::path& folder) {
+LoaderMatch match(const fs::path& folder) {
   std::error_code code;
-  return fs::exists(folder / "intri.yml", code) && is_folder(folder / "images");
+  if (!fs::exists(folder / "intri.yml", code)) return {};
+  const bool complete = fs::exists(folder / "extri.yml", code) && is_folder(folder / "images");
+  if (!complete || !file_contains(folder / "intri.yml", "K_"))
+    return {Sureness::kName, "intri.yml"};
+  return {Sureness::kContents, "intri.yml with cameras, extri.yml and images"};
 }
 
 // The view's only frame; a name that does not exist when the folder has none.
@@ -113,8 +117,6 @@ std::vector<Finding> check(const fs::path& folder) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER(
-    {"easyvolcap", can_load, load, "intri.yml, extri.yml and images/<view>/", check}
-)
+GLINT_REGISTER_LOADER({"easyvolcap", match, load, "intri.yml, extri.yml and images/<view>/", check})
 
 }  // namespace glint

@@ -6,9 +6,9 @@
 namespace glint {
 namespace {
 
-bool can_load(const fs::path& path) {
+LoaderMatch match(const fs::path& path) {
   std::error_code code;
-  return fs::is_directory(path, code);
+  return {fs::is_directory(path, code) ? Sureness::kName : Sureness::kNone, "a folder"};
 }
 
 [[noreturn]] Scene load(const fs::path& path, const LoadOptions&) {
@@ -25,6 +25,6 @@ bool can_load(const fs::path& path) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER({"folder", can_load, load, "nothing: folders need the full build"})
+GLINT_REGISTER_LOADER({"folder", match, load, "nothing: folders need the full build"})
 
 }  // namespace glint

@@ -135,6 +135,16 @@ void check_index(const SceneIndex& index) {
 
 }  // namespace
 
+bool file_contains(const fs::path& file, std::string_view part) {
+  std::error_code code;
+  if (!fs::is_regular_file(file, code)) return false;
+  try {
+    return read_file(file).find(part) != std::string::npos;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 std::string folder_name(const fs::path& folder) {
   return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
 }

@@ -231,9 +231,12 @@ Json parse_file(const fs::path& path) {
   }
 }
 
-bool can_load(const fs::path& folder) {
+LoaderMatch match(const fs::path& folder) {
   std::error_code code;
-  return fs::exists(folder / "transforms.json", code);
+  const fs::path file = folder / "transforms.json";
+  if (!fs::exists(file, code)) return {};
+  if (!file_contains(file, "\"frames\"")) return {Sureness::kName, "transforms.json"};
+  return {Sureness::kContents, "transforms.json with frames"};
 }
 
 void read_frames(const Json& json, const fs::path& file, SceneIndex& index) {
@@ -279,6 +282,6 @@ std::vector<Finding> check(const fs::path& folder) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER({"nerfstudio", can_load, load, "transforms.json", check})
+GLINT_REGISTER_LOADER({"nerfstudio", match, load, "transforms.json with frames", check})
 
 }  // namespace glint

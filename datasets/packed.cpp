@@ -7,9 +7,10 @@
 namespace glint {
 namespace {
 
-bool can_load(const fs::path& path) {
+LoaderMatch match(const fs::path& path) {
   std::error_code code;
-  return fs::is_regular_file(path, code);
+  if (!fs::is_regular_file(path, code)) return {};
+  return {Sureness::kContents, "a file"};  // folders are all that others look for
 }
 
 Scene load(const fs::path& path, const LoadOptions& options) {
@@ -25,6 +26,6 @@ Scene load(const fs::path& path, const LoadOptions& options) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER({"packed", can_load, load, "a file that `glint-bench dataset pack` wrote"})
+GLINT_REGISTER_LOADER({"packed", match, load, "a file that `glint-bench dataset pack` wrote"})
 
 }  // namespace glint

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "datasets/dataset.h"
@@ -34,6 +35,13 @@ struct SceneIndex {
   std::vector<ViewSource> views;  // natural order of names
   std::vector<Finding> problems;  // found while reading the camera files
 };
+
+// Fewer are no start for surfels, whose sizes come from three neighbours (neighbor_distances).
+inline constexpr std::size_t kFewestPoints = 4;
+
+// Does the file's text hold `part`? False when it cannot be read: a loader that matches a folder
+// leaves the message to load().
+bool file_contains(const fs::path& file, std::string_view part);
 
 // The folder's own name, also for "." and names that end in a slash.
 std::string folder_name(const fs::path& folder);

@@ -11,6 +11,7 @@
 #include "datasets/glassroom/priors.h"
 #include "datasets/glassroom/sfm_points.h"
 #include "datasets/glassroom/write_scene.h"
+#include "datasets/scene_index.h"
 #include "glint/core/error.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
@@ -184,6 +185,7 @@ class SceneMaker {
       train_views_.push_back(view);
     }
     points_ = sfm_points(*scene_->tracer, train, sfm_model_, seed_);
+    if (points_.size() < kFewestPoints) points_.clear();
     cloud_.positions.resize(points_.size());
     cloud_.colors.resize(points_.size());
   }
@@ -195,7 +197,7 @@ class SceneMaker {
       progress.advance();
     }
     write_cameras(folder_, scene_->cameras);
-    write_point_ply(folder_ / "sparse" / "0" / "points3D.ply", cloud_);
+    if (!points_.empty()) write_point_ply(folder_ / "sparse" / "0" / "points3D.ply", cloud_);
     write_meshes(scene_->room.scene, folder_);
     const Json data = description();  // without the sheet: letters differ between machines
     write_png(folder_ / "contact_sheet.png", sheet_.image());

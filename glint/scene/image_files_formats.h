@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,13 +17,19 @@ Image read_png_or_jpeg(const fs::path& path);
 Image read_exr(const fs::path& path);
 Image read_npy(const fs::path& path);
 
-// The codecs, of files whose container was walked. Integers divided by their maximum,
-// [height][width] with 1 (grey), 2 (grey, alpha), 3 (R G B) or 4 channels. Errors (kBadReference):
-// damaged, or colours that are not read.
-Image decode_png(const fs::path& path, const std::string& file);
+// What a file's header claims about the picture inside.
+struct ClaimedSize {
+  std::int64_t width = 0, height = 0, channels = 0;
+};
+
+// What a PNG claims, after checking that all its chunks are there. Errors (kBadReference).
+ClaimedSize png_size(const fs::path& path, std::string_view file);
+
+// The codecs, of files whose claimed size was checked. Integers divided by their maximum, 1 (grey)
+// or 3 channels (R G B); alpha is dropped. Errors (kBadReference): damaged, or colours that are not
+// read; `path` opens the message.
+Image decode_png(const fs::path& path, std::string_view file);
 Image decode_jpeg(const fs::path& path, const std::string& file);
-// The same as decode_png, faster, for some files; of others none, whether they are good or not.
-std::optional<Image> decode_plain_png(std::string_view file);
 
 // Of PNG and JPEG headers; at most four bytes.
 inline std::uint32_t big_endian(std::string_view bytes) {
@@ -39,11 +44,6 @@ inline float unit_value(int n, int full_range) {
 }
 // The file. 1 or 3 channels, full range.
 std::string encode_png(MaskView image);
-
-// What a file's header claims about the picture inside.
-struct ClaimedSize {
-  std::int64_t width = 0, height = 0, channels = 0;
-};
 
 // Throws (kBadReference) unless a picture of that size can come out of `file_bytes` bytes: no
 // header makes us allocate more than 256 MiB that the file cannot fill.

@@ -12,8 +12,8 @@ namespace {
 // A relative variance of the depths below this is rounding of float, and no slope can be fitted.
 constexpr double kConstantDepth = 1e-12;
 
-DepthFit fit_of(const DepthMoments& sum) {
-  DepthFit fit;
+DepthPriorFit fit_of(const DepthMoments& sum) {
+  DepthPriorFit fit;
   if (sum.pixels < 2) return fit;
   fit.weight_sum = sum.m;
   fit.mean_depth = sum.z / sum.m;
@@ -27,7 +27,7 @@ DepthFit fit_of(const DepthMoments& sum) {
 }
 
 template <class T>
-FittedPairs<T> fitted_pairs(const DepthPairs<T>& pairs, const DepthFit& fit) {
+FittedPairs<T> fitted_pairs(const DepthPairs<T>& pairs, const DepthPriorFit& fit) {
   return {
       pairs,
       static_cast<T>(fit.scale),
@@ -68,7 +68,9 @@ GradientMatching<T> match_gradients(const FittedPairs<T>& fitted, const DepthPri
 }  // namespace
 
 template <class T>
-DepthFit fit_depth(const BasicImage<T>& depth, const Image& prior, const Image& pixel_weight) {
+DepthPriorFit fit_depth_prior(
+    const BasicImage<T>& depth, const Image& prior, const Image& pixel_weight
+) {
   const DepthPairs<T> pairs{depth, prior, pixel_weight};
   return fit_of(sum_kernel(depth.size(), DepthMomentsAt<T>{pairs}));
 }
@@ -85,7 +87,7 @@ double DepthPriorLoss::evaluate(
   check_fits("depth prior", prior, depth.size(), 1);
   if (!pixel_weight.empty())
     check_fits("weights of the depth prior", pixel_weight, depth.size(), 1);
-  const DepthFit fit = fit_depth(depth, prior, pixel_weight);
+  const DepthPriorFit fit = fit_depth_prior(depth, prior, pixel_weight);
   if (!fit.valid) return 0;
   const FittedPairs<T> fitted = fitted_pairs<T>({depth, prior, pixel_weight}, fit);
   const GradientMatching<T> matching = match_gradients(fitted, *this);
@@ -99,8 +101,8 @@ double DepthPriorLoss::evaluate(
   return sum_kernel(depth.size(), loss_at) / fit.weight_sum + matching.loss;
 }
 
-template DepthFit fit_depth(const Image&, const Image&, const Image&);
-template DepthFit fit_depth(const BasicImage<double>&, const Image&, const Image&);
+template DepthPriorFit fit_depth_prior(const Image&, const Image&, const Image&);
+template DepthPriorFit fit_depth_prior(const BasicImage<double>&, const Image&, const Image&);
 template double DepthPriorLoss::evaluate(const Image&, const Image&, const Image&, float, Image&)
     const;
 template double DepthPriorLoss::

@@ -9,7 +9,7 @@
 namespace glint {
 
 // prior ~ scale depth + shift, and what its derivative needs.
-struct DepthFit {
+struct DepthPriorFit {
   bool valid = false;  // false: fewer than two valid pixels, or one depth at all of them
   double scale = 0, shift = 0;
   double weight_sum = 0;                  // M = sum m, the number of valid pixels without weights
@@ -18,7 +18,9 @@ struct DepthFit {
 };
 // Valid pixels: depth > 0, prior > 0, m > 0. pixel_weight: m, [H][W][1], empty for 1.
 template <class T>
-DepthFit fit_depth(const BasicImage<T>& depth, const Image& prior, const Image& pixel_weight);
+DepthPriorFit fit_depth_prior(
+    const BasicImage<T>& depth, const Image& prior, const Image& pixel_weight
+);
 
 // L = sum m r^2 / M + gradient_weight sum_s (sum_pairs m m' |r' - r|) / M_s, r = w z + q - prior.
 // Pairs at scale s are neighbours in x and y of the image that keeps every 2^s-th pixel; M_s is

@@ -18,6 +18,7 @@ struct SceneSource {
   std::string dataset;    // "glassroom", or the name shown for a folder's data
   std::string scene;      // "room_1"; for folders the name shown, unique in the profile
   std::string folder;     // folders: where it lies, relative to --data unless absolute
+  std::string loader;     // folders: id of the loader to take; empty: the surest
   double max_pixels = 0;  // folders: images shrunk below this area; 0: as stored
   int width = 160, height = 90, views = 64, spp = 128;  // glassroom
   std::uint64_t seed = 0;                               // glassroom: varies the layout
@@ -30,6 +31,7 @@ struct SceneSource {
     v("dataset", dataset, "dataset the scene belongs to");
     v("scene", scene, "name of the scene");
     v("folder", folder, "folder with the data; empty: made by GlassRoom");
+    v("loader", loader, "loader that reads the folder; empty: the one that is surest of it");
     v("max_pixels", max_pixels, "shrink images below this area; 0: as stored");
     v("width", width, "pixels");
     v("height", height, "pixels");

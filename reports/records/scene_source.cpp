@@ -110,6 +110,7 @@ LoadedScene load_source(const SceneSource& source, const fs::path& data_folder) 
   LoadedScene loaded;
   LoadOptions options;
   options.max_pixels = source.max_pixels;
+  options.loader = source.loader;
   loaded.folder = folder_of(source, data_folder);
   if (source.made()) make_source(source, loaded.folder, data_folder);
   loaded.scene = load_scene(loaded.folder, options);

@@ -62,9 +62,15 @@ Json scene_json(const Scene& scene, const std::string& loader) {
       {"hash", scene.spec_hash}};
 }
 
-int run_info(const CommonOptions& common, const std::string& folder) {
-  const std::string loader = find_loader(folder).name;
-  const Scene scene = load_scene(folder, {});
+struct FolderOptions {
+  std::string folder, loader;
+};
+
+int run_info(const CommonOptions& common, const FolderOptions& options) {
+  const std::string loader = find_loader(options.folder, options.loader).name;
+  LoadOptions load;
+  load.loader = loader;
+  const Scene scene = load_scene(options.folder, load);
   if (common.json)
     print_json(scene_json(scene, loader));
   else
@@ -72,8 +78,9 @@ int run_info(const CommonOptions& common, const std::string& folder) {
   return 0;
 }
 
-int run_check(const CommonOptions& common, const std::string& folder) {
-  const std::vector<Finding> findings = check_dataset(folder);
+int run_check(const CommonOptions& common, const FolderOptions& options) {
+  const std::string& folder = options.folder;
+  const std::vector<Finding> findings = check_dataset(folder, options.loader);
   Json json = {{"folder", folder}, {"findings", Json::array()}};
   std::string text;
   for (const Finding& finding : findings) {
@@ -89,8 +96,8 @@ int run_check(const CommonOptions& common, const std::string& folder) {
   return static_cast<int>(findings.empty() ? ExitCode::kSuccess : ExitCode::kCheckFailed);
 }
 
-struct PackOptions {
-  std::string folder, file;
+struct PackOptions : FolderOptions {
+  std::string file;
   double max_pixels = 0;
   bool test_truth_only = false;
 };
@@ -98,6 +105,7 @@ struct PackOptions {
 int run_pack(const CommonOptions& common, const PackOptions& options) {
   LoadOptions load;
   load.max_pixels = options.max_pixels;
+  load.loader = options.loader;
   Scene scene = load_scene(options.folder, load);
   if (options.test_truth_only)
     for (View& view : scene.train) view.truth = {};
@@ -113,6 +121,10 @@ int run_pack(const CommonOptions& common, const PackOptions& options) {
   return 0;
 }
 
+void add_loader_option(CLI::App& verb, std::string& loader) {
+  verb.add_option("--loader", loader, "loader that reads it, by id; empty: the surest");
+}
+
 void add_pack(CommandLine& line, CLI::App& dataset) {
   auto options = std::make_shared<PackOptions>();
   CLI::App* pack = line.add_verb(
@@ -123,6 +135,7 @@ void add_pack(CommandLine& line, CLI::App& dataset) {
   );
   pack->add_option("folder", options->folder, "dataset folder")->required();
   pack->add_option("file", options->file, "for example room_1.safetensors")->required();
+  add_loader_option(*pack, options->loader);
   pack->add_option("--max-pixels", options->max_pixels, "shrink images below this area")
       ->check(CLI::NonNegativeNumber);
   pack->add_flag(
@@ -155,17 +168,17 @@ void add_make(CommandLine& line, CLI::App& dataset) {
   make.add_option("--assets", room.assets, "folder with glTF furniture");
 }
 
-using FolderAction = int (*)(const CommonOptions&, const std::string&);
+using FolderAction = int (*)(const CommonOptions&, const FolderOptions&);
 
 void add_folder_verb(
     CommandLine& line, CLI::App& dataset, const char* name, const char* help, FolderAction action
 ) {
-  auto folder = std::make_shared<std::string>();
-  line.add_verb(
-          dataset, name, help, [&line, folder, action] { return action(line.common, *folder); }
-  )
-      ->add_option("folder", *folder, "dataset folder or packed scene")
-      ->required();
+  auto options = std::make_shared<FolderOptions>();
+  CLI::App* verb = line.add_verb(dataset, name, help, [&line, options, action] {
+    return action(line.common, *options);
+  });
+  verb->add_option("folder", options->folder, "dataset folder or packed scene")->required();
+  add_loader_option(*verb, options->loader);
 }
 
 }  // namespace

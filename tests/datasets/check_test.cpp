@@ -34,10 +34,11 @@ std::string list(const std::vector<Finding>& findings) {
 // Findings after `change` was made to the views before, and `damage` to the folder after writing.
 std::vector<Finding> findings_after(
     const std::function<void(std::vector<View>&)>& change,
-    const std::function<void(const fs::path&)>& damage = [](const fs::path&) {}
+    const std::function<void(const fs::path&)>& damage = [](const fs::path&) {},
+    ImageSize size = kSize
 ) {
   const TempFolder folder;
-  std::vector<View> views = box_room_views(10, kSize);
+  std::vector<View> views = box_room_views(10, size);
   change(views);
   write_easyvolcap(folder.path(), views);
   damage(folder.path());
@@ -181,6 +182,42 @@ TEST_CASE("depth that does not belong to the poses is found") {
   CHECK_THAT(list(findings), Contains("[depth-poses]"));
 }
 
+TEST_CASE("small pictures show the same defects, and none when nothing is wrong") {
+  for (const ImageSize size : {ImageSize{32, 18}, ImageSize{64, 36}}) {
+    INFO(size.width << " x " << size.height);
+    const auto found = [&](const std::function<void(std::vector<View>&)>& change) {
+      return findings_after(
+          change, [](const fs::path&) {}, size
+      );
+    };
+    const std::vector<Finding> clean = found([](std::vector<View>&) {});
+    INFO(list(clean));
+    CHECK(clean.empty());
+    only(found(to_ray_length), "ray-length-depth");
+    const auto depth_scaled = [&](float factor) {
+      return list(found([&](std::vector<View>& views) {
+        for (View& view : views)
+          for (float& z : view.truth.depth.values()) z *= factor;
+      }));
+    };
+    CHECK_THAT(depth_scaled(1000), Contains("[depth-poses]"));  // millimetres
+    CHECK_THAT(depth_scaled(0.5f), Contains("[depth-poses]"));
+    CHECK_THAT(
+        list(found([&](std::vector<View>& views) {
+          const std::vector<View> others = box_room_views(10, size, -0.4);
+          for (std::size_t i = 0; i < views.size(); ++i) views[i].camera = others[i].camera;
+        })),
+        Contains("[depth-poses]")
+    );
+    only(
+        found([](std::vector<View>& views) {
+          for (View& view : views) flip_axis(view.truth.normal, 1);
+        }),
+        "normal-axes"
+    );
+  }
+}
+
 TEST_CASE("poses of another world are found") {
   const std::vector<Finding> findings = findings_after([](std::vector<View>& views) {
     const std::vector<View> others = box_room_views(10, kSize, -0.4);
@@ -310,6 +347,19 @@ TEST_CASE("unreadable files and wrong sizes are found") {
   CHECK_THAT(findings[2].message, Contains("10 x 10"));
   CHECK(findings[3].check == "unreadable-file");
   CHECK_THAT(findings[3].where, Contains("points3D.ply"));
+}
+
+TEST_CASE("too few points to start from are found") {
+  const Finding finding = only(
+      findings_after_damage([](const fs::path& folder) {
+        PointCloud points = read_point_ply(folder / "sparse/0/points3D.ply");
+        points.positions.resize(3);
+        points.colors.resize(3);
+        write_point_ply(folder / "sparse/0/points3D.ply", points);
+      }),
+      "points"
+  );
+  CHECK_THAT(finding.message, Contains("3 points, expected at least 4"));
 }
 
 TEST_CASE("negative depth, normals without unit length and points in other axes are found") {

@@ -308,6 +308,32 @@ TEST_CASE("a scene without images and a folder that is no dataset are errors") {
   CHECK_THAT(bad_reference([&] { load_scene(folder.path(), {}); }), Contains("no train views"));
 }
 
+TEST_CASE("the loader that is surest of a folder reads it, and a tie names both and the way out") {
+  const TempFolder folder;
+  write_file(folder / "intri.yml", "nothing of use");
+  write_nerfstudio(folder.path(), box_room_views(3, kSize));
+  CHECK(find_loader(folder.path()).name == "nerfstudio");  // it has frames; intri.yml only a name
+  write_easyvolcap(folder.path(), box_room_views(3, kSize));
+  CHECK_THAT(
+      bad_reference([&] { find_loader(folder.path()); }),
+      Contains("easyvolcap: intri.yml with cameras, extri.yml and images") &&
+          Contains("nerfstudio: transforms.json with frames") &&
+          Contains("--loader (easyvolcap or nerfstudio)")
+  );
+  for (const std::string id : {"easyvolcap", "nerfstudio"}) {
+    LoadOptions options;
+    options.loader = id;
+    CHECK(load_scene(folder.path(), options).dataset == id);
+    CHECK(check_dataset(folder.path(), id).empty());
+  }
+  write_file(folder / "transforms.json", "{}");
+  CHECK(find_loader(folder.path()).name == "easyvolcap");
+  CHECK_THAT(
+      error_of(ExitCode::kUsage, [&] { find_loader(folder.path(), "colmap"); }),
+      Contains("loader colmap: no such loader") && Contains("nerfstudio: transforms.json")
+  );
+}
+
 TEST_CASE("coloured depth priors carry 24 bits") {
   const TempFolder folder;
   Image encoded(1, 1, 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PNGs made by hand: the fast reader of plain ones, and libpng for the others.
+// PNGs made by hand, of every kind that the specification has.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <cstring>
@@ -63,13 +63,19 @@ std::string stored(const std::string& data) {
   return text + data + big_endian(b << 16 | a);
 }
 
-// A PNG made by hand; rows start with their filter byte, 0.
+// A PNG made by hand; rows start with their filter byte.
 std::string png(
-    int width, int height, char depth, char type, const std::string& extra, const std::string& rows
+    int width,
+    int height,
+    char depth,
+    char type,
+    const std::string& extra,
+    const std::string& rows,
+    bool interlaced = false
 ) {
   const std::string head = big_endian(static_cast<std::uint32_t>(width)) +
                            big_endian(static_cast<std::uint32_t>(height)) + depth + type +
-                           std::string(3, '\0');
+                           std::string(2, '\0') + static_cast<char>(interlaced);
   return "\x89PNG\r\n\x1a\n" + chunk("IHDR", head) + extra + chunk("IDAT", stored(rows)) +
          chunk("IEND", "");
 }
@@ -80,8 +86,6 @@ Image read(const TempFolder& folder, const std::string& file) {
 }
 
 using namespace std::string_literals;
-
-int type_of(int channels) { return channels == 1 ? 0 : channels == 2 ? 4 : channels == 3 ? 2 : 6; }
 
 // What the specification predicts for byte i of a row from those left, above and above left.
 int prediction(int filter, int left, int above, int above_left) {
@@ -101,9 +105,9 @@ int prediction(int filter, int left, int above, int above_left) {
   }
 }
 
-// Rows of pixel bytes as a PNG stores them; filters 0 ... 4 take turns, each for three rows: some
-// readers undo two at once.
-std::string filtered(const std::string& bytes, int row_bytes, int channels) {
+// Rows of pixel bytes as a PNG stores them; filters 0 ... 4 take turns, each for three rows:
+// readers may undo two at once. `unit`: bytes of a whole pixel.
+std::string filtered(const std::string& bytes, int row_bytes, int unit) {
   std::string rows;
   const auto byte = [&](int y, int i) {
     if (y < 0 || i < 0) return 0;
@@ -113,13 +117,94 @@ std::string filtered(const std::string& bytes, int row_bytes, int channels) {
     const int filter = y / 3 % 5;
     rows += static_cast<char>(filter);
     for (int i = 0; i < row_bytes; ++i) {
-      const int left = i < channels ? 0 : byte(y, i - channels);
-      const int above_left = i < channels ? 0 : byte(y - 1, i - channels);
+      const int left = i < unit ? 0 : byte(y, i - unit);
+      const int above_left = i < unit ? 0 : byte(y - 1, i - unit);
       rows += static_cast<char>(byte(y, i) - prediction(filter, left, byte(y - 1, i), above_left));
     }
   }
   return rows;
 }
+
+// A kind of PNG: bits a sample, colour type, samples a pixel.
+struct Kind {
+  int depth, type, samples;
+  bool palette() const { return type == 3; }
+  int channels() const { return (type & 2) != 0 ? 3 : 1; }
+  int unit() const { return std::max(1, samples * depth / 8); }
+};
+constexpr Kind kKinds[] = {
+    {1, 0, 1},
+    {2, 0, 1},
+    {4, 0, 1},
+    {8, 0, 1},
+    {16, 0, 1},
+    {8, 2, 3},
+    {16, 2, 3},
+    {1, 3, 1},
+    {2, 3, 1},
+    {4, 3, 1},
+    {8, 3, 1},
+    {8, 4, 2},
+    {16, 4, 2},
+    {8, 6, 4},
+    {16, 6, 4}};
+
+// Random samples of a picture, [height][width][samples].
+struct Samples {
+  Kind kind;
+  int width, height;
+  std::vector<int> values;
+
+  Samples(Kind k, int w, int h) : kind(k), width(w), height(h) {
+    Rng rng(4);
+    for (int i = 0; i < w * h * k.samples; ++i)
+      values.push_back(static_cast<int>(rng.below(1u << k.depth)));
+  }
+  int at(int x, int y, int s) const { return values[(y * width + x) * kind.samples + s]; }
+
+  // The pixels (x0 + i dx, y0 + j dy), packed and filtered.
+  std::string rows(int x0, int y0, int dx, int dy) const {
+    std::string bytes;
+    std::size_t row_bytes = 0;
+    for (int y = y0; y < height; y += dy) {
+      std::string bits;
+      for (int x = x0; x < width; x += dx)
+        for (int s = 0; s < kind.samples; ++s)
+          for (int bit = kind.depth - 1; bit >= 0; --bit)
+            bits += (at(x, y, s) >> bit & 1) != 0 ? '1' : '0';
+      if (bits.empty()) return "";
+      bits.resize((bits.size() + 7) / 8 * 8, '0');
+      row_bytes = bits.size() / 8;
+      for (std::size_t i = 0; i < bits.size(); i += 8)
+        bytes += static_cast<char>(std::stoi(bits.substr(i, 8), nullptr, 2));
+    }
+    return bytes.empty() ? "" : filtered(bytes, static_cast<int>(row_bytes), kind.unit());
+  }
+
+  std::string file(bool interlaced) const {
+    std::string data;
+    if (interlaced)  // Adam7
+      data = rows(0, 0, 8, 8) + rows(4, 0, 8, 8) + rows(0, 4, 4, 8) + rows(2, 0, 4, 4) +
+             rows(0, 2, 2, 4) + rows(1, 0, 2, 2) + rows(0, 1, 1, 2);
+    else
+      data = rows(0, 0, 1, 1);
+    const std::string extra = kind.palette() ? chunk("PLTE", palette()) : "";
+    const auto depth = static_cast<char>(kind.depth), type = static_cast<char>(kind.type);
+    return png(width, height, depth, type, extra, data, interlaced);
+  }
+
+  std::string palette() const {
+    std::string colors;
+    for (int entry = 0; entry < 1 << kind.depth; ++entry)
+      for (int c = 0; c < 3; ++c) colors += static_cast<char>(entry * (c + 1) % 251);
+    return colors;
+  }
+
+  float expected(int x, int y, int c) const {
+    if (kind.palette()) return static_cast<float>(at(x, y, 0) * (c + 1) % 251) / 255.0f;
+    return static_cast<float>(at(x, y, c)) / static_cast<float>((1 << kind.depth) - 1);
+  }
+};
 
 }  // namespace
 
@@ -169,46 +254,71 @@ TEST_CASE("damaged PNGs are found: cut-off files, wrong checksums, too little da
   );
 }
 
-TEST_CASE("every filter is undone, by the fast reader and by libpng") {
-  constexpr int kWidth = 23, kHeight = 44;
-  Rng rng(4);
-  const TempFolder folder;
-  for (const int channels : {1, 2, 3, 4}) {
-    INFO(channels);
-    const int row_bytes = kWidth * channels;
-    std::string bytes;
-    for (int i = 0; i < row_bytes * kHeight; ++i) bytes += static_cast<char>(rng.below(256));
-    const std::string rows = filtered(bytes, row_bytes, channels);
-    const auto type = static_cast<char>(type_of(channels));
-    const std::string plain = png(kWidth, kHeight, 8, type, "", rows);
-    const auto fast = detail::decode_plain_png(plain);
-    REQUIRE(fast);
-    REQUIRE(fast->channels() == channels);
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-      REQUIRE(fast->values()[i] == static_cast<float>(static_cast<unsigned char>(bytes[i])) / 255);
-    if (channels < 3) continue;
-    // A suggested palette, which changes nothing.
-    const std::string other = png(kWidth, kHeight, 8, type, chunk("PLTE", "\x0a\x14\x1e"s), rows);
-    CHECK_FALSE(detail::decode_plain_png(other));
-    CHECK(same(detail::decode_png("x.png", other), *fast));
+TEST_CASE("every kind of PNG is read, with every filter, interlaced or not") {
+  for (const Kind& kind : kKinds)
+    for (const bool interlaced : {false, true}) {
+      INFO(kind.depth << " bits, type " << kind.type << ", interlaced " << interlaced);
+      const Samples samples(kind, 23, 44);
+      const Image image = detail::decode_png("x.png", samples.file(interlaced));
+      REQUIRE(image.size() == ImageSize{23, 44});
+      REQUIRE(image.channels() == kind.channels());
+      for (int y = 0; y < 44; ++y)
+        for (int x = 0; x < 23; ++x)
+          for (int c = 0; c < image.channels(); ++c)
+            REQUIRE(image.at(x, y, c) == samples.expected(x, y, c));
+    }
+}
+
+TEST_CASE("interlaced pictures smaller than a pass are read") {
+  for (const int width : {1, 2, 4, 5})
+    for (const int height : {1, 2, 3, 5, 9}) {
+      INFO(width << " x " << height);
+      const Samples samples({8, 2, 3}, width, height);
+      CHECK(same(
+          detail::decode_png("x.png", samples.file(true)),
+          detail::decode_png("x.png", samples.file(false))
+      ));
+    }
+}
+
+TEST_CASE("what a picture does not need is passed over: suggested palettes, transparency, text") {
+  const Samples samples({8, 2, 3}, 3, 2);
+  const std::string file = samples.file(false);
+  for (const std::string& extra :
+       {chunk("PLTE", "\x0a\x14\x1e"s),
+        chunk("tRNS", "\0\1\0\2\0\3"s),
+        chunk("tEXt", "a\0b"s).substr(0, 11) + "none"}) {  // nobody needs its checksum, either
+    const std::string more = file.substr(0, 33) + extra + file.substr(33);
+    CHECK(same(detail::decode_png("x.png", more), detail::decode_png("x.png", file)));
   }
 }
 
-TEST_CASE("a header that is too short is no plain PNG") {
-  for (const std::size_t length : {0, 1, 3, 5, 12, 14}) {
-    const std::string file = "\x89PNG\r\n\x1a\n" + chunk("IHDR", std::string(length, '\1')) +
-                             chunk("IDAT", stored("\0\1\2\3"s)) + chunk("IEND", "");
-    CHECK_FALSE(detail::decode_plain_png(file));
-  }
-}
-
-TEST_CASE("the fast reader leaves to libpng what it does not know") {
+TEST_CASE("PNGs that break the rules are errors that say which") {
+  const auto message = [](const std::string& file) {
+    return bad_reference([&] { detail::decode_png("x.png", file); });
+  };
   const std::string row = "\0\1\2\3"s;
-  CHECK(detail::decode_plain_png(png(1, 1, 8, 2, "", row)));
-  CHECK_FALSE(detail::decode_plain_png(png(1, 1, 16, 0, "", "\0\1\2"s)));
-  CHECK_FALSE(detail::decode_plain_png(png(1, 1, 8, 3, chunk("PLTE", "\1\2\3"s), "\0\0"s)));
-  CHECK_FALSE(detail::decode_plain_png(png(1, 1, 8, 2, chunk("tRNS", "\0\1\0\2\0\3"s), row)));
-  CHECK_FALSE(detail::decode_plain_png(png(1, 2, 8, 2, "", row)));          // too few rows
-  CHECK_FALSE(detail::decode_plain_png(png(1, 1, 8, 2, "", row + row)));    // too many
-  CHECK_FALSE(detail::decode_plain_png(png(1, 1, 8, 2, "", "\5\1\2\3"s)));  // no such filter
+  for (const std::size_t length : {0, 1, 3, 5, 12, 14})
+    CHECK_THAT(
+        message(
+            "\x89PNG\r\n\x1a\n" + chunk("IHDR", std::string(length, '\1')) +
+            chunk("IDAT", stored(row)) + chunk("IEND", "")
+        ),
+        Contains("header has a wrong length")
+    );
+  CHECK_THAT(message(png(1, 2, 8, 2, "", row)), Contains("do not fill"));
+  CHECK_THAT(message(png(1, 1, 8, 2, "", row + row)), Contains("do not fill"));
+  CHECK_THAT(message(png(1, 1, 8, 2, "", "\5\1\2\3"s)), Contains("unknown filter"));
+  CHECK_THAT(message(png(1, 1, 16, 2, "", "\5\1\2\3\1\2\3"s)), Contains("unknown filter"));
+  CHECK_THAT(message(png(1, 1, 4, 2, "", row)), Contains("no such kind"));
+  CHECK_THAT(message(png(1, 1, 3, 0, "", row)), Contains("no such kind"));
+  CHECK_THAT(message(png(1, 1, 16, 3, "", row)), Contains("no such kind"));
+  CHECK_THAT(message(png(1, 1, 8, 5, "", row)), Contains("no such kind"));
+  CHECK_THAT(message(png(1, 1, 8, 3, "", "\0\0"s)), Contains("beyond its palette"));
+  const std::string palette = chunk("PLTE", "\1\2\3"s);
+  CHECK_THAT(message(png(1, 1, 8, 3, palette, "\0\1"s)), Contains("beyond its palette"));
+  CHECK_THAT(message(png(1, 1, 8, 2, chunk("ABCD", ""), row)), Contains("unknown kind"));
+  std::string damaged = png(1, 1, 8, 2, "", row);
+  damaged[41] = static_cast<char>(damaged[41] ^ 1);
+  CHECK_THAT(message(damaged), Contains("checksum of a chunk IDAT"));
 }

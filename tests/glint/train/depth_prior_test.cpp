@@ -44,7 +44,7 @@ TEST_CASE("The depth loss of three pixels is that of the fitted line") {
   // Line 1.5 z - 2/3; residuals -1/6, 1/3, -1/6.
   const Image prior = map_of<float>(3, 1, 1, {1, 2, 4});
   const ImageD depth = map_of<double>(3, 1, 1, {1, 2, 3});
-  const DepthFit fit = fit_depth(depth, prior, {});
+  const DepthPriorFit fit = fit_depth_prior(depth, prior, {});
   CHECK(fit.valid);
   CHECK(fit.scale == Approx(1.5));
   CHECK(fit.shift == Approx(-2.0 / 3));
