@@ -79,9 +79,7 @@ class Glint final : public Method {
     return stats;
   }
 
-  MapSet render(const Camera& camera) override {
-    return model_.render(camera, config_, phase_);
-  }
+  MapSet render(const Camera& camera) override { return model_.render(camera, config_, phase_); }
   void draw(const Camera& camera) override { model_.forward(camera, config_, phase_); }
 
   void save(const std::string& folder) const override {

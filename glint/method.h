@@ -35,8 +35,8 @@ class Method {
   // be looked at. Errors: kUsage (config), kBadReference (scene lacks what the method needs).
   virtual void initialize(const Scene& scene, const RunOptions& options) = 0;
   virtual StepStats step(int iteration) = 0;  // iteration counts from 0
-  // Maps of one view, all of the camera's size; rgb is not clamped. Not const: buffers are kept from
-  // one view to the next, and shared with step().
+  // Maps of one view, all of the camera's size; rgb is not clamped. Not const: buffers are kept
+  // from one view to the next, and shared with step().
   virtual MapSet render(const Camera& camera) = 0;
   // The picture alone, left on the device where it was made: what FPS counts.
   virtual void draw(const Camera& camera) { render(camera); }

@@ -94,8 +94,7 @@ void ContactSheet::add(
       const Image& map = (is_truth ? truth.maps : priors)[entry];
       const float far_depth = is_truth ? kFarDepth : 1;  // priors are relative
       add_row(
-          title_of(entry, is_truth),
-          map.empty() ? Image() : pictures.of(entry.kind, map, far_depth)
+          title_of(entry, is_truth), map.empty() ? Image() : pictures.of(entry.kind, map, far_depth)
       );
     }
 }

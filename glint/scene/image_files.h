@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Image files: PNG (read with libdeflate, written by libpng), JPEG, EXR, NPY maps. Colours stay as stored (sRGB-encoded values in [0, 1]);
-// nothing here changes a transfer function. Writers are atomic. Errors (kBadReference) name the
-// file and say what was found and expected: truncated files, wrong channel counts, sizes that do
-// not match the header, cropped or deep EXR, missing EXR channels.
+// Image files: PNG (read with libdeflate, written by libpng), JPEG, EXR, NPY maps. Colours stay as
+// stored (sRGB-encoded values in [0, 1]); nothing here changes a transfer function. Writers are
+// atomic. Errors (kBadReference) name the file and say what was found and expected: truncated
+// files, wrong channel counts, sizes that do not match the header, cropped or deep EXR, missing EXR
+// channels.
 #pragma once
 
 #include <string>
