@@ -77,7 +77,7 @@ Failure failure_of(const std::exception& error, const std::string& stage, const 
 
 // Makes the meshes. A run whose depth gives none has its other numbers all the same; empty: made.
 std::string why_no_mesh(
-    const RunSpec& spec, const Scene& scene, const Method& method, const TsdfOptions& options
+    const RunSpec& spec, const Scene& scene, Method& method, const TsdfOptions& options
 ) {
   for (const MeshLayer& layer : kMeshLayers) fs::remove(spec.folder / layer.mesh);
   if (!has_tsdf_volume()) return "no Open3D";
