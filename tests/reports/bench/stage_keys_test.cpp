@@ -72,7 +72,10 @@ Json other_value(const Json& value) {
   static const std::map<std::string, std::string> texts = {
       {"raster", "trace"},
       {"all", "geometry"},
+      {"geometry", "all"},
       {"paper", "release"},
+      {"release", "paper"},
+      {"trace", "raster"},
       {"cameras", "none"},
       {"point-to-triangle", "point-to-point"},
       {"", "x"}};
