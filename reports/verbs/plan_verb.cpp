@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <sstream>
 
 #include "glint/core/progress.h"
 #include "reports/verbs/planned_cells.h"
@@ -35,24 +36,32 @@ std::vector<std::string> plan_line(const PlanRow& row) {
     line.emplace_back(row.planned.stages[stage].done ? "done" : "to do");
   const bool done = row.planned.stages.done();
   line.push_back(done ? "" : row.seconds > 0 ? format_duration(row.seconds) : "unknown");
-  line.push_back(row.planned.stages.why());
   return line;
 }
 
-std::string plan_text(const std::vector<PlanRow>& rows) {
+// The aligned lines, and behind each cell's why it is not done.
+std::string table_text(const std::vector<PlanRow>& rows) {
   std::vector<std::vector<std::string>> lines{{"cell"}};
   for (const Stage stage : kStages) lines[0].emplace_back(stage_name(stage));
-  lines[0].insert(lines[0].end(), {"estimate", "why"});
-  double left = 0;
-  for (const PlanRow& row : rows) {
-    lines.push_back(plan_line(row));
-    left += row.seconds;
+  lines[0].emplace_back("estimate");
+  for (const PlanRow& row : rows) lines.push_back(plan_line(row));
+  std::istringstream aligned(aligned_rows(lines));
+  std::string text, line;
+  for (std::size_t i = 0; std::getline(aligned, line); ++i) {
+    const std::string why = i == 0 ? "why" : rows[i - 1].planned.stages.why();
+    text += line + (why.empty() ? "" : "  " + why) + "\n";
   }
+  return text;
+}
+
+std::string plan_text(const std::vector<PlanRow>& rows) {
+  double left = 0;
+  for (const PlanRow& row : rows) left += row.seconds;
   const auto todo = std::count_if(rows.begin(), rows.end(), [](const PlanRow& row) {
     return !row.planned.stages.done();
   });
   const std::string time = left > 0 ? "about " + format_duration(left) : "time unknown";
-  return aligned_rows(lines) +
+  return table_text(rows) +
          fmt::format(
              "{} of {} cells to run{}\n", todo, rows.size(), todo > 0 ? ", " + time : std::string()
          );

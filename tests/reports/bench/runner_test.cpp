@@ -169,7 +169,7 @@ TEST_CASE("only what has changed runs again, and the plan says why") {
   CHECK(
       cell.stages().why() ==
       "train: iterations 10 -> 20; render: after train; mesh: after train; score: after render, "
-      "after mesh"
+      "mesh"
   );
   CHECK(cell.run_again(1) == "train render mesh score");
   cell.options.identify = [](const SceneSource& source) {

@@ -72,6 +72,10 @@ Json other_value(const Json& value) {
   static const std::map<std::string, std::string> texts = {
       {"raster", "trace"},
       {"all", "geometry"},
+      {"geometry", "all"},
+      {"paper", "release"},
+      {"release", "paper"},
+      {"trace", "raster"},
       {"cameras", "none"},
       {"point-to-triangle", "point-to-point"},
       {"", "x"}};
@@ -97,7 +101,8 @@ void check_part(
     Json Profile::*member,
     const std::map<std::string, Stages>& expected
 ) {
-  for (const auto& [name, value] : config_to_json(part).items()) {
+  const Json fields = config_to_json(part);
+  for (const auto& [name, value] : fields.items()) {
     INFO(prefix << "." << name);
     REQUIRE(expected.contains(name));
     const Change change = change_of([&, &field = name, &old = value](Profile& profile) {
