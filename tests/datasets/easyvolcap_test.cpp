@@ -342,5 +342,7 @@ TEST_CASE("coloured depth priors carry 24 bits") {
   encoded.at(0, 0, 2) = 50 / 255.0f;
   write_png(folder / "depth.png", encoded);
   const double expected = (100 + 200 / 256.0 + 50 / 65536.0) / 255.0;
-  CHECK(read_depth_prior(folder / "depth.png").at(0, 0) == Approx(expected).epsilon(1e-7));
+  CHECK(
+      read_prior(folder / "depth.png", MapKind::kDepth).at(0, 0) == Approx(expected).epsilon(1e-7)
+  );
 }
