@@ -23,7 +23,7 @@ constexpr double kTolerance = 1e-3;
 // Pixels this near (relative) to a cut-off get no weight: no step of the differences may cross it.
 constexpr double kStepGuard = 1e-2;
 
-enum class Map { kFeatures, kAlpha, kDepthSum, kDepthMedian, kNormal, kDistortion, kAll };
+constexpr const char* kAll = "all maps";
 
 struct Case {
   SurfelArrays surfels;
@@ -58,28 +58,26 @@ std::vector<bool> pixels_away_from_cutoffs(const Case& c) {
   return clean;
 }
 
-void weigh_outputs(Case& c, Map map, Rng& rng) {
+void weigh_outputs(Case& c, const std::string& map, Rng& rng) {
   const std::vector<bool> clean = pixels_away_from_cutoffs(c);
   const auto share = static_cast<double>(std::count(clean.begin(), clean.end(), true)) /
                      static_cast<double>(clean.size());
   REQUIRE(share > 0.3);  // else the comparison says little
-  const auto weights = [&](Map which, int channels) {
-    const bool wanted = map == which || map == Map::kAll;
-    return wanted ? random_weights(rng, clean, c.camera.size(), channels) : Image{};
-  };
-  c.dL_doutput.features = weights(Map::kFeatures, c.surfels.channels);
-  c.dL_doutput.alpha = weights(Map::kAlpha, 1);
-  c.dL_doutput.depth_sum = weights(Map::kDepthSum, 1);
-  c.dL_doutput.depth_median = weights(Map::kDepthMedian, 1);
-  c.dL_doutput.normal = weights(Map::kNormal, 3);
-  c.dL_doutput.distortion = weights(Map::kDistortion, 1);
+  for_each_map(
+      RasterCall{c.input(), c.camera, c.settings}.maps(),
+      [&](const char* name, int channels, Image& weights) {
+        const bool wanted = channels > 0 && (map == name || map == kAll);
+        weights = wanted ? random_weights(rng, clean, c.camera.size(), channels) : Image{};
+      },
+      c.dL_doutput
+  );
 }
 
-Case random_case(const RandomSurfels& options, Map map, std::uint64_t seed) {
+Case random_case(const RandomSurfels& options, const std::string& map, std::uint64_t seed) {
   Rng rng(seed);
   Case c;
   c.camera = random_camera(rng, {24, 18});
-  c.settings.with_distortion = map == Map::kDistortion || map == Map::kAll;
+  c.settings.with_distortion = map == "distortion" || map == kAll;
   c.surfels = random_surfels(options, c.camera, rng);
   weigh_outputs(c, map, rng);
   return c;
@@ -157,23 +155,21 @@ void check_gradients(const Case& c) {
 }  // namespace
 
 TEST_CASE("Each output map's gradient matches central differences") {
-  const auto [map, name] = GENERATE(table<Map, const char*>(
-      {{Map::kFeatures, "features"},
-       {Map::kAlpha, "alpha"},
-       {Map::kDepthSum, "depth_sum"},
-       {Map::kDepthMedian, "depth_median"},
-       {Map::kNormal, "normal"},
-       {Map::kDistortion, "distortion"}}
-  ));
+  std::vector<std::string> maps;
+  RasterOutput output;
+  for_each_map(
+      {3, true}, [&](const char* name, int, Image&) { maps.push_back(name); }, output
+  );
+  const std::string map = GENERATE_COPY(from_range(maps));
   const std::uint64_t seed = GENERATE(1, 2, 3);
-  INFO(name << ", seed " << seed);
+  INFO(map << ", seed " << seed);
   check_gradients(random_case(smooth_surfels(), map, seed));
 }
 
 TEST_CASE("The gradients of all maps together match central differences") {
   const std::uint64_t seed = GENERATE(range(10, 20));
   INFO("seed " << seed);
-  check_gradients(random_case(smooth_surfels(), Map::kAll, seed));
+  check_gradients(random_case(smooth_surfels(), kAll, seed));
 }
 
 TEST_CASE("Gradients match where the low-pass alone decides") {
@@ -182,7 +178,7 @@ TEST_CASE("Gradients match where the low-pass alone decides") {
   RandomSurfels options = smooth_surfels();
   options.tiny = 1;
   options.count = 12;
-  check_gradients(random_case(options, Map::kAll, seed));
+  check_gradients(random_case(options, kAll, seed));
 }
 
 TEST_CASE("Gradients match for edge-on surfels") {
@@ -191,7 +187,7 @@ TEST_CASE("Gradients match for edge-on surfels") {
   RandomSurfels options = smooth_surfels();
   options.edge_on = 1;
   options.count = 8;
-  check_gradients(random_case(options, Map::kAll, seed));
+  check_gradients(random_case(options, kAll, seed));
 }
 
 TEST_CASE("Gradients match for surfels that cross the camera plane") {
@@ -199,7 +195,7 @@ TEST_CASE("Gradients match for surfels that cross the camera plane") {
   INFO("seed " << seed);
   RandomSurfels options = smooth_surfels();
   options.at_camera = 1;
-  check_gradients(random_case(options, Map::kAll, seed));
+  check_gradients(random_case(options, kAll, seed));
 }
 
 TEST_CASE("Gradients match behind a near limit that differs from pixel to pixel") {
@@ -210,7 +206,7 @@ TEST_CASE("Gradients match behind a near limit that differs from pixel to pixel"
   c.surfels = random_surfels(smooth_surfels(), c.camera, rng);
   c.near_limit = Image(24, 18, 1);
   for (float& limit : c.near_limit.values()) limit = rng.uniform(0, 3);
-  weigh_outputs(c, Map::kAll, rng);
+  weigh_outputs(c, kAll, rng);
   check_gradients(c);
 }
 
@@ -246,7 +242,7 @@ TEST_CASE("The backward pass reproduces the golden derivatives of rho and depth"
 
 TEST_CASE("A clamped alpha passes no gradient to opacity and shape, but to features and depth") {
   Case c;
-  c.camera = random_case(smooth_surfels(), Map::kAlpha, 1).camera;
+  c.camera = random_case(smooth_surfels(), "alpha", 1).camera;
   const Vec3d mean = 2.0 * c.camera.ray_in_cam(12.5, 9.5);
   c.surfels.add(c.camera.to_world(mean), {0.5, 0.5}, {1, 0.1, 0.2, 0}, 1, {1, 1, 1});
   Image weights(24, 18, 1);
@@ -279,7 +275,7 @@ TEST_CASE("The screen gradient is that of a shift of the projected centre, in ND
   const double tiny = GENERATE(0.0, 1.0);
   RandomSurfels options = smooth_surfels();
   options.tiny = tiny;
-  const Case c = random_case(options, Map::kAll, seed);
+  const Case c = random_case(options, kAll, seed);
   const RasterGradient gradient = backward(c);
   REQUIRE(gradient.screen.size() == 2 * c.surfels.count());
   for (std::size_t i = 0; i < c.surfels.count(); ++i) {
@@ -298,7 +294,7 @@ TEST_CASE("The screen gradient is that of a shift of the projected centre, in ND
 }
 
 TEST_CASE("Without output gradients every gradient is zero and has its input's shape") {
-  Case c = random_case(smooth_surfels(), Map::kAll, 1);
+  Case c = random_case(smooth_surfels(), kAll, 1);
   c.dL_doutput = {};
   const RasterGradient gradient = backward(c);
   CHECK(gradient.means == FloatArray(c.surfels.means.size(), 0.0f));
@@ -310,7 +306,7 @@ TEST_CASE("Without output gradients every gradient is zero and has its input's s
 }
 
 TEST_CASE("A surfel that reaches no tile has exactly zero gradient, even when it is not finite") {
-  Case c = random_case(smooth_surfels(), Map::kAll, 3);
+  Case c = random_case(smooth_surfels(), kAll, 3);
   c.surfels.means[0] = std::numeric_limits<float>::quiet_NaN();
   Rasterizer rasterizer;
   const RasterOutput output = rasterizer.forward({c.input(), c.camera, c.settings});
