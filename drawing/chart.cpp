@@ -123,7 +123,7 @@ class ChartDrawing {
       else
         end_piece();
     end_piece();
-    if (!series.points && series.x.size() > kFewPoints) return;
+    if (!has_dots(series)) return;
     for (std::size_t i = 0; i < series.x.size(); ++i)
       if (is_point(series, i))
         draw_series_dot(canvas_, {column(series.x[i]), row(series.y[i])}, style);
@@ -162,6 +162,8 @@ bool has_points(const Chart& chart) {
     return has_points(series);
   });
 }
+
+bool has_dots(const ChartSeries& series) { return series.points || series.x.size() <= kFewPoints; }
 
 void draw_chart(Canvas& canvas, const Box& box, const Chart& chart) {
   ChartDrawing(canvas, box, chart).draw();

@@ -22,6 +22,7 @@ struct Chart {
 };
 
 bool has_points(const Chart& chart);
+bool has_dots(const ChartSeries& series);  // each point is drawn, too, or only
 
 // Axes, marks and labels lie within the box. The chart has points.
 void draw_chart(Canvas& canvas, const Box& box, const Chart& chart);

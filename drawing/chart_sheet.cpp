@@ -2,8 +2,8 @@
 // Rows of charts with their titles and one legend.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
-#include <set>
 
 #include "drawing/chart.h"
 
@@ -24,33 +24,41 @@ bool has_points(const ChartRow& row) {
   });
 }
 
-// The series that have a point in any chart, by index.
-std::vector<std::size_t> drawn_series(const ChartSheet& sheet) {
-  std::set<std::size_t> drawn;
+// How a series is drawn in any of the charts.
+struct Entry {
+  bool line = false, dots = false;
+};
+
+// By index; without those that have no point.
+std::map<std::size_t, Entry> entries_of(const ChartSheet& sheet) {
+  std::map<std::size_t, Entry> entries;
   for (const ChartRow& row : sheet.rows)
     for (const Chart& chart : row.charts)
       for (const ChartSeries& series : chart.series)
-        if (has_points(Chart{"", "", {series}})) drawn.insert(series.index);
-  return {drawn.begin(), drawn.end()};
+        if (has_points(Chart{"", "", {series}})) {
+          entries[series.index].line |= !series.points;
+          entries[series.index].dots |= has_dots(series);
+        }
+  return entries;
 }
 
 // Entries in columns of one width, read down first.
 struct Legend {
-  std::vector<std::size_t> series;
-  double entry = 0, line = 0;  // width and height of an entry, points
+  std::map<std::size_t, Entry> entries;
+  double width = 0, height = 0;  // of an entry, points
   std::size_t columns = 1, lines = 0;
 };
 
 Legend legend_of(const ChartSheet& sheet, double width) {
   Legend legend;
-  legend.series = drawn_series(sheet);
+  legend.entries = entries_of(sheet);
   double name = 0;
-  for (const std::size_t index : legend.series)
+  for (const auto& [index, entry] : legend.entries)
     name = std::max(name, measure_text(sheet.names[index], kName).width);
-  legend.entry = kSample + kSampleGap + name + kEntryGap;
-  legend.line = 1.25 * measure_text("0", kName).height;
-  const std::size_t count = legend.series.size();
-  const double fit = std::floor((width + kEntryGap) / legend.entry);
+  legend.width = kSample + kSampleGap + name + kEntryGap;
+  legend.height = 1.25 * measure_text("0", kName).height;
+  const std::size_t count = legend.entries.size();
+  const double fit = std::floor((width + kEntryGap) / legend.width);
   const auto most = static_cast<std::size_t>(std::max(1.0, fit));
   legend.lines = (count + most - 1) / most;
   legend.columns = (count + legend.lines - 1) / legend.lines;
@@ -73,7 +81,7 @@ class SheetDrawing {
   double height() const {
     double height = 2 * kMargin + titles_height();
     for (const ChartRow& row : sheet_.rows) height += row_height(row) + kRowGap;
-    return height + static_cast<double>(legend_.lines) * legend_.line;
+    return height + static_cast<double>(legend_.lines) * legend_.height;
   }
 
   void draw(Canvas& canvas) const {
@@ -109,20 +117,23 @@ class SheetDrawing {
   }
 
   void draw_legend(Canvas& canvas, double top) const {
-    const double used = static_cast<double>(legend_.columns) * legend_.entry - kEntryGap;
+    const double used = static_cast<double>(legend_.columns) * legend_.width - kEntryGap;
     const double left = kMargin + std::max(0.0, (width_ - used) / 2);
-    for (std::size_t i = 0; i < legend_.series.size(); ++i) {
-      const double x = left + static_cast<double>(i / legend_.lines) * legend_.entry;
-      const double y = top + static_cast<double>(i % legend_.lines) * legend_.line;
-      draw_entry(canvas, legend_.series[i], {x, y});
+    std::size_t i = 0;
+    for (const auto& [index, entry] : legend_.entries) {
+      const double x = left + static_cast<double>(i / legend_.lines) * legend_.width;
+      const double y = top + static_cast<double>(i % legend_.lines) * legend_.height;
+      draw_entry(canvas, index, entry, {x, y});
+      ++i;
     }
   }
 
-  void draw_entry(Canvas& canvas, std::size_t index, Point at) const {
+  void draw_entry(Canvas& canvas, std::size_t index, Entry entry, Point at) const {
     const double middle = at.y + measure_text("0", kName).height / 2;
     const Point sample[] = {{at.x, middle}, {at.x + kSample, middle}};
-    draw_series_line(canvas, sample, series_style(index));
-    draw_series_dot(canvas, {at.x + kSample / 2, middle}, series_style(index));
+    const SeriesStyle style = series_style(index);
+    if (entry.line) draw_series_line(canvas, sample, style);
+    if (entry.dots) draw_series_dot(canvas, {at.x + kSample / 2, middle}, style);
     canvas.text(sheet_.names[index], {at.x + kSample + kSampleGap, at.y}, kName);
   }
 

@@ -48,12 +48,16 @@ TextStyle wrapped(TextStyle style, double width) {
 
 double width_of(LegendBar bar) { return is_swatch(bar) ? kSwatchWidth : kBarWidth; }
 
-// A line with a bar is never broken.
-double width_of(const LegendLine& line) {
-  const double text = measure_text(line.text, kLegend).width;
-  if (line.bar == LegendBar::kNone) return text;
-  const double rest = line.rest.empty() ? 0 : kTextGap + measure_text(line.rest, kLegend).width;
-  return text + kTextGap + width_of(line.bar) + rest;
+bool has_bar(const LegendLine& line) { return line.bar != LegendBar::kNone; }
+
+double text_width(const std::string& text) { return measure_text(text, kLegend).width; }
+
+// From the page's margin: the bars of all lines stand below each other.
+double bar_left(const std::vector<LegendLine>& legend) {
+  double left = 0;
+  for (const LegendLine& line : legend)
+    if (has_bar(line)) left = std::max(left, text_width(line.text) + kTextGap);
+  return left;
 }
 
 class GridDrawing {
@@ -61,12 +65,9 @@ class GridDrawing {
   explicit GridDrawing(PictureGrid grid) : grid_(std::move(grid)) {
     measure_columns();
     measure_rows();
-    double wanted = columns_width();
-    for (const LegendLine& line : grid_.legend)
-      wanted = std::max(wanted, std::min(width_of(line), kPageWidth - 2 * kMargin));
-    for (const LegendLine& line : grid_.legend)
-      if (line.bar != LegendBar::kNone) wanted = std::max(wanted, width_of(line));
-    width_ = wanted;
+    bar_left_ = bar_left(grid_.legend);
+    width_ = columns_width();
+    for (const LegendLine& line : grid_.legend) width_ = std::max(width_, wanted_width(line));
     for (const std::string& title : grid_.titles) {
       const TextSize size = measure_text(title, wrapped(kTitle, column_));
       titles_baseline_ = std::max(titles_baseline_, size.last_baseline);
@@ -98,6 +99,13 @@ class GridDrawing {
   }
 
  private:
+  // A line with a bar is never broken.
+  double wanted_width(const LegendLine& line) const {
+    if (!has_bar(line)) return std::min(text_width(line.text), kPageWidth - 2 * kMargin);
+    const double rest = line.rest.empty() ? 0 : kTextGap + text_width(line.rest);
+    return bar_left_ + width_of(line.bar) + rest;
+  }
+
   double columns_width() const {
     return row_titles_ + static_cast<double>(num_columns_) * (column_ + kGap) - kGap;
   }
@@ -169,20 +177,16 @@ class GridDrawing {
   }
 
   double height_of(const LegendLine& line) const {
-    const TextStyle style = line.bar == LegendBar::kNone ? wrapped(kLegend, width_) : kLegend;
+    const TextStyle style = has_bar(line) ? kLegend : wrapped(kLegend, width_);
     return measure_text(line.text, style).height + kGap / 2;
   }
 
   void draw_legend(Canvas& canvas, const LegendLine& line, double top) const {
-    if (line.bar == LegendBar::kNone)
-      return canvas.text(line.text, {kMargin, top}, wrapped(kLegend, width_));
+    if (!has_bar(line)) return canvas.text(line.text, {kMargin, top}, wrapped(kLegend, width_));
     canvas.text(line.text, {kMargin, top}, kLegend);
-    const TextSize size = measure_text(line.text, kLegend);
-    const double left = kMargin + size.width + kTextGap;
+    const double left = kMargin + bar_left_, height = measure_text(line.text, kLegend).height;
     const double width = width_of(line.bar);
-    canvas.picture(
-        color_bar(line.bar), {left, top + (size.height - kBarHeight) / 2, width, kBarHeight}
-    );
+    canvas.picture(color_bar(line.bar), {left, top + (height - kBarHeight) / 2, width, kBarHeight});
     canvas.text(line.rest, {left + width + kTextGap, top}, kLegend);
   }
 
@@ -191,7 +195,8 @@ class GridDrawing {
   int pixels_ = 0;                                  // width of a panel
   double column_ = 0, row_titles_ = 0, width_ = 0;  // points
   double titles_baseline_ = 0, below_ = 0;          // of the titles: last baseline, from there on
-  std::vector<double> rows_;                        // heights, points
+  double bar_left_ = 0;
+  std::vector<double> rows_;  // heights, points
 };
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace glint {
 
 namespace {
 
-constexpr double kMostSteps = 5;
+constexpr double kMostSteps = 6;
 constexpr int kMostDecimals = 9;
 
 // The fewest that print the number as it is.

@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// Two to six round numbers (1, 2 or 5 times a power of ten apart) within [low, high]; low < high.
+// Two to seven round numbers (1, 2 or 5 times a power of ten apart) within [low, high]; low < high.
 std::vector<double> round_ticks(double low, double high);
 
 // All with the decimals that the finest needs: "0.0", "0.5"; from ten thousand on in thousands,

@@ -24,7 +24,7 @@ Drawing draw_f1_curve(const std::vector<ThresholdScores>& curve) {
   ChartSheet sheet{{}, {}, {"F1", "precision", "recall"}, kChartWidth};
   const Chart chart{
       "distance (cm)",
-      "share of samples",
+      "score",
       {series_of(0, curve, &ThresholdScores::f1),
        series_of(1, curve, &ThresholdScores::precision),
        series_of(2, curve, &ThresholdScores::recall)}};
