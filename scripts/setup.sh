@@ -8,7 +8,7 @@ packages=(
   libembree-dev libopenexr-dev libnanoflann-dev libcli11-dev catch2 libtbb-dev
   nlohmann-json3-dev libtomlplusplus-dev libfmt-dev libbullet-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libturbojpeg0-dev libdeflate-dev
-  libassimp-dev libpng-dev libdnnl-dev libminizip-dev libcgal-dev libopen3d-dev
+  libassimp-dev libpng-dev nettle-dev libdnnl-dev libminizip-dev libcgal-dev libopen3d-dev
   clang-format-14
 )
 
