@@ -20,7 +20,14 @@ add_library(glint_png INTERFACE)
 target_include_directories(glint_png SYSTEM INTERFACE ${GLINT_PNG_INCLUDE})
 target_link_libraries(glint_png INTERFACE ${GLINT_PNG_LIBRARY} ${GLINT_Z_LIBRARY})
 
-# Pictures: libpng, libdeflate for the common case, libjpeg-turbo. None has a CMake config here.
+# SHA-256.
+find_path(GLINT_NETTLE_INCLUDE nettle/sha2.h REQUIRED)
+find_library(GLINT_NETTLE_LIBRARY NAMES libnettle.a nettle REQUIRED)
+add_library(glint_nettle INTERFACE)
+target_include_directories(glint_nettle SYSTEM INTERFACE ${GLINT_NETTLE_INCLUDE})
+target_link_libraries(glint_nettle INTERFACE ${GLINT_NETTLE_LIBRARY})
+
+# Pictures: libdeflate reads PNG, libpng writes it, libjpeg-turbo. None has a CMake config here.
 set(GLINT_IMAGE_CODECS glint_png)
 foreach(codec deflate:libdeflate.h turbojpeg:turbojpeg.h)
   string(REPLACE ":" ";" codec ${codec})

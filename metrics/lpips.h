@@ -35,7 +35,8 @@ struct LpipsProtocol {
   }
 };
 
-// What is recorded with the protocol: {"weights": "LPIPS 0.1" or "unknown", "sha256": ...}.
+// What is recorded with the protocol: {"weights": "LPIPS 0.1" or "unknown", "sha256": ...}: of
+// the file, as sha256sum prints it (records before this had a checksum of the arrays).
 Json lpips_provenance(const LpipsWeights& weights);
 
 using LpipsMap = BasicImage<double>;  // [h][w][1]

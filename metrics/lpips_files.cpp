@@ -5,6 +5,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/progress.h"
+#include "glint/core/sha256.h"
 #include "metrics/lpips_weights.h"
 
 namespace glint {
@@ -44,13 +45,15 @@ LpipsWeights load_lpips_weights(const fs::path& path) {
   const NpzArrays arrays = read_npz(path);
   const std::string where = path.string();
   LpipsWeights weights = make_lpips_weights(recognise(arrays, path), arrays, where);
+  weights.sha256 = sha256(read_file(path));
   if (weights.version.empty())
     log::warn(fmt::format(
-        "{}: LPIPS ({}) with weights of an unknown checksum, {}...; values may not be comparable "
+        "{}: LPIPS ({}) with weights that are not known (arrays {}...); values may not be "
+        "comparable "
         "with published ones (docs/METRICS.md)",
         where,
         weights.network,
-        weights.sha256.substr(0, 16)
+        weights.arrays_sha256.substr(0, 16)
     ));
   return weights;
 }

@@ -13,7 +13,7 @@ namespace glint {
 namespace {
 
 struct KnownWeights {
-  const char *network, *version, *sha256;
+  const char *network, *version, *arrays_sha256;
 };
 // The published networks (LPIPS 0.1, torchvision's features).
 constexpr std::array<KnownWeights, 2> kKnownWeights{{
@@ -138,20 +138,20 @@ std::vector<std::vector<float>> read_lin(
 }
 
 std::string checksum(const NpzArrays& arrays) {
-  Sha256 hash;
+  std::string bytes;
   for (const auto& [name, array] : arrays) {
-    hash.update(name);
-    hash.update(std::string_view("\0", 1));
-    hash.update(
-        {reinterpret_cast<const char*>(array.values.data()), array.values.size() * sizeof(float)}
+    bytes.append(name).push_back('\0');
+    bytes.append(
+        reinterpret_cast<const char*>(array.values.data()), array.values.size() * sizeof(float)
     );
   }
-  return hash.finish();
+  return sha256(bytes);
 }
 
 std::string known_version(const LpipsWeights& weights) {
   for (const KnownWeights& known : kKnownWeights)
-    if (weights.network == known.network && weights.sha256 == known.sha256) return known.version;
+    if (weights.network == known.network && weights.arrays_sha256 == known.arrays_sha256)
+      return known.version;
   return {};
 }
 
@@ -166,7 +166,7 @@ LpipsWeights make_lpips_weights(
   for (const LpipsLayer& layer : network.layers) append_layer(reader, layer, weights.steps);
   weights.lin = read_lin(reader, weights.steps);
   reader.check_all_taken();
-  weights.sha256 = checksum(arrays);
+  weights.arrays_sha256 = checksum(arrays);
   weights.version = known_version(weights);
   return weights;
 }

@@ -27,7 +27,10 @@ struct FeatureStep {
 struct LpipsWeights {
   std::string network;  // "alex"
   std::string version;  // "0.1"; empty: not among the known checksums
-  std::string sha256;   // of the arrays: name, a zero byte, values; in the order of the names
+  std::string sha256;   // of the file, as sha256sum prints it; empty: not from a file
+  // Of the arrays: name, a zero byte, values; in the order of the names. The same weights have the
+  // same in whatever file: the version is known by it.
+  std::string arrays_sha256;
   std::vector<FeatureStep> steps;
   std::vector<std::vector<float>> lin;  // a weight per channel of each tap
 };

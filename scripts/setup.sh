@@ -9,7 +9,7 @@ packages=(
   nlohmann-json3-dev libtomlplusplus-dev libfmt-dev libbullet-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libturbojpeg0-dev libdeflate-dev
   libcairo2-dev libpango1.0-dev fonts-inter
-  libassimp-dev libpng-dev libdnnl-dev libminizip-dev libcgal-dev libopen3d-dev
+  libassimp-dev libpng-dev nettle-dev libdnnl-dev libminizip-dev libcgal-dev libopen3d-dev
   clang-format-14
 )
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The shape of the source tree: no include points up the layers, no file and no function is too
-// long.
+// The shape of the source tree: no include points up the layers, no type stands twice, no file and
+// no function is too long.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cctype>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,13 @@ struct Layer {
   std::string path;
   std::vector<std::string> may_include;
 };
+// What every folder of reports/ may include, and the named ones in it.
+std::vector<std::string> below_reports(const std::vector<std::string>& folders) {
+  std::vector<std::string> paths{"glint/", "metrics/", "baselines/", "datasets/"};
+  for (const std::string& folder : folders) paths.push_back("reports/" + folder + "/");
+  return paths;
+}
+
 const std::vector<Layer>& layers() {
   static const std::vector<Layer> all = {
       {"glint/core/", {"glint/core/"}},
@@ -55,7 +63,31 @@ const std::vector<Layer>& layers() {
       {"baselines/", {"glint/", "metrics/"}},
       {"datasets/", {"glint/core/", "glint/scene/", "datasets/"}},
       {"datasets/glassroom/", {"glint/core/", "glint/scene/", "drawing/", "datasets/"}},
-      {"reports/", {"glint/", "drawing/", "metrics/", "baselines/", "datasets/", "reports/"}},
+      {"reports/code/", {"glint/core/", "reports/code/"}},
+      {"reports/glint_bench.cpp", {"glint/core/", "reports/verbs/"}},
+      {"reports/records/", below_reports({"records"})},
+      {"reports/tables/", below_reports({"records", "tables"})},
+      {"reports/pictures/", below_reports({"records", "pictures"})},
+      {"reports/bench/", below_reports({"records", "pictures", "bench"})},
+      {"reports/page/", below_reports({"records", "tables", "pictures", "page"})},
+      {"reports/figures/",
+       below_reports({"records", "tables", "pictures", "bench", "page", "figures"})},
+      {"reports/import/", below_reports({"records", "pictures", "import"})},
+      {"reports/perf/", below_reports({"records", "perf"})},
+      {"reports/selftest/", below_reports({"records", "bench", "import", "selftest"})},
+      {"reports/verbs/",
+       below_reports(
+           {"records",
+            "tables",
+            "pictures",
+            "bench",
+            "page",
+            "figures",
+            "import",
+            "perf",
+            "selftest",
+            "verbs"}
+       )},
       {"tests/",
        {"glint/", "drawing/", "metrics/", "baselines/", "datasets/", "reports/", "tests/"}}};
   return all;
@@ -218,6 +250,95 @@ std::vector<Function> functions_of(std::string_view text) {
   return functions;
 }
 
+// What a brace opens: a named namespace, a type, or anything else (functions, values, blocks).
+struct Scope {
+  enum Kind { kNamespace, kType, kOther } kind = kOther;
+  std::string name;  // of a namespace: empty when it has none
+};
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \n");
+  if (first == std::string_view::npos) return "";
+  return std::string(text.substr(first, text.find_last_not_of(" \n") - first + 1));
+}
+
+// The last word of a head without base classes: "SurfelBvh::Impl" of "class SurfelBvh::Impl :
+// public Base"; a specialisation keeps its arguments, so that it is another type.
+std::string type_name(std::string_view head) {
+  std::size_t colon = std::string_view::npos;
+  for (std::size_t i = 0; i < head.size() && colon == std::string_view::npos; ++i) {
+    const bool twice = head[i] == ':' && i + 1 < head.size() && head[i + 1] == ':';
+    if (twice) ++i;
+    if (head[i] == ':' && !twice) colon = i;
+  }
+  std::string name = trimmed(head.substr(0, colon));
+  if (name.ends_with(" final")) name = trimmed(name.substr(0, name.size() - 6));
+  const std::size_t arguments = name.find('<');
+  return trimmed(name.substr(name.find_last_of(" \n", arguments) + 1));
+}
+
+Scope scope_of(std::string_view head) {
+  const std::string text = trimmed(head);
+  if (has_word(text, "namespace")) {
+    const std::string name = trimmed(std::string_view(text).substr(text.find("namespace") + 9));
+    return {Scope::kNamespace, name};
+  }
+  std::string_view rest = text;  // behind "template <...>"
+  if (rest.starts_with("template")) {
+    std::size_t at = rest.find('<'), depth = 0;
+    for (; at < rest.size(); ++at) {
+      if (rest[at] == '<') ++depth;
+      if (rest[at] == '>' && --depth == 0) break;
+    }
+    rest = rest.substr(std::min(at + 1, rest.size()));
+  }
+  const std::string type = trimmed(rest);
+  for (const char* word : {"struct ", "class ", "enum ", "union "})
+    if (type.starts_with(word) && type.find('(') == std::string::npos)
+      return {Scope::kType, type_name(type)};
+  return {};
+}
+
+// "a::B::C" of every type with a name that other files can say: none in functions, none in
+// namespaces without a name.
+std::vector<std::string> types_of(std::string_view text) {
+  const std::string code = code_only(text);
+  std::vector<Scope> scopes;
+  std::vector<std::string> types;
+  std::size_t head_start = 0;
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    if (code[i] == '{') {
+      scopes.push_back(scope_of(std::string_view(code).substr(head_start, i - head_start)));
+      const bool named = std::all_of(scopes.begin(), scopes.end(), [](const Scope& scope) {
+        return scope.kind != Scope::kOther && !scope.name.empty();
+      });
+      if (named && scopes.back().kind == Scope::kType) {
+        std::string name;
+        for (const Scope& scope : scopes) name += (name.empty() ? "" : "::") + scope.name;
+        types.push_back(std::move(name));
+      }
+    } else if (code[i] == '}' && !scopes.empty()) {
+      scopes.pop_back();
+    }
+    if (code[i] == '{' || code[i] == '}' || code[i] == ';') head_start = i + 1;
+  }
+  return types;
+}
+
+// "type: file and file" of types that stand in two files; x_lean.cpp is x.cpp of another build.
+std::vector<std::string> types_defined_twice(const std::vector<SourceFile>& files) {
+  std::map<std::string, std::string> place_of;
+  std::vector<std::string> twice;
+  for (const SourceFile& file : files)
+    for (const std::string& type : types_of(file.text)) {
+      const auto [place, fresh] = place_of.emplace(type, file.path);
+      const std::string stem = place->second.substr(0, place->second.rfind('.'));
+      if (!fresh && !file.path.starts_with(stem + "_lean."))
+        twice.push_back(fmt::format("{}: {} and {}", type, place->second, file.path));
+    }
+  return twice;
+}
+
 std::string joined(const std::vector<std::string>& lines) {
   std::string text;
   for (const std::string& line : lines) text += line + "\n";
@@ -232,6 +353,16 @@ TEST_CASE("No file includes a header of a higher layer") {
     for (std::string& line : upward_includes(file)) wrong.push_back(std::move(line));
   INFO(joined(wrong));
   CHECK(wrong.empty());
+}
+
+TEST_CASE("No type is defined under one name in two places") {
+  const std::vector<SourceFile> files = source_files();
+  const std::vector<std::string> twice = types_defined_twice(files);
+  INFO(joined(twice));
+  CHECK(twice.empty());
+  std::size_t seen = 0;
+  for (const SourceFile& file : files) seen += types_of(file.text).size();
+  CHECK(seen > 200);
 }
 
 TEST_CASE("No file is longer than 600 lines") {
@@ -305,7 +436,51 @@ TEST_CASE("The check finds an include that points upwards") {
   CHECK(wrong("metrics/mesh/cull.h", "#include \"glint/scene/ply.h\"\n") == 1);
   CHECK(wrong("metrics/tools/ssim_tool.cpp", "#include \"glint/scene/image_files.h\"\n") == 0);
   CHECK(wrong("baselines/envgs.cpp", "#include \"baselines/2dgs.h\"\n") == 1);
+  CHECK(wrong("reports/records/records.h", "#include \"reports/bench/plan.h\"\n") == 1);
+  CHECK(wrong("reports/tables/tables.h", "#include \"reports/pictures/strip.h\"\n") == 1);
+  CHECK(wrong("reports/bench/runner.h", "#include \"reports/page/page.h\"\n") == 1);
+  CHECK(wrong("reports/page/page.h", "#include \"reports/figures/chart.h\"\n") == 1);
+  CHECK(wrong("reports/figures/chart.h", "#include \"reports/verbs/verb.h\"\n") == 1);
+  CHECK(wrong("reports/verbs/verb.h", "#include \"reports/bench/plan.h\"\n") == 0);
+  CHECK(wrong("reports/loose.h", "#include \"glint/core/real.h\"\n") == 1);
   CHECK(wrong("unknown/file.h", "#include \"glint/core/real.h\"\n") == 1);
+}
+
+TEST_CASE("The check finds types and where they stand twice") {
+  const std::string text = R"(
+namespace a::b {
+// struct Comment {};
+struct Plain { enum class Inner { kOne }; };
+template <class T, class U = Box<T>>
+class Template final : public other::Base<T> {};
+template <>
+struct Template<int> {};
+struct Declared;
+namespace {
+struct Local {};
+}
+void f() { struct InFunction {}; }
+struct Owner::Impl : Base {};
+const struct Plain value{};
+}
+)";
+  CHECK(
+      types_of(text) ==
+      std::vector<std::string>{
+          "a::b::Plain",
+          "a::b::Plain::Inner",
+          "a::b::Template",
+          "a::b::Template<int>",
+          "a::b::Owner::Impl"}
+  );
+  const SourceFile one{"x.cpp", "namespace a { struct B {}; }"};
+  const auto twice_with = [&](const char* path, const char* other) {
+    return types_defined_twice({one, {path, other}}).size();
+  };
+  CHECK(twice_with("y.h", "namespace a {\nenum class B { kOne };\n}") == 1);
+  CHECK(twice_with("x_lean.cpp", "namespace a { struct B {}; }") == 0);
+  CHECK(twice_with("y.h", "namespace a { namespace { struct B {}; } }") == 0);
+  CHECK(twice_with("y.h", "namespace b { struct B {}; }") == 0);
 }
 
 TEST_CASE("The check finds functions and their lengths") {

@@ -63,7 +63,7 @@ std::string better_convention(
   return {};
 }
 
-double absrel(Image depth, const View& view, DepthKind kind) {
+double absrel(Image depth, const View& view, DepthConvention kind) {
   to_our_depth(depth, view.camera, kind);
   const auto errors = depth_errors(depth, view.truth["depth"]);
   return errors ? errors->absrel : 0;
@@ -82,7 +82,7 @@ void note_conventions(
     const ImportOptions& options,
     std::vector<std::string>& notes
 ) {
-  constexpr std::array kDepths = {DepthKind::kPlanar, DepthKind::kRay};
+  constexpr std::array kDepths = {DepthConvention::kPlanar, DepthConvention::kRay};
   constexpr std::array kAxes = {NormalAxes::kOpencv, NormalAxes::kOpengl, NormalAxes::kWorld};
   const auto note = [&](const char* map, const std::string& better, const char* option) {
     if (!better.empty())
@@ -97,8 +97,10 @@ void note_conventions(
   };
   if (files.contains("depth") && !view.truth["depth"].empty()) {
     const Image depth = read_for(files.at("depth"), 1, view);
-    const auto error = [&](DepthKind kind) { return absrel(depth, view, kind); };
-    note("depth", better_convention<DepthKind>(options.depth, kDepths, error), "--depth-kind");
+    const auto error = [&](DepthConvention kind) { return absrel(depth, view, kind); };
+    note(
+        "depth", better_convention<DepthConvention>(options.depth, kDepths, error), "--depth-kind"
+    );
   }
   if (files.contains("normal") && !view.truth["normal"].empty()) {
     const Image normals = read_for(files.at("normal"), 3, view);
@@ -114,8 +116,8 @@ void copy_mesh(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
-void to_our_depth(Image& depth, const Camera& camera, DepthKind kind) {
-  if (kind == DepthKind::kRay) make_planar(depth, camera);
+void to_our_depth(Image& depth, const Camera& camera, DepthConvention kind) {
+  if (kind == DepthConvention::kRay) make_planar(depth, camera);
 }
 
 void to_our_normals(Image& normals, const Camera& camera, NormalAxes axes) {

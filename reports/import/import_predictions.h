@@ -8,8 +8,10 @@
 
 namespace glint {
 
-enum class DepthKind { kPlanar, kRay };
-NLOHMANN_JSON_SERIALIZE_ENUM(DepthKind, {{DepthKind::kPlanar, "planar"}, {DepthKind::kRay, "ray"}})
+enum class DepthConvention { kPlanar, kRay };
+NLOHMANN_JSON_SERIALIZE_ENUM(
+    DepthConvention, {{DepthConvention::kPlanar, "planar"}, {DepthConvention::kRay, "ray"}}
+)
 
 // Camera space with OpenCV's axes (x right, y down, z forward), with OpenGL's (y up, z backward),
 // or the world's axes.
@@ -22,7 +24,7 @@ NLOHMANN_JSON_SERIALIZE_ENUM(
 )
 
 struct ImportOptions {
-  DepthKind depth = DepthKind::kPlanar;
+  DepthConvention depth = DepthConvention::kPlanar;
   NormalAxes normals = NormalAxes::kOpencv;
   std::string mesh;  // file; empty: the one that find_predictions() finds
 
@@ -35,7 +37,7 @@ struct ImportOptions {
 };
 
 // In our conventions: depth planar, normals in camera space with OpenCV's axes.
-void to_our_depth(Image& depth, const Camera& camera, DepthKind kind);
+void to_our_depth(Image& depth, const Camera& camera, DepthConvention kind);
 void to_our_normals(Image& normals, const Camera& camera, NormalAxes axes);
 
 // Fills spec.folder (config.json, renders/, strip.png, mesh.ply) from the predictions in `folder`.

@@ -142,7 +142,7 @@ int eval_predictions(const CommonOptions& common, const PredictionArguments& arg
   const Scene scene = load_scene(arguments.dataset, load);
   const RunSpec spec = spec_of(common, arguments, scene);
   const ImportOptions options{
-      Json(arguments.depth).get<DepthKind>(),
+      Json(arguments.depth).get<DepthConvention>(),
       Json(arguments.axes).get<NormalAxes>(),
       arguments.mesh};
   const Profile profile = common.resolved_profile();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "glint/core/sha256.h"
 #include "tests/metrics/tiny_lpips.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/write_npz.h"
@@ -97,15 +98,20 @@ TEST_CASE("A file says which network it is; weights that nobody published have n
   const LpipsWeights weights = load_lpips_weights(folder / "any_name.npz");
   CHECK(weights.network == "squeeze");
   CHECK(weights.version.empty());
-  CHECK(weights.sha256.size() == 64);
+  CHECK(weights.sha256 == sha256(read_file(folder / "any_name.npz")));
+  CHECK(weights.arrays_sha256.size() == 64);
+  CHECK(weights.arrays_sha256 != weights.sha256);
 }
 
-TEST_CASE("The checksum knows values and names") {
+TEST_CASE("The checksum of arrays knows values and names") {
   NpzArrays arrays = random_arrays(tiny_network());
-  const std::string before = make_lpips_weights(tiny_network(), arrays, "w").sha256;
-  CHECK(make_lpips_weights(tiny_network(), arrays, "w").sha256 == before);
+  const auto checksum = [&] {
+    return make_lpips_weights(tiny_network(), arrays, "w").arrays_sha256;
+  };
+  const std::string before = checksum();
+  CHECK(checksum() == before);
   arrays["lin0.weight"].values[0] += 0.5f;
-  CHECK(make_lpips_weights(tiny_network(), arrays, "w").sha256 != before);
+  CHECK(checksum() != before);
 }
 
 TEST_CASE("A zip without a network's arrays is an error that says how to make the file") {

@@ -64,7 +64,7 @@ struct Case {
 
 TEST_CASE("The truth in another program's conventions scores as the truth") {
   Case c;
-  const auto notes = c.import({DepthKind::kRay, NormalAxes::kOpengl, {}});
+  const auto notes = c.import({DepthConvention::kRay, NormalAxes::kOpengl, {}});
   CHECK(notes.size() == 1);
   const auto means = eval_stage(c.spec, test::small_room(), {});
   CHECK(means.at("psnr") == 100);
@@ -77,7 +77,7 @@ TEST_CASE("Normals in the world's axes come back, too") {
   Case c;
   for (const View& view : test::small_room().test)
     write_npy(c.folder.path() / "theirs/normal" / (view.name + ".npy"), world_normals(view));
-  c.import({DepthKind::kRay, NormalAxes::kWorld, {}});
+  c.import({DepthConvention::kRay, NormalAxes::kWorld, {}});
   CHECK(eval_stage(c.spec, test::small_room(), {}).at("normal-mae") < 0.01);
 }
 
