@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "datasets/glassroom/write_scene.h"
-#include "drawing/color_maps.h"
+#include "glint/drawing/color_maps.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "datasets/glassroom/path_tracer.h"
-#include "drawing/picture_grid.h"
+#include "glint/drawing/picture_grid.h"
 #include "glint/scene/scene.h"
 
 namespace glint {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "drawing/chart.h"
+#include "glint/drawing/chart.h"
 #include "metrics/tools/mesh_output.h"
 
 namespace glint {

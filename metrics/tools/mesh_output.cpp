@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <ostream>
 
-#include "drawing/color_maps.h"
+#include "glint/drawing/color_maps.h"
 #include "glint/scene/ply.h"
 #include "metrics/tools/tool_output.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "drawing/canvas.h"
+#include "glint/drawing/canvas.h"
 #include "metrics/mesh/mesh_scores.h"
 #include "metrics/tools/mesh_inputs.h"
 

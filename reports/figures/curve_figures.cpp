@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "drawing/chart.h"
+#include "glint/drawing/chart.h"
 #include "metrics/mesh/mesh_protocol.h"
 #include "reports/figures/figure_methods.h"
 #include "reports/pictures/training_curve.h"

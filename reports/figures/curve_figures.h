@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "drawing/canvas.h"
+#include "glint/drawing/canvas.h"
 #include "reports/records/records.h"
 
 namespace glint {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drawing/picture_grid.h"
+#include "glint/drawing/picture_grid.h"
 #include "reports/figures/figures.h"
 #include "reports/pictures/layers.h"
 

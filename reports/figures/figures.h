@@ -24,7 +24,7 @@ struct FigureOptions {
 // (disk).
 std::vector<fs::path> write_figures(const FigureOptions& options);
 
-// What is found here of kFontFamily (drawing/canvas.h); empty in the lean build.
+// What is found here of kFontFamily (glint/drawing/canvas.h); empty in the lean build.
 std::string figures_font();
 
 }  // namespace glint

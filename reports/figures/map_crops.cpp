@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "drawing/picture_grid.h"
+#include "glint/drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "drawing/picture_grid.h"
+#include "glint/drawing/picture_grid.h"
 #include "reports/figures/figure_scenes.h"
 
 namespace glint {

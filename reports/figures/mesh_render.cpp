@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "drawing/color_maps.h"
-#include "drawing/picture_grid.h"
+#include "glint/drawing/color_maps.h"
+#include "glint/drawing/picture_grid.h"
 #include "glint/core/parallel.h"
 #include "metrics/mesh/mesh_scores.h"
 #include "metrics/mesh/triangle_tree.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "drawing/color_maps.h"
+#include "glint/drawing/color_maps.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "metrics/components.h"

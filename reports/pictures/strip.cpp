@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drawing/color_maps.h"
-#include "drawing/picture_grid.h"
+#include "glint/drawing/color_maps.h"
+#include "glint/drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
 #include "reports/pictures/layers.h"
 #include "reports/records/run_folder.h"

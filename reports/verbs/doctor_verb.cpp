@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/ranges.h>
 
-#include "drawing/canvas.h"
+#include "glint/drawing/canvas.h"
 #include "glint/core/error.h"
 #include "glint/core/machine.h"
 #include "glint/core/parallel.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "drawing/color_maps.h"
+#include "glint/drawing/color_maps.h"
 #include "glint/scene/ply.h"
 #include "reports/figures/mesh_render.h"
 #include "tests/metrics/mesh/shapes.h"

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "drawing/picture_grid.h"
+#include "glint/drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
 #include "reports/records/run_folder.h"
 #include "tests/reports/fake_method.h"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <numbers>
 
-#include "drawing/canvas.h"
+#include "glint/drawing/canvas.h"
 
 namespace glint {
 

@@ -2,7 +2,7 @@
 // The published colours of viridis and magma: red, green, blue of 256 entries each, in millionths,
 // dark to light. By Nathaniel J. Smith, Stefan van der Walt and (viridis) Eric Firing, who released
 // them under CC0 (https://bids.github.io/colormap); taken from matplotlib's _cm_listed.py.
-#include "drawing/color_maps.h"
+#include "glint/drawing/color_maps.h"
 
 namespace glint {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "drawing/canvas.h"
-#include "drawing/series_style.h"
+#include "glint/drawing/canvas.h"
+#include "glint/drawing/series_style.h"
 
 namespace glint {
 

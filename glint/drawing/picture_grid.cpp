@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "drawing/picture_grid.h"
+#include "glint/drawing/picture_grid.h"
 
 #include <algorithm>
 #include <memory>
 
-#include "drawing/color_maps.h"
+#include "glint/drawing/color_maps.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {

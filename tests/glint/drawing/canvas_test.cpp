@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "drawing/canvas.h"
+#include "glint/drawing/canvas.h"
 
 #include <catch2/catch.hpp>
 

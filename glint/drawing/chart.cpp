@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "drawing/chart.h"
+#include "glint/drawing/chart.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "drawing/ticks.h"
+#include "glint/drawing/ticks.h"
 
 namespace glint {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <memory>
 
-#include "drawing/chart.h"
+#include "glint/drawing/chart.h"
 
 namespace glint {
 

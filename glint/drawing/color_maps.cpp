@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "drawing/color_maps.h"
+#include "glint/drawing/color_maps.h"
 
 #include <algorithm>
 #include <cmath>

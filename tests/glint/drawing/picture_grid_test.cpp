@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "drawing/picture_grid.h"
+#include "glint/drawing/picture_grid.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "drawing/ticks.h"
+#include "glint/drawing/ticks.h"
 
 #include <fmt/format.h>
 

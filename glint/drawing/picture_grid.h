@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drawing/canvas.h"
+#include "glint/drawing/canvas.h"
 
 namespace glint {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "drawing/series_style.h"
+#include "glint/drawing/series_style.h"
 
 #include <array>
 
