@@ -72,22 +72,14 @@ class DepthTool final : public MetricTool {
     return read_image(path, 1);
   }
 
-  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
-      const override {
-    const DepthFit fit = fit_depth(pair.prediction, pair.reference, regions[0].mask, protocol());
-    std::vector<ToolScores> scores;
-    for (const Region& region : regions) {
-      const auto errors =
-          depth_errors(pair.prediction, pair.reference, region.mask, protocol(), fit);
-      scores.push_back(errors ? to_scores(*errors) : ToolScores{});
-    }
-    return scores;
+  // Values that a table does not have under its id get the alignment in theirs.
+  std::vector<PairMetrics> families() const override {
+    const std::string suffix = release_ ? "-release" : alignment_ == "none" ? "" : "-" + alignment_;
+    return {depth_metrics(protocol(), suffix)};
   }
 
-  Json protocol(const std::string&) const override {
-    Json json = config_to_json(protocol());
-    json["prediction"] = intrinsics_.empty() ? "planar z" : "distance along rays, made planar";
-    return json;
+  Json protocol_of_options() const override {
+    return {{"prediction", intrinsics_.empty() ? "planar z" : "distance along rays, made planar"}};
   }
 
  private:
@@ -108,16 +100,6 @@ class DepthTool final : public MetricTool {
         intrinsics_[2],
         intrinsics_[3]};
     glint::make_planar(depth, camera);
-  }
-
-  // Values that a table does not have under its id get the alignment in theirs.
-  ToolScores to_scores(const DepthErrors& errors) const {
-    const std::string suffix = release_ ? "-release" : alignment_ == "none" ? "" : "-" + alignment_;
-    return {
-        {"depth-absrel" + suffix, errors.absrel},
-        {"depth-rmse" + suffix, errors.rmse},
-        {"depth-delta1" + suffix, errors.delta1},
-        {"depth-coverage", errors.coverage}};
   }
 
   std::string alignment_ = "none";

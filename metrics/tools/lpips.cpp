@@ -55,40 +55,23 @@ class LpipsTool final : public MetricTool {
     );
     protocol_.network = weights->network;
     protocol_.range = range_ == "3dgs" ? LpipsRange::kUnit : LpipsRange::kSymmetric;
-    lpips_ = std::make_unique<Lpips>(weights, protocol_.range);
+    lpips_ = std::make_shared<Lpips>(weights, protocol_.range);
   }
 
   Image load_prediction(const fs::path& path) const override { return read_image(path, 3); }
   Image load_reference(const fs::path& path) const override { return read_image(path, 3); }
 
-  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
-      const override {
-    const std::vector<LpipsMap> taps = lpips_->tap_maps(pair.prediction, pair.reference);
-    std::vector<ToolScores> scores(regions.size());
-    for (std::size_t r = 0; r < regions.size(); ++r)
-      if (const auto value = lpips_mean(taps, regions[r].mask))
-        scores[r].emplace_back(metric_id(), *value);
-    return scores;
-  }
+  std::vector<PairMetrics> families() const override { return {lpips_metrics(lpips_, protocol_)}; }
 
   bool one_at_a_time() const override { return true; }  // the network has one set of buffers
 
-  Json protocol(const std::string&) const override {
-    Json protocol = config_to_json(protocol_);
-    protocol.update(lpips_provenance(lpips_->weights()));
-    return protocol;
-  }
+  Json protocol_of_options() const override { return lpips_provenance(lpips_->weights()); }
 
  private:
-  std::string metric_id() const {
-    return "lpips-" + protocol_.network +
-           (protocol_.range == LpipsRange::kUnit ? "-3dgs" : std::string());
-  }
-
   fs::path place_;
   std::string network_, range_ = "lpips";
   LpipsProtocol protocol_;
-  std::unique_ptr<Lpips> lpips_;
+  std::shared_ptr<Lpips> lpips_;
 };
 
 }  // namespace

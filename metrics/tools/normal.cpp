@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "metrics/normal.h"
-
 #include <CLI/CLI.hpp>
 
 #include <array>
@@ -76,34 +74,13 @@ class NormalTool final : public MetricTool {
     return load_normals(path, reference_axes_);
   }
 
-  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
-      const override {
-    const BasicImage<double> angles = normal_angles_deg(pair.prediction, pair.reference);
-    std::vector<ToolScores> scores;
-    for (const Region& region : regions) {
-      const auto errors = normal_errors_from_angles(angles, pair.prediction, region.mask);
-      scores.push_back(errors ? to_scores(*errors) : ToolScores{});
-    }
-    return scores;
-  }
+  std::vector<PairMetrics> families() const override { return {normal_metrics()}; }
 
-  Json protocol(const std::string&) const override {
-    Json json = config_to_json(NormalProtocol{});
-    json["prediction_axes"] = axes_;
-    json["reference_axes"] = reference_axes_;
-    return json;
+  Json protocol_of_options() const override {
+    return {{"prediction_axes", axes_}, {"reference_axes", reference_axes_}};
   }
 
  private:
-  static ToolScores to_scores(const NormalErrors& errors) {
-    ToolScores scores = {{"normal-mae", errors.mean_deg}, {"normal-median", errors.median_deg}};
-    for (std::size_t i = 0; i < kNormalThresholdsDeg.size(); ++i)
-      scores.emplace_back(fmt::format("normal-{}", kNormalThresholdsDeg[i]), errors.below[i]);
-    scores.emplace_back("normal-coverage", errors.coverage);
-    scores.emplace_back("normal-dropped", errors.dropped);
-    return scores;
-  }
-
   std::string axes_ = "opencv", reference_axes_ = "opencv";
 };
 

@@ -7,12 +7,6 @@
 namespace glint {
 namespace {
 
-// Which of the two ids a prediction gets: a float file holds what was rendered, an integer file
-// what was saved.
-const char* id_for(const fs::path& prediction) {
-  return is_integer_format(prediction) ? "psnr-8bit" : "psnr";
-}
-
 class PsnrTool final : public MetricTool {
  public:
   std::string name() const override { return "glint-psnr"; }
@@ -31,29 +25,19 @@ class PsnrTool final : public MetricTool {
   Image load_prediction(const fs::path& path) const override { return read_image(path, 3); }
   Image load_reference(const fs::path& path) const override { return read_image(path, 3); }
 
-  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
-      const override {
-    const std::string id = id_for(pair.files.prediction);
-    std::vector<ToolScores> scores;
-    for (const Region& region : regions) {
-      const double error = mse(pair.prediction, pair.reference, region.mask, protocol_of(id));
-      scores.push_back({{id, psnr_from_mse(error)}});
-    }
-    return scores;
+  // A float file holds what was rendered, an integer file what was saved.
+  std::vector<PairMetrics> families() const override {
+    return {psnr_metrics({}), psnr_metrics(psnr_8bit_protocol())};
   }
-
-  Json protocol(const std::string& id) const override { return config_to_json(protocol_of(id)); }
+  std::size_t family_for(const FilePair& files) const override {
+    return is_integer_format(files.prediction) ? 1 : 0;
+  }
 
   // Identical images count with the cap, so their number is told.
   Json summary(std::span<const ImageScores> images) const override {
     int identical = 0;
     for (const ImageScores& image : images) identical += image.scores[0].second >= kPsnrCapDb;
     return identical > 0 ? Json{{"num_identical", identical}} : Json::object();
-  }
-
- private:
-  static PsnrProtocol protocol_of(const std::string& id) {
-    return id == "psnr-8bit" ? psnr_8bit_protocol() : PsnrProtocol{};
   }
 };
 

@@ -9,13 +9,6 @@
 namespace glint {
 namespace {
 
-struct Variant {
-  std::string name, id;
-  SsimBorder border;
-};
-const std::vector<Variant> kVariants = {
-    {"3dgs", "ssim-3dgs", SsimBorder::kZeroPadded}, {"wang", "ssim-wang", SsimBorder::kValid}};
-
 class SsimTool final : public MetricTool {
  public:
   std::string name() const override { return "glint-ssim"; }
@@ -39,22 +32,11 @@ class SsimTool final : public MetricTool {
   Image load_prediction(const fs::path& path) const override { return read_image(path, 3); }
   Image load_reference(const fs::path& path) const override { return read_image(path, 3); }
 
-  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
-      const override {
-    const SsimMap map = ssim_map(pair.prediction, pair.reference);
-    std::vector<ToolScores> scores(regions.size());
-    for (std::size_t r = 0; r < regions.size(); ++r)
-      for (const Variant& variant : kVariants)
-        if (variant_ == "all" || variant_ == variant.name)
-          if (const auto value = ssim_mean(map, variant.border, regions[r].mask))
-            scores[r].emplace_back(variant.id, *value);
-    return scores;
-  }
-
-  Json protocol(const std::string& id) const override {
-    for (const Variant& variant : kVariants)
-      if (variant.id == id) return config_to_json(SsimProtocol{variant.border});
-    return nullptr;
+  std::vector<PairMetrics> families() const override {
+    std::vector<SsimBorder> borders;
+    if (variant_ != "wang") borders.push_back(SsimBorder::kZeroPadded);
+    if (variant_ != "3dgs") borders.push_back(SsimBorder::kValid);
+    return {ssim_metrics(std::move(borders))};
   }
 
  private:

@@ -190,6 +190,28 @@ void run(MetricTool& tool, ToolOptions& options, std::ostream& out) {
 
 }  // namespace
 
+std::vector<ToolScores> MetricTool::score(const LoadedPair& pair, std::span<const Region> regions)
+    const {
+  const PairMetrics family = families()[family_for(pair.files)];
+  std::vector<ToolScores> scores(regions.size());
+  const std::vector<MetricValues> rows = family.score(pair.prediction, pair.reference, regions);
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (std::size_t m = 0; m < rows[r].size(); ++m)
+      if (rows[r][m]) scores[r].emplace_back(family.metrics[m].id, *rows[r][m]);
+  return scores;
+}
+
+Json MetricTool::protocol(const std::string& metric_id) const {
+  for (const PairMetrics& family : families())
+    for (const Metric& metric : family.metrics) {
+      if (metric.id != metric_id) continue;
+      Json protocol = metric.protocol;
+      protocol.update(protocol_of_options());
+      return protocol;
+    }
+  return nullptr;
+}
+
 int run_program(
     CLI::App& app,
     const std::vector<std::string>& args,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the programs glint-psnr, glint-ssim, glint-lpips, glint-depth and glint-normal share:
-// command line, files in pairs, masks and regions, and the three forms of output. A program adds
-// how a pair is scored.
+// command line, files in pairs, masks and regions, and the three forms of output. A program is a
+// family of metrics (pair_metrics.h) and its options.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 
 #include "glint/core/config.h"
 #include "glint/core/image.h"
-#include "metrics/metric.h"
+#include "metrics/pair_metrics.h"
 #include "metrics/tools/pairing.h"
 
 namespace CLI {
@@ -53,14 +53,19 @@ class MetricTool {
   // (kBadReference): see image_files.h.
   virtual Image load_prediction(const fs::path& path) const = 0;
   virtual Image load_reference(const fs::path& path) const = 0;
-  // One entry per region; an empty one where nothing can be scored. Sizes agree already. Called by
-  // several threads, but for a tool whose score() is one_at_a_time().
-  virtual std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions)
-      const = 0;
+  // What pairs are scored by, as the options say; family_for() chooses for a pair.
+  virtual std::vector<PairMetrics> families() const = 0;
+  virtual std::size_t family_for(const FilePair&) const { return 0; }
+  // Pairs are scored by several threads otherwise.
   virtual bool one_at_a_time() const { return false; }
-  virtual Json protocol(const std::string& metric_id) const = 0;
+  // What the options add to the protocol of every metric.
+  virtual Json protocol_of_options() const { return Json::object(); }
   // Further results over all images, printed below the means.
   virtual Json summary(std::span<const ImageScores>) const { return Json::object(); }
+
+  // One entry per region; an empty one where nothing can be scored. Sizes agree already.
+  std::vector<ToolScores> score(const LoadedPair& pair, std::span<const Region> regions) const;
+  Json protocol(const std::string& metric_id) const;
 };
 
 // Parses and calls `body`: help without arguments, errors to `err` behind the program's name, the

@@ -1,45 +1,42 @@
 // SPDX-License-Identifier: MIT
 #include "metrics/depth.h"
 
-#include "metrics/metric.h"
+#include "metrics/pair_metrics.h"
 
-namespace glint::view_metrics {
-namespace {
+namespace glint {
 
 // Fitted on the whole view, scored by region.
-std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
-  std::vector<MetricValues> values;
-  if (pair.rendered["depth"].empty() || pair.truth["depth"].empty()) return values;
-  const DepthProtocol plain, release = release_depth_protocol();
-  const DepthFit fit = fit_depth(pair.rendered["depth"], pair.truth["depth"], {}, release);
-  for (const Region& region : regions) {
-    const auto a =
-        depth_errors(pair.rendered["depth"], pair.truth["depth"], region.mask, plain, {});
-    const auto b =
-        depth_errors(pair.rendered["depth"], pair.truth["depth"], region.mask, release, fit);
-    MetricValues row(7);
-    if (a) row = {a->absrel, a->rmse, a->delta1, a->coverage, {}, {}, {}};
-    if (b) row[4] = b->absrel, row[5] = b->rmse, row[6] = b->delta1;
-    values.push_back(row);
-  }
-  return values;
+PairMetrics depth_metrics(const DepthProtocol& protocol, const std::string& suffix) {
+  const Json json = config_to_json(protocol);
+  const char* rmse_unit = protocol.rmse_over_mean_depth ? "" : "m";
+  const Direction lower = Direction::kLowerIsBetter, higher = Direction::kHigherIsBetter;
+  const auto score =
+      [protocol](ImageView prediction, ImageView reference, std::span<const Region> regions) {
+        const DepthFit fit = fit_depth(prediction, reference, regions[0].mask, protocol);
+        std::vector<MetricValues> rows;
+        for (const Region& region : regions) {
+          rows.emplace_back(4);
+          if (const auto e = depth_errors(prediction, reference, region.mask, protocol, fit))
+            rows.back() = {e->absrel, e->rmse, e->delta1, e->coverage};
+        }
+        return rows;
+      };
+  return {
+      {{"depth-absrel" + suffix, "", lower, 3, json},
+       {"depth-rmse" + suffix, rmse_unit, lower, 3, json},
+       {"depth-delta1" + suffix, "%", higher, 2, json},
+       {"depth-coverage", "%", higher, 2, json}},
+      score};
 }
 
-}  // namespace
+namespace view_metrics {
 
 MetricFamily depth() {
-  const Json plain = config_to_json(DepthProtocol{});
-  const Json release = config_to_json(release_depth_protocol());
-  const Direction lower = Direction::kLowerIsBetter, higher = Direction::kHigherIsBetter;
-  return {
-      {{"depth-absrel", "", lower, 3, plain},
-       {"depth-rmse", "m", lower, 3, plain},
-       {"depth-delta1", "%", higher, 2, plain},
-       {"depth-coverage", "%", higher, 2, plain},
-       {"depth-absrel-release", "", lower, 3, release},
-       {"depth-rmse-release", "", lower, 3, release},
-       {"depth-delta1-release", "%", higher, 2, release}},
-      evaluate};
+  return view_family(
+      joined(depth_metrics({}, ""), depth_metrics(release_depth_protocol(), "-release")), "depth"
+  );
 }
 
-}  // namespace glint::view_metrics
+}  // namespace view_metrics
+
+}  // namespace glint

@@ -2,20 +2,45 @@
 // LPIPS of every network whose weights the machine has, looked for once in a process.
 #include "metrics/lpips.h"
 
-#include "metrics/metric.h"
+#include "metrics/pair_metrics.h"
 
-namespace glint::view_metrics {
+namespace glint {
+
+Metric lpips_metric(const LpipsProtocol& protocol) {
+  const char* suffix = protocol.range == LpipsRange::kUnit ? "-3dgs" : "";
+  return {
+      "lpips-" + protocol.network + suffix,
+      "",
+      Direction::kLowerIsBetter,
+      3,
+      config_to_json(protocol)};
+}
+
+PairMetrics lpips_metrics(std::shared_ptr<Lpips> lpips, const LpipsProtocol& protocol) {
+  const auto score = [lpips = std::move(lpips)](
+                         ImageView prediction, ImageView reference, std::span<const Region> regions
+                     ) {
+    const std::vector<LpipsMap> taps = lpips->tap_maps(prediction, reference);
+    std::vector<MetricValues> rows;
+    for (const Region& region : regions) rows.push_back({lpips_mean(taps, region.mask)});
+    return rows;
+  };
+  return {{lpips_metric(protocol)}, score};
+}
+
+namespace view_metrics {
 namespace {
 
 struct Variant {
-  const char *id, *network;
+  const char* network;
   LpipsRange range;
+  LpipsProtocol protocol() const { return {network, range}; }
 };
 constexpr Variant kVariants[] = {
-    {"lpips-alex", "alex", LpipsRange::kSymmetric},
-    {"lpips-squeeze", "squeeze", LpipsRange::kSymmetric},
-    {"lpips-vgg", "vgg", LpipsRange::kSymmetric},
-    {"lpips-vgg-3dgs", "vgg", LpipsRange::kUnit}};
+    {"alex", LpipsRange::kSymmetric},
+    {"squeeze", LpipsRange::kSymmetric},
+    {"vgg", LpipsRange::kSymmetric},
+    {"vgg", LpipsRange::kUnit}};
 
 using WeightsByNetwork = std::map<std::string, std::shared_ptr<const LpipsWeights>>;
 
@@ -31,15 +56,16 @@ std::shared_ptr<const LpipsWeights> weights_of(const std::string& network) {
 
 std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
   std::vector<MetricValues> values(regions.size(), MetricValues(std::size(kVariants)));
-  if (pair.rendered["rgb"].empty() || pair.truth["rgb"].empty()) return values;
+  const ImageView rendered = pair.rendered["rgb"], truth = pair.truth["rgb"];
+  if (rendered.empty() || truth.empty()) return values;
   for (std::size_t v = 0; v < std::size(kVariants); ++v) {
     const auto weights = weights_of(kVariants[v].network);
     if (weights == nullptr) continue;
-    Lpips lpips(weights, kVariants[v].range);
-    if (!lpips.accepts(pair.truth["rgb"].size())) continue;
-    const std::vector<LpipsMap> taps = lpips.tap_maps(pair.rendered["rgb"], pair.truth["rgb"]);
-    for (std::size_t r = 0; r < regions.size(); ++r)
-      values[r][v] = lpips_mean(taps, regions[r].mask);
+    const auto lpips = std::make_shared<Lpips>(weights, kVariants[v].range);
+    if (!lpips->accepts(truth.size())) continue;
+    const PairMetrics metrics = lpips_metrics(lpips, kVariants[v].protocol());
+    const std::vector<MetricValues> rows = metrics.score(rendered, truth, regions);
+    for (std::size_t r = 0; r < regions.size(); ++r) values[r][v] = rows[r][0];
   }
   return values;
 }
@@ -55,14 +81,10 @@ MetricFiles files(const Metric& metric) {
 MetricFamily lpips() {
   MetricFamily family{{}, evaluate, files};
   for (const Variant& variant : kVariants)
-    family.metrics.push_back(
-        {variant.id,
-         "",
-         Direction::kLowerIsBetter,
-         3,
-         config_to_json(LpipsProtocol{variant.network, variant.range})}
-    );
+    family.metrics.push_back(lpips_metric(variant.protocol()));
   return family;
 }
 
-}  // namespace glint::view_metrics
+}  // namespace view_metrics
+
+}  // namespace glint

@@ -1,42 +1,50 @@
 // SPDX-License-Identifier: MIT
 #include "metrics/normal.h"
 
-#include "metrics/metric.h"
+#include "metrics/pair_metrics.h"
 
-namespace glint::view_metrics {
+namespace glint {
 namespace {
 
-std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
-  std::vector<MetricValues> values;
-  if (pair.rendered["normal"].empty() || pair.truth["normal"].empty()) return values;
-  const BasicImage<double> angles =
-      normal_angles_deg(pair.rendered["normal"], pair.truth["normal"]);
+MetricValues values_of(const NormalErrors& errors) {
+  MetricValues row = {errors.mean_deg, errors.median_deg};
+  row.insert(row.end(), errors.below.begin(), errors.below.end());
+  row.insert(row.end(), {errors.coverage, errors.dropped});
+  return row;
+}
+
+std::vector<MetricValues> score(
+    ImageView prediction, ImageView reference, std::span<const Region> regions
+) {
+  const BasicImage<double> angles = normal_angles_deg(prediction, reference);
+  std::vector<MetricValues> rows;
   for (const Region& region : regions) {
-    MetricValues row(9);
-    if (const auto e = normal_errors_from_angles(angles, pair.rendered["normal"], region.mask)) {
-      row = {e->mean_deg, e->median_deg};
-      row.insert(row.end(), e->below.begin(), e->below.end());
-      row.insert(row.end(), {e->coverage, e->dropped});
-    }
-    values.push_back(row);
+    const auto errors = normal_errors_from_angles(angles, prediction, region.mask);
+    rows.push_back(errors ? values_of(*errors) : MetricValues(4 + kNormalThresholdsDeg.size()));
   }
-  return values;
+  return rows;
 }
 
 }  // namespace
 
-MetricFamily normal() {
+PairMetrics normal_metrics() {
   const Json protocol = config_to_json(NormalProtocol{});
   const Direction lower = Direction::kLowerIsBetter, higher = Direction::kHigherIsBetter;
-  MetricFamily family;
-  family.metrics = {
+  PairMetrics result;
+  result.metrics = {
       {"normal-mae", "deg", lower, 2, protocol}, {"normal-median", "deg", lower, 2, protocol}};
   for (const double threshold : kNormalThresholdsDeg)
-    family.metrics.push_back({fmt::format("normal-{}", threshold), "%", higher, 2, protocol});
-  family.metrics.push_back({"normal-coverage", "%", higher, 2, protocol});
-  family.metrics.push_back({"normal-dropped", "%", lower, 2, protocol});
-  family.evaluate = evaluate;
-  return family;
+    result.metrics.push_back({fmt::format("normal-{}", threshold), "%", higher, 2, protocol});
+  result.metrics.push_back({"normal-coverage", "%", higher, 2, protocol});
+  result.metrics.push_back({"normal-dropped", "%", lower, 2, protocol});
+  result.score = score;
+  return result;
 }
 
-}  // namespace glint::view_metrics
+namespace view_metrics {
+
+MetricFamily normal() { return view_family(normal_metrics(), "normal"); }
+
+}  // namespace view_metrics
+
+}  // namespace glint

@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "metrics/psnr.h"
 
-#include "metrics/metric.h"
+#include "metrics/pair_metrics.h"
 
-namespace glint::view_metrics {
-namespace {
+namespace glint {
 
-std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
-  std::vector<MetricValues> values;
-  if (pair.rendered["rgb"].empty() || pair.truth["rgb"].empty()) return values;
-  for (const Region& region : regions)
-    values.push_back(
-        {glint::psnr(pair.rendered["rgb"], pair.truth["rgb"], region.mask),
-         glint::psnr_8bit(pair.rendered["rgb"], pair.truth["rgb"], region.mask)}
-    );
-  return values;
+PairMetrics psnr_metrics(const PsnrProtocol& protocol) {
+  const char* id = protocol.eight_bit ? "psnr-8bit" : "psnr";
+  const auto score =
+      [protocol](ImageView prediction, ImageView reference, std::span<const Region> regions) {
+        std::vector<MetricValues> rows;
+        for (const Region& region : regions)
+          rows.push_back({psnr_from_mse(mse(prediction, reference, region.mask, protocol))});
+        return rows;
+      };
+  return {{{id, "dB", Direction::kHigherIsBetter, 2, config_to_json(protocol)}}, score};
 }
 
-}  // namespace
+namespace view_metrics {
 
 MetricFamily psnr() {
-  const Json plain = config_to_json(PsnrProtocol{}), saved = config_to_json(psnr_8bit_protocol());
-  const Direction higher = Direction::kHigherIsBetter;
-  return {{{"psnr", "dB", higher, 2, plain}, {"psnr-8bit", "dB", higher, 2, saved}}, evaluate};
+  return view_family(joined(psnr_metrics({}), psnr_metrics(psnr_8bit_protocol())), "rgb");
 }
 
-}  // namespace glint::view_metrics
+}  // namespace view_metrics
+
+}  // namespace glint

@@ -1,30 +1,38 @@
 // SPDX-License-Identifier: MIT
 #include "metrics/ssim.h"
 
-#include "metrics/metric.h"
+#include "metrics/pair_metrics.h"
 
-namespace glint::view_metrics {
-namespace {
+namespace glint {
 
-std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region> regions) {
-  std::vector<MetricValues> values;
-  if (pair.rendered["rgb"].empty() || pair.truth["rgb"].empty()) return values;
-  const SsimMap map = ssim_map(pair.rendered["rgb"], pair.truth["rgb"]);
-  for (const Region& region : regions)
-    values.push_back(
-        {ssim_mean(map, SsimBorder::kZeroPadded, region.mask),
-         ssim_mean(map, SsimBorder::kValid, region.mask)}
+PairMetrics ssim_metrics(std::vector<SsimBorder> borders) {
+  PairMetrics result;
+  for (const SsimBorder border : borders)
+    result.metrics.push_back(
+        {border == SsimBorder::kValid ? "ssim-wang" : "ssim-3dgs",
+         "",
+         Direction::kHigherIsBetter,
+         3,
+         config_to_json(SsimProtocol{border})}
     );
-  return values;
+  result.score = [borders = std::move(borders
+                  )](ImageView prediction, ImageView reference, std::span<const Region> regions) {
+    const SsimMap map = ssim_map(prediction, reference);
+    std::vector<MetricValues> rows(regions.size());
+    for (std::size_t r = 0; r < regions.size(); ++r)
+      for (const SsimBorder border : borders)
+        rows[r].push_back(ssim_mean(map, border, regions[r].mask));
+    return rows;
+  };
+  return result;
 }
 
-}  // namespace
+namespace view_metrics {
 
 MetricFamily ssim() {
-  const Json padded = config_to_json(SsimProtocol{SsimBorder::kZeroPadded});
-  const Json valid = config_to_json(SsimProtocol{SsimBorder::kValid});
-  const Direction higher = Direction::kHigherIsBetter;
-  return {{{"ssim-3dgs", "", higher, 3, padded}, {"ssim-wang", "", higher, 3, valid}}, evaluate};
+  return view_family(ssim_metrics({SsimBorder::kZeroPadded, SsimBorder::kValid}), "rgb");
 }
 
-}  // namespace glint::view_metrics
+}  // namespace view_metrics
+
+}  // namespace glint
