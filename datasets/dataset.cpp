@@ -10,11 +10,6 @@
 namespace glint {
 namespace {
 
-std::vector<LoaderSpec>& registry() {
-  static std::vector<LoaderSpec> loaders;
-  return loaders;
-}
-
 std::string size_range(const Scene& scene) {
   std::set<std::pair<int, int>> sizes;
   for (const std::vector<View>* views : {&scene.train, &scene.test})
@@ -79,24 +74,16 @@ std::string format_vector(Vec3f v) {
 
 }  // namespace
 
-bool register_loader(LoaderSpec spec) {
-  registry().push_back(std::move(spec));
-  return true;
-}
-
-const std::vector<LoaderSpec>& loader_registry() { return registry(); }
-
 const LoaderSpec& find_loader(const fs::path& folder) {
   std::error_code code;
   GLINT_CHECK(
       fs::exists(folder, code), kBadReference, "{}: no such folder or file", folder.string()
   );
-  // Registration order depends on the linker; names do not.
   const LoaderSpec* found = nullptr;
   std::string known;
-  for (const LoaderSpec& loader : registry()) {
+  for (const auto& [id, loader] : Registry<LoaderSpec>::all()) {
     known += fmt::format("\n  {}: {}", loader.name, loader.looks_for);
-    if (loader.can_load(folder) && (found == nullptr || loader.name < found->name)) found = &loader;
+    if (found == nullptr && loader.can_load(folder)) found = &loader;
   }
   GLINT_CHECK(
       found != nullptr,

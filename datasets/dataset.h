@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Loaders: one file each, registered by name; load_scene() asks each whether it knows the folder
-// (or the file of a packed scene).
+// Loaders: one file each, registered with GLINT_REGISTER(LoaderSpec, ...); load_scene() asks each
+// whether it knows the folder (or the file of a packed scene).
 #pragma once
 
 #include <functional>
@@ -9,6 +9,7 @@
 
 #include "datasets/findings.h"
 #include "glint/core/files.h"
+#include "glint/core/registry.h"
 #include "glint/scene/scene.h"
 
 namespace glint {
@@ -30,8 +31,8 @@ struct LoaderSpec {
   std::function<std::vector<Finding>(const fs::path&)> check = {};
 };
 
-bool register_loader(LoaderSpec spec);
-const std::vector<LoaderSpec>& loader_registry();
+inline const std::string& registry_id(const LoaderSpec& loader) { return loader.name; }
+
 // The loader that knows the folder. Errors (kBadReference): none does; what each looks for is
 // listed.
 const LoaderSpec& find_loader(const fs::path& folder);
@@ -46,8 +47,3 @@ std::string describe_scene(const Scene& scene);
 std::vector<Finding> check_dataset(const fs::path& folder);
 
 }  // namespace glint
-
-#define GLINT_REGISTER_LOADER(...)                                                       \
-  namespace {                                                                            \
-  [[maybe_unused]] const bool loader_registered = ::glint::register_loader(__VA_ARGS__); \
-  }

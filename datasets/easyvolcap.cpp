@@ -122,8 +122,8 @@ std::vector<Finding> check(const fs::path& folder) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER(
-    {"easyvolcap", can_load, load, "intri.yml, extri.yml and images/<view>/", check}
+GLINT_REGISTER(
+    LoaderSpec, {"easyvolcap", can_load, load, "intri.yml, extri.yml and images/<view>/", check}
 )
 
 }  // namespace glint

@@ -279,6 +279,6 @@ std::vector<Finding> check(const fs::path& folder) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER({"nerfstudio", can_load, load, "transforms.json", check})
+GLINT_REGISTER(LoaderSpec, {"nerfstudio", can_load, load, "transforms.json", check})
 
 }  // namespace glint

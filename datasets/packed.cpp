@@ -25,6 +25,8 @@ Scene load(const fs::path& path, const LoadOptions& options) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER({"packed", can_load, load, "a file that `glint-bench dataset pack` wrote"})
+GLINT_REGISTER(
+    LoaderSpec, {"packed", can_load, load, "a file that `glint-bench dataset pack` wrote"}
+)
 
 }  // namespace glint

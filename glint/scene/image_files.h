@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Image files: PNG and JPEG through OpenCV (lean build: PNG through libpng, no JPEG, no resizing,
-// no letters), EXR through OpenEXR, NPY maps. Colours stay as stored (sRGB-encoded values in [0,
-// 1]); nothing here changes a transfer function. Writers are atomic. Errors (kBadReference) name
-// the file and say what was found and expected: truncated files, wrong channel counts, sizes that
-// do not match the header, cropped or deep EXR, missing EXR channels.
+// Image files: PNG through libpng and libdeflate, JPEG through libjpeg-turbo, EXR through OpenEXR,
+// NPY maps. Colours stay as stored (sRGB-encoded values in [0, 1]); nothing here changes a transfer
+// function. Writers are atomic. Errors (kBadReference) name the file and say what was found and
+// expected: truncated files, wrong channel counts, sizes that do not match the header, cropped or
+// deep EXR, missing EXR channels.
 #pragma once
 
 #include <string>
@@ -11,6 +11,7 @@
 
 #include "glint/core/files.h"
 #include "glint/core/image.h"
+#include "glint/core/service.h"
 
 namespace glint {
 
@@ -31,8 +32,10 @@ void write_png(const fs::path& path, ImageView image);
 void write_exr(const fs::path& path, ImageView image, bool xyz = false);
 void write_npy(const fs::path& path, ImageView image);
 
-// Area average for shrinking, bilinear for growing (OpenCV).
-Image resize_image(ImageView image, ImageSize size);
+// Area average for shrinking, bilinear for growing (OpenCV, library glint_resize).
+inline constinit Service<Image(ImageView, ImageSize)> resize_image{
+    "resizing pictures",
+    "pack the scene at that size with the full build (glint-bench dataset pack --max-pixels)"};
 
 // IEC 61966-2-1. Values outside [0, 1] are continued (encode clamps below at 0).
 float srgb_encode(float linear);

@@ -23,8 +23,6 @@ std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region>
   return values;
 }
 
-}  // namespace
-
 MetricFamily depth() {
   const Json plain = config_to_json(DepthProtocol{});
   const Json release = config_to_json(release_depth_protocol());
@@ -39,5 +37,9 @@ MetricFamily depth() {
        {"depth-delta1-release", "%", higher, 2, release}},
       evaluate};
 }
+
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, depth())
 
 }  // namespace glint::view_metrics

@@ -50,8 +50,6 @@ MetricFiles files(const Metric& metric) {
   return {"", lpips_provenance(*weights)};
 }
 
-}  // namespace
-
 MetricFamily lpips() {
   MetricFamily family{{}, evaluate, files};
   for (const Variant& variant : kVariants)
@@ -64,5 +62,9 @@ MetricFamily lpips() {
     );
   return family;
 }
+
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, lpips())
 
 }  // namespace glint::view_metrics

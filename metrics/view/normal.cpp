@@ -22,8 +22,6 @@ std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region>
   return values;
 }
 
-}  // namespace
-
 MetricFamily normal() {
   const Json protocol = config_to_json(NormalProtocol{});
   const Direction lower = Direction::kLowerIsBetter, higher = Direction::kHigherIsBetter;
@@ -37,5 +35,9 @@ MetricFamily normal() {
   family.evaluate = evaluate;
   return family;
 }
+
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, normal())
 
 }  // namespace glint::view_metrics

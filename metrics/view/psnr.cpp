@@ -17,12 +17,14 @@ std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region>
   return values;
 }
 
-}  // namespace
-
 MetricFamily psnr() {
   const Json plain = config_to_json(PsnrProtocol{}), saved = config_to_json(psnr_8bit_protocol());
   const Direction higher = Direction::kHigherIsBetter;
   return {{{"psnr", "dB", higher, 2, plain}, {"psnr-8bit", "dB", higher, 2, saved}}, evaluate};
 }
+
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, psnr())
 
 }  // namespace glint::view_metrics

@@ -18,13 +18,15 @@ std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region>
   return values;
 }
 
-}  // namespace
-
 MetricFamily ssim() {
   const Json padded = config_to_json(SsimProtocol{SsimBorder::kZeroPadded});
   const Json valid = config_to_json(SsimProtocol{SsimBorder::kValid});
   const Direction higher = Direction::kHigherIsBetter;
   return {{{"ssim-3dgs", "", higher, 3, padded}, {"ssim-wang", "", higher, 3, valid}}, evaluate};
 }
+
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, ssim())
 
 }  // namespace glint::view_metrics

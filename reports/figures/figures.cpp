@@ -21,9 +21,7 @@ void keep(const fs::path& path, const PictureGrid& grid, std::vector<fs::path>& 
   written.push_back(path);
 }
 
-}  // namespace
-
-std::vector<fs::path> write_figures(const FigureOptions& options) {
+std::vector<fs::path> draw_figures(const FigureOptions& options) {
   const auto records = read_records(options.folder / "records.jsonl");
   const auto scenes = figure_scenes(records, options);
   const fs::path folder = options.folder / "figures";
@@ -38,5 +36,9 @@ std::vector<fs::path> write_figures(const FigureOptions& options) {
   keep(folder / "meshes.png", meshes_figure(scenes), written);
   return written;
 }
+
+}  // namespace
+
+GLINT_PROVIDE(write_figures, draw_figures)
 
 }  // namespace glint

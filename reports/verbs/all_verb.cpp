@@ -48,7 +48,7 @@ int run_all(const CommonOptions& common, bool force, bool rescore) {
   const RunSummary summary = run_profile(options);
   const auto tables = result_tables(options.out);
   write_tables(options.out, tables);
-  write_figures({options.out, load_run_data});
+  if (write_figures.here()) write_figures({options.out, load_run_data});
   const fs::path page = write_report(common, options.out, tables);
   if (common.json)
     print_summary_json(summary, options.out, page, tables);
@@ -66,8 +66,6 @@ int run_all(const CommonOptions& common, bool force, bool rescore) {
   return exit_code_of(summary);
 }
 
-}  // namespace
-
 void add_all_verb(CommandLine& line) {
   auto force = std::make_shared<bool>(false), rescore = std::make_shared<bool>(false);
   CLI::App* verb = line.add_verb(
@@ -83,5 +81,9 @@ void add_all_verb(CommandLine& line) {
       "render and score runs that an earlier version trained; records say which"
   );
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"all", add_all_verb})
 
 }  // namespace glint

@@ -168,8 +168,6 @@ void add_folder_verb(
       ->required();
 }
 
-}  // namespace
-
 void add_dataset_verb(CommandLine& line) {
   CLI::App* dataset = line.app.add_subcommand("dataset", "make, describe, check and pack datasets");
   dataset->require_subcommand(1);
@@ -178,5 +176,9 @@ void add_dataset_verb(CommandLine& line) {
   add_folder_verb(line, *dataset, "check", "everything wrong with a folder; exit 4", run_check);
   add_pack(line, *dataset);
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"dataset", add_dataset_verb})
 
 }  // namespace glint

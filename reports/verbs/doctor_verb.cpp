@@ -40,7 +40,8 @@ std::string cuda_text() {
 // Which networks LPIPS has weights of.
 Examined lpips_weights() {
   const fs::path place = lpips_weights_place();
-  if (place.empty()) return {"lpips", "off: its columns will say 'no weights'", true, ""};
+  if (place.empty() || !make_feature_net.here())
+    return {"lpips", "off: its columns will say 'no weights'", true, ""};
   std::vector<std::string> found;
   try {
     for (const LpipsNetwork& network : lpips_networks())
@@ -72,7 +73,7 @@ std::vector<Examined> examine(const CommonOptions& common) {
        disk >= kNeededDisk,
        "2 GiB are needed; free some or choose another --out"},
       {"cuda", cuda_text(), true, ""},
-      {"networks", feature_net_libraries(), true, ""},
+      {"networks", feature_net_libraries.here() ? feature_net_libraries() : "none", true, ""},
       lpips_weights(),
       {"revision", git_revision(), true, ""}};
 }
@@ -96,12 +97,14 @@ int run_doctor(const CommonOptions& common) {
   return static_cast<int>(good ? ExitCode::kSuccess : ExitCode::kEnvironment);
 }
 
-}  // namespace
-
 void add_doctor_verb(CommandLine& line) {
   line.add_verb(line.app, "doctor", "is this machine fit for it", [&line] {
     return run_doctor(line.common);
   });
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"doctor", add_doctor_verb})
 
 }  // namespace glint

@@ -70,12 +70,14 @@ int run_plan(const CommonOptions& common) {
   return 0;
 }
 
-}  // namespace
-
 void add_plan_verb(CommandLine& line) {
   line.add_verb(line.app, "plan", "list the cells that `all` would run", [&line] {
     return run_plan(line.common);
   });
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"plan", add_plan_verb})
 
 }  // namespace glint
