@@ -17,6 +17,12 @@
 
 namespace glint {
 
+// "../../baselines/2dgs.cpp", as a compiler cache calls it, from the root of the sources.
+inline std::string from_root(std::string file) {
+  while (file.starts_with("../")) file.erase(0, 3);
+  return file;
+}
+
 // What an item goes by; a kind that calls it otherwise overloads this.
 template <class T>
 const std::string& registry_id(const T& item) {
@@ -33,9 +39,10 @@ class Registry {
     return registry.items_;
   }
 
-  // `file` from the root of the sources. All programs start with every item, so a second one of an
+  // `compiled_file`: __FILE__. All programs start with every item, so a second one of an
   // id is an error of all(), where there is someone to read it.
-  static bool add(T item, const std::string& file) {
+  static bool add(T item, const std::string& compiled_file) {
+    const std::string file = from_root(compiled_file);
     Registry& registry = instance();
     if constexpr (requires { item.source; }) item.source = file;
     const std::string id = registry_id(item);
