@@ -174,7 +174,7 @@ MethodSpec two_dgs_prior_spec() {
 
 }  // namespace
 
-GLINT_REGISTER(two_dgs_spec())
-GLINT_REGISTER(two_dgs_prior_spec())
+GLINT_REGISTER(MethodSpec, two_dgs_spec())
+GLINT_REGISTER(MethodSpec, two_dgs_prior_spec())
 
 }  // namespace glint

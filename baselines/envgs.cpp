@@ -265,7 +265,7 @@ MethodSpec envgs_prior_spec() {
 
 }  // namespace
 
-GLINT_REGISTER(envgs_spec())
-GLINT_REGISTER(envgs_prior_spec())
+GLINT_REGISTER(MethodSpec, envgs_spec())
+GLINT_REGISTER(MethodSpec, envgs_prior_spec())
 
 }  // namespace glint

@@ -43,9 +43,7 @@ endforeach()
 
 if(GLINT_LEAN)
   set(GLINT_FMT fmt::fmt-header-only)
-  set(GLINT_RAY_TRACER "")
-  set(GLINT_NETWORKS "")
-  return()
+  return()  # libraries that need what follows are left out (glint_targets.cmake)
 endif()
 
 if(GLINT_TESTS)
@@ -82,7 +80,6 @@ macro(glint_find_library name header library)
 endmacro()
 glint_find_library(minizip minizip/unzip.h minizip)
 glint_find_library(onednn oneapi/dnnl/dnnl.hpp dnnl)
-set(GLINT_NETWORKS onednn $<LINK_ONLY:OpenMP::OpenMP_CXX> minizip)
 
 # cuDNN runs the networks on a GPU, where it is installed.
 set(GLINT_HAS_CUDNN OFF)
@@ -96,7 +93,6 @@ if(GLINT_HAS_CUDA)
     target_include_directories(
       cudnn SYSTEM INTERFACE ${CMAKE_CUDA_TOOLKIT_INCLUDE_DIRECTORIES}  # what its header includes
     )
-    list(APPEND GLINT_NETWORKS cudnn)
   endif()
 endif()
 message(STATUS "cuDNN: ${GLINT_HAS_CUDNN}")
@@ -113,5 +109,3 @@ find_package(Eigen3 3.4 QUIET CONFIG)
 find_package(Open3D QUIET CONFIG)
 
 set(GLINT_FMT fmt::fmt)
-list(APPEND GLINT_IMAGE_CODECS opencv::core opencv::imgproc)
-set(GLINT_RAY_TRACER embree)

@@ -1,7 +1,12 @@
-# glint_pick_lean(list): a file x_lean.cpp stands in for x.cpp in a lean build, and is for none other.
-# glint_add_library(name [OBJECT] [HEADERS core|cli|tests] SRCS ... [LINK ...]): a library folder::name with our warnings.
-# glint_add_program(name SRCS ... [LINK ...]): a program in bin/.
+# glint_add_library(name [REGISTERS] [LIGHT] [HEADERS core|cli|tests] [UNITY files] SRCS ... [NEEDS ...] [LINK ...])
+#   A static library with our warnings. NEEDS: targets that it links, and without which neither it nor what
+#   needs it is built: this is how a lean build gets leaner. REGISTERS: its files register what they have
+#   (glint/core/registry.h, service.h), so programs link all of them. UNITY: so many files are compiled as one.
+#   LIGHT: compiled at -O1, since nothing in it is waited for.
+# glint_add_program(name SRCS ... [NEEDS ...] [LINK ...]): a program in bin/.
 # glint_add_test(SRC file [LABELS ...] [LINK ...]): one test program per file, named by its path.
+option(GLINT_UNITY "compile several files as one where that is faster" ON)
+
 add_library(glint_warnings INTERFACE)
 target_compile_options(
   glint_warnings
@@ -20,7 +25,8 @@ target_compile_options(
 target_include_directories(glint_warnings INTERFACE ${CMAKE_SOURCE_DIR})
 
 # Headers that nearly every file reads, compiled once: the standard library, fmt and JSON (core), with
-# CLI11 (programs), with Catch2 (tests). None is ours, so that no change of ours rebuilds everything.
+# CLI11 (command lines), with Catch2 (tests). None is ours, so that no change of ours rebuilds everything.
+# CLI11 costs every file that sees it 4 s at -O3, read or precompiled: it stays in few files.
 set(GLINT_HEADERS
     <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <functional> <map> <memory> <optional> <span>
     <sstream> <string> <string_view> <vector> <fmt/format.h> <nlohmann/json.hpp>
@@ -37,40 +43,44 @@ foreach(kind core cli tests)
   target_precompile_headers(glint_headers_${kind} PRIVATE ${GLINT_HEADERS} ${GLINT_HEADERS_${kind}})
 endforeach()
 
-function(glint_pick_lean list)
-  set(sources ${${list}})
-  if(GLINT_LEAN)
-    foreach(source ${sources})
-      if(source MATCHES "_lean\\.cpp$")
-        string(REPLACE "_lean.cpp" ".cpp" replaced ${source})
-        list(REMOVE_ITEM sources ${replaced})
-      endif()
-    endforeach()
-  else()
-    list(FILTER sources EXCLUDE REGEX "_lean\\.cpp$")
-  endif()
-  set(${list} ${sources} PARENT_SCOPE)
-endfunction()
+# Returns from the calling function, with a word, where a target is not there.
+macro(glint_return_without name)
+  foreach(needed ${ARGN})
+    if(NOT TARGET ${needed})
+      message(STATUS "without ${name}, which needs ${needed}")
+      return()
+    endif()
+  endforeach()
+endmacro()
 
 function(glint_add_library name)
-  cmake_parse_arguments(ARG "OBJECT" "HEADERS" "SRCS;LINK" ${ARGN})
-  if(ARG_OBJECT)
-    add_library(${name} OBJECT ${ARG_SRCS})
-  else()
-    add_library(${name} STATIC ${ARG_SRCS})
+  cmake_parse_arguments(ARG "REGISTERS;LIGHT" "HEADERS;UNITY" "SRCS;NEEDS;LINK" ${ARGN})
+  glint_return_without(${name} ${ARG_NEEDS})
+  set(files ${name})
+  if(ARG_REGISTERS)
+    set(files ${name}_files)
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE $<LINK_LIBRARY:WHOLE_ARCHIVE,${files}>)
   endif()
-  target_link_libraries(${name} PUBLIC ${ARG_LINK} glint_warnings)
+  add_library(${files} STATIC ${ARG_SRCS})
+  target_link_libraries(${files} PUBLIC ${ARG_NEEDS} ${ARG_LINK} glint_warnings)
   if(NOT ARG_HEADERS)
     set(ARG_HEADERS core)
   endif()
-  target_precompile_headers(${name} REUSE_FROM glint_headers_${ARG_HEADERS})
+  target_precompile_headers(${files} REUSE_FROM glint_headers_${ARG_HEADERS})
+  if(ARG_LIGHT)
+    target_compile_options(${files} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
+  if(ARG_UNITY AND GLINT_UNITY)
+    set_target_properties(${files} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${ARG_UNITY})
+  endif()
 endfunction()
 
 function(glint_add_program name)
-  cmake_parse_arguments(ARG "" "" "SRCS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SRCS;NEEDS;LINK" ${ARGN})
+  glint_return_without(${name} ${ARG_NEEDS})
   add_executable(${name} ${ARG_SRCS})
-  target_link_libraries(${name} PRIVATE ${ARG_LINK} glint_warnings)
-  target_precompile_headers(${name} REUSE_FROM glint_headers_cli)
+  target_link_libraries(${name} PRIVATE ${ARG_NEEDS} ${ARG_LINK} glint_warnings)
   set_property(GLOBAL APPEND PROPERTY GLINT_PROGRAMS ${name})  # target `programs` builds them all
 endfunction()
 
@@ -83,8 +93,11 @@ function(glint_add_test)
     set(ARG_LABELS unit)
   endif()
   add_executable(${target} ${ARG_SRC})
-  target_link_libraries(${target} PRIVATE ${ARG_LINK} glint_catch_main glint_warnings)
+  target_link_libraries(${target} PRIVATE ${ARG_LINK} glint_test_support glint_warnings)
   target_precompile_headers(${target} REUSE_FROM glint_headers_tests)
+  if(NOT path MATCHES "^(glint/(render|cuda|train)|support)")  # others wait for libraries, not for themselves
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   add_test(NAME ${path} COMMAND ${target} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
   set_tests_properties(

@@ -27,11 +27,14 @@ if(GLINT_CCACHE)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
 endif()
 
+# __FILE__ from the root of the sources (glint/core/registry.h).
+add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=>)
+
 add_link_options(-Wl,--as-needed)  # programs start with the libraries that they call
 
 if(GLINT_SANITIZE)
   # A report ends the program: a test cannot pass after one.
-  add_compile_options(-fsanitize=${GLINT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+  add_compile_options(-fsanitize=${GLINT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${GLINT_SANITIZE})
   if(GLINT_SANITIZE MATCHES thread)
     add_compile_definitions(GLINT_STD_THREADS)  # TSan does not understand TBB
@@ -48,7 +51,7 @@ if(NOT GLINT_CUDA STREQUAL "OFF")
   check_language(CUDA)
   if(CMAKE_CUDA_COMPILER)
     if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
-      set(CMAKE_CUDA_ARCHITECTURES "80;86;89;90")
+      set(CMAKE_CUDA_ARCHITECTURES 80)  # and PTX, which newer ones compile when they first run
     endif()
     enable_language(CUDA)
     set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")

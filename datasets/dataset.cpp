@@ -10,11 +10,6 @@
 namespace glint {
 namespace {
 
-std::vector<LoaderSpec>& registry() {
-  static std::vector<LoaderSpec> loaders;
-  return loaders;
-}
-
 std::string size_range(const Scene& scene) {
   std::set<std::pair<int, int>> sizes;
   for (const std::vector<View>* views : {&scene.train, &scene.test})
@@ -42,26 +37,16 @@ struct Candidate {
   LoaderMatch match;
 };
 
-// By name: the order of registration depends on the linker.
-std::vector<const LoaderSpec*> sorted_loaders() {
-  std::vector<const LoaderSpec*> loaders;
-  for (const LoaderSpec& loader : registry()) loaders.push_back(&loader);
-  std::sort(loaders.begin(), loaders.end(), [](const LoaderSpec* a, const LoaderSpec* b) {
-    return a->name < b->name;
-  });
-  return loaders;
-}
-
 std::string list_loaders() {
   std::string text;
-  for (const LoaderSpec* loader : sorted_loaders())
-    text += fmt::format("\n  {}: {}", loader->name, loader->looks_for);
+  for (const auto& [name, loader] : Registry<LoaderSpec>::all())
+    text += fmt::format("\n  {}: {}", name, loader.looks_for);
   return text;
 }
 
 const LoaderSpec& loader_called(const std::string& id) {
-  for (const LoaderSpec& loader : registry())
-    if (loader.name == id) return loader;
+  const auto& loaders = Registry<LoaderSpec>::all();
+  if (const auto found = loaders.find(id); found != loaders.end()) return found->second;
   throw Error(
       ExitCode::kUsage, fmt::format("loader {}: no such loader. There are:{}", id, list_loaders())
   );
@@ -70,12 +55,12 @@ const LoaderSpec& loader_called(const std::string& id) {
 // Several only when they are as sure as each other; none when no loader knows the folder.
 std::vector<Candidate> surest_loaders(const fs::path& folder) {
   std::vector<Candidate> surest;
-  for (const LoaderSpec* loader : sorted_loaders()) {
-    LoaderMatch match = loader->match(folder);
+  for (const auto& [name, loader] : Registry<LoaderSpec>::all()) {
+    LoaderMatch match = loader.match(folder);
     const Sureness best = surest.empty() ? Sureness::kNone : surest.front().match.sureness;
     if (match.sureness > best) surest.clear();
     if (match.sureness >= best && match.sureness != Sureness::kNone)
-      surest.push_back({loader, std::move(match)});
+      surest.push_back({&loader, std::move(match)});
   }
   return surest;
 }
@@ -104,14 +89,6 @@ std::string format_vector(Vec3f v) {
 }
 
 }  // namespace
-
-bool register_loader(LoaderSpec spec, const char* source) {
-  spec.source = source;
-  registry().push_back(std::move(spec));
-  return true;
-}
-
-const std::vector<LoaderSpec>& loader_registry() { return registry(); }
 
 const LoaderSpec& find_loader(const fs::path& folder, const std::string& id) {
   std::error_code code;

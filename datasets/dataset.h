@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Loaders: one file each, registered by name; load_scene() asks each how sure it is that the folder
-// (or the file of a packed scene) is its own, and takes the surest.
+// Loaders: one file each, registered with GLINT_REGISTER(LoaderSpec, ...); load_scene() asks each
+// how sure it is that the folder (or the file of a packed scene) is its own, and takes the surest.
 #pragma once
 
 #include <functional>
@@ -9,6 +9,7 @@
 
 #include "datasets/findings.h"
 #include "glint/core/files.h"
+#include "glint/core/registry.h"
 #include "glint/scene/scene.h"
 
 namespace glint {
@@ -43,8 +44,8 @@ struct LoaderSpec {
   std::string source = {};  // the file that registers it, as the compiler calls it
 };
 
-bool register_loader(LoaderSpec spec, const char* source = "");
-const std::vector<LoaderSpec>& loader_registry();
+inline const std::string& registry_id(const LoaderSpec& loader) { return loader.name; }
+
 // The loader called `id`; if empty, the one that is surest of the folder. Errors (kBadReference):
 // none knows it, and what each looks for is listed; two are as sure, both are named with what they
 // found and the ways to say which; (kUsage): no loader is called `id`.
@@ -60,8 +61,3 @@ std::string describe_scene(const Scene& scene);
 std::vector<Finding> check_dataset(const fs::path& folder, const std::string& loader = "");
 
 }  // namespace glint
-
-#define GLINT_REGISTER_LOADER(...)                                                                 \
-  namespace {                                                                                      \
-  [[maybe_unused]] const bool loader_registered = ::glint::register_loader(__VA_ARGS__, __FILE__); \
-  }

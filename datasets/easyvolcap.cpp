@@ -117,6 +117,8 @@ std::vector<Finding> check(const fs::path& folder) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER({"easyvolcap", match, load, "intri.yml, extri.yml and images/<view>/", check})
+GLINT_REGISTER(
+    LoaderSpec, {"easyvolcap", match, load, "intri.yml, extri.yml and images/<view>/", check}
+)
 
 }  // namespace glint

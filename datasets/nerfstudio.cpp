@@ -282,6 +282,6 @@ std::vector<Finding> check(const fs::path& folder) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER({"nerfstudio", match, load, "transforms.json with frames", check})
+GLINT_REGISTER(LoaderSpec, {"nerfstudio", match, load, "transforms.json with frames", check})
 
 }  // namespace glint

@@ -26,6 +26,6 @@ Scene load(const fs::path& path, const LoadOptions& options) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER({"packed", match, load, "a file that `glint-bench dataset pack` wrote"})
+GLINT_REGISTER(LoaderSpec, {"packed", match, load, "a file that `glint-bench dataset pack` wrote"})
 
 }  // namespace glint

@@ -221,47 +221,74 @@ MethodSpec glint_spec(
 
 }  // namespace
 
-GLINT_REGISTER(glint_spec("glint", "GLINT", "GLINT", "interface, transmission and reflection sets"))
-GLINT_REGISTER(glint_spec(
-    "glint/release",
-    "GLINT (release)",
-    "",
-    "as the official code trains it, where it differs from the paper",
-    glint_release_overrides()
-))
-GLINT_REGISTER(glint_spec(
-    "glint/no-trans",
-    "w/o G_trans",
-    "w/o G_trans",
-    "no transmission set: t counts as 0",
-    {{"with_transmission", false}}
-))
-GLINT_REGISTER(glint_spec(
-    "glint/no-refl",
-    "w/o G_refl",
-    "w/o G_refl",
-    "no reflection set: k_s counts as 0",
-    {{"with_reflection", false}}
-))
-GLINT_REGISTER(glint_spec(
-    "glint/no-ltrans",
-    "w/o L_trans",
-    "w/o L_trans",
-    "no transparency guidance",
-    {{"lambda_transparency", 0.0}}
-))
-GLINT_REGISTER(glint_spec(
-    "glint/no-lnormal", "w/o L_normal", "w/o L_normal", "no normal prior", {{"lambda_normal", 0.0}}
-))
-GLINT_REGISTER(glint_spec(
-    "glint/no-ldepth", "w/o L_depth", "w/o L_depth", "no depth prior", {{"lambda_depth", 0.0}}
-))
-GLINT_REGISTER(glint_spec(
-    "glint/no-lgeo",
-    "w/o L_geo",
-    "w/o L_geo",
-    "neither normal nor depth prior",
-    {{"lambda_normal", 0.0}, {"lambda_depth", 0.0}}
-))
+GLINT_REGISTER(
+    MethodSpec, glint_spec("glint", "GLINT", "GLINT", "interface, transmission and reflection sets")
+)
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
+        "glint/release",
+        "GLINT (release)",
+        "",
+        "as the official code trains it, where it differs from the paper",
+        glint_release_overrides()
+    )
+)
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
+        "glint/no-trans",
+        "w/o G_trans",
+        "w/o G_trans",
+        "no transmission set: t counts as 0",
+        {{"with_transmission", false}}
+    )
+)
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
+        "glint/no-refl",
+        "w/o G_refl",
+        "w/o G_refl",
+        "no reflection set: k_s counts as 0",
+        {{"with_reflection", false}}
+    )
+)
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
+        "glint/no-ltrans",
+        "w/o L_trans",
+        "w/o L_trans",
+        "no transparency guidance",
+        {{"lambda_transparency", 0.0}}
+    )
+)
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
+        "glint/no-lnormal",
+        "w/o L_normal",
+        "w/o L_normal",
+        "no normal prior",
+        {{"lambda_normal", 0.0}}
+    )
+)
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
+        "glint/no-ldepth", "w/o L_depth", "w/o L_depth", "no depth prior", {{"lambda_depth", 0.0}}
+    )
+)
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
+        "glint/no-lgeo",
+        "w/o L_geo",
+        "w/o L_geo",
+        "neither normal nor depth prior",
+        {{"lambda_normal", 0.0}, {"lambda_depth", 0.0}}
+    )
+)
 
 }  // namespace glint

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "glint/core/config.h"
+#include "glint/core/registry.h"
 #include "glint/scene/scene.h"
 
 namespace glint {
@@ -50,6 +51,7 @@ class Method {
   virtual std::vector<std::string> warnings() const { return {}; }  // losses off, missing priors
 };
 
+// Registered with GLINT_REGISTER(MethodSpec, ...); all of them: Registry<MethodSpec>::all().
 struct MethodSpec {
   std::string id;           // "2dgs"; ablations and controls: "glint/no-trans", "2dgs/prior"
   std::string title;        // as printed in tables
@@ -59,25 +61,13 @@ struct MethodSpec {
   Json overrides = Json::object();  // config fields that make this variant
   // From a config with all overrides. Call create_method(), which adds the variant's own.
   std::function<std::unique_ptr<Method>(const Json& config)> create;
-  std::string source = {};  // the file that registers it, as the compiler calls it
+  std::string source = {};  // the file that registers it (GLINT_REGISTER fills it in)
 };
 
-// All registered methods by id, in the order of their ids.
-const std::map<std::string, MethodSpec>& method_registry();
 // Errors (kUsage): unknown id; the message lists the known ones and the nearest.
 const MethodSpec& find_method(const std::string& id);
 // The method with its variant's overrides, and the user's on top. Errors (kUsage): unknown id or
 // config field.
 std::unique_ptr<Method> create_method(const std::string& id, const Json& config = Json::object());
-bool register_method(MethodSpec spec, const char* source = "");
 
 }  // namespace glint
-
-#define GLINT_REGISTER_CONCAT2(a, b) a##b
-#define GLINT_REGISTER_CONCAT(a, b) GLINT_REGISTER_CONCAT2(a, b)
-// Registers a MethodSpec at program start. Object libraries only: static ones drop it.
-#define GLINT_REGISTER(...)                                                  \
-  namespace {                                                                \
-  [[maybe_unused]] const bool GLINT_REGISTER_CONCAT(registered_, __LINE__) = \
-      ::glint::register_method(__VA_ARGS__, __FILE__);                       \
-  }

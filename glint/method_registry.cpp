@@ -7,11 +7,6 @@ namespace glint {
 
 namespace {
 
-std::map<std::string, MethodSpec>& registry() {
-  static std::map<std::string, MethodSpec> methods;
-  return methods;
-}
-
 // Number of single-character edits between two names.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -30,20 +25,12 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-const std::map<std::string, MethodSpec>& method_registry() { return registry(); }
-
-bool register_method(MethodSpec spec, const char* source) {
-  const std::string id = spec.id;
-  spec.source = source;
-  return registry().emplace(id, std::move(spec)).second;
-}
-
 const MethodSpec& find_method(const std::string& id) {
-  const auto found = registry().find(id);
-  if (found != registry().end()) return found->second;
+  const auto& methods = Registry<MethodSpec>::all();
+  if (const auto found = methods.find(id); found != methods.end()) return found->second;
   std::string known, nearest;
   std::size_t best = id.size() + 1;
-  for (const auto& [name, spec] : registry()) {
+  for (const auto& [name, spec] : methods) {
     known += (known.empty() ? "" : ", ") + name;
     const std::size_t distance = edit_distance(id, name);
     if (distance < best) best = distance, nearest = name;

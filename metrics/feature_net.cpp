@@ -3,9 +3,7 @@
 
 #include <algorithm>
 
-#include "glint/core/device.h"
 #include "glint/core/error.h"
-#include "glint/core/progress.h"
 #include "metrics/feature_net_backends.h"
 
 namespace glint {
@@ -51,25 +49,6 @@ bool feature_net_accepts(const std::vector<FeatureStep>& steps, ImageSize size) 
     if (size.width < 1 || size.height < 1) return false;
   }
   return true;
-}
-
-std::unique_ptr<FeatureNet> make_feature_net(
-    const std::vector<FeatureStep>& steps, ImageSize size
-) {
-  try {
-    if (on_gpu())
-      if (auto net = detail::make_cudnn_net(steps, size)) return net;
-  } catch (const Error& error) {
-    if (error.code() != ExitCode::kEnvironment) throw;
-    log::warn(std::string(error.what()) + "; its networks run on the host");
-  }
-  return detail::make_onednn_net(steps, size);
-}
-
-std::string feature_net_libraries() {
-  const std::string cudnn = detail::cudnn_version();
-  return "oneDNN " + detail::onednn_version() +
-         (cudnn.empty() ? std::string() : ", cuDNN " + cudnn + " on a GPU");
 }
 
 }  // namespace glint

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "glint/core/image.h"
+#include "glint/core/service.h"
 #include "metrics/lpips_weights.h"
 
 namespace glint {
@@ -39,9 +40,10 @@ bool feature_net_accepts(const std::vector<FeatureStep>& steps, ImageSize size);
 // On a GPU in use by cuDNN where this program was built with it; otherwise, and with a warning
 // where cuDNN fails, by oneDNN on the host. `steps` is not kept. Errors (kBadReference): images too
 // small.
-std::unique_ptr<FeatureNet> make_feature_net(const std::vector<FeatureStep>& steps, ImageSize size);
+inline constinit Service<std::unique_ptr<FeatureNet>(const std::vector<FeatureStep>&, ImageSize)>
+    make_feature_net{"LPIPS", "use the full build"};
 
-// "oneDNN 2.7.2, cuDNN 9.1.0 on a GPU"; "none" in a lean build.
-std::string feature_net_libraries();
+// "oneDNN 2.7.2, cuDNN 9.1.0 on a GPU".
+inline constinit Service<std::string()> feature_net_libraries{"LPIPS", "use the full build"};
 
 }  // namespace glint

@@ -64,6 +64,15 @@ std::vector<Region> evaluation_regions(MaskView glass) {
   return regions;
 }
 
+const std::vector<MetricFamily>& metric_families() {
+  static const std::vector<MetricFamily> families = [] {
+    std::vector<MetricFamily> all;
+    for (const auto& [id, family] : Registry<MetricFamily>::all()) all.push_back(family);
+    return all;
+  }();
+  return families;
+}
+
 const Metric* find_metric(const std::string& id) {
   for (const Metric& metric : mesh_metric_list())
     if (metric.id == id) return &metric;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Metrics of one rendered view, their registry, and the image regions each is given for. A metric
 // is a pure function in a file of its own (psnr.h, ssim.h, depth.h, ...); a family in view/ gives
-// it ids, units and a protocol. CMake lists the families by folder: adding a metric is adding a
-// file there.
+// it ids, units and a protocol and registers them: adding a metric is adding a file there.
 #pragma once
 
 #include <functional>
@@ -14,6 +13,7 @@
 
 #include "glint/core/config.h"
 #include "glint/core/image.h"
+#include "glint/core/registry.h"
 #include "glint/scene/maps.h"
 
 namespace glint {
@@ -74,7 +74,10 @@ struct MetricFamily {
   std::function<MetricFiles(const Metric&)> files = nullptr;  // null: it needs none
 };
 
-// All families, in the order of their file names.
+inline const std::string& registry_id(const MetricFamily& family) {
+  return family.metrics.front().id;
+}
+// Registered with GLINT_REGISTER(MetricFamily, ...): all families, in the order of their first ids.
 const std::vector<MetricFamily>& metric_families();
 
 // nullptr: unknown. Metrics of meshes go by their whole id ("mesh-f1@5cm", mesh/mesh_protocol.h);

@@ -93,9 +93,7 @@ NpzArray parse_array(std::string_view file, const std::string& where) {
   return array;
 }
 
-}  // namespace
-
-NpzArrays read_npz(const fs::path& path) {
+NpzArrays read_arrays(const fs::path& path) {
   std::error_code code;
   GLINT_CHECK(fs::is_regular_file(path, code), kBadReference, "{}: no such file", path.string());
   const Zip zip(unzOpen64(path.c_str()));
@@ -115,5 +113,9 @@ NpzArrays read_npz(const fs::path& path) {
   check_zip(position == UNZ_END_OF_LIST_OF_FILE, path);
   return arrays;
 }
+
+}  // namespace
+
+GLINT_PROVIDE(read_npz, read_arrays)
 
 }  // namespace glint

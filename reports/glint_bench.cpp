@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
 // glint-bench: makes scenes, trains methods, scores them and prints the tables.
-#include "reports/verbs/verb.h"
+#include "reports/verbs/command_line.h"
 
 int main(int argc, char** argv) { return glint::run_command_line(argc, argv); }

@@ -272,15 +272,13 @@ class SceneMaker {
   PointCloud cloud_;
 };
 
-}  // namespace
-
-std::string glassroom_hash(const GlassRoomOptions& options) {
+std::string hash_of(const GlassRoomOptions& options) {
   const Json key{{"options", spec_json(options)}, {"version", kGeneratorVersion}};
   return fmt::format("{:016x}", hash_name(key.dump()));
 }
 
-bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder, bool again) {
-  if (stored_hash(folder) == glassroom_hash(options) && !again) {
+bool make_room(const GlassRoomOptions& options, const fs::path& folder, bool again) {
+  if (stored_hash(folder) == hash_of(options) && !again) {
     // Made before there was such a file: the scene is the same, so nothing is rendered again.
     if (!fs::exists(folder / "gt" / kBehindMeshFile))
       write_meshes(build_glassroom_scene(options)->room.scene, folder);
@@ -291,5 +289,10 @@ bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder, boo
   unfinished.finish(folder);
   return true;
 }
+
+}  // namespace
+
+GLINT_PROVIDE(glassroom_hash, hash_of)
+GLINT_PROVIDE(make_glassroom, make_room)
 
 }  // namespace glint

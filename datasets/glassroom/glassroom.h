@@ -8,6 +8,7 @@
 
 #include "glint/core/config.h"
 #include "glint/core/files.h"
+#include "glint/core/service.h"
 
 namespace glint {
 
@@ -33,13 +34,18 @@ struct GlassRoomOptions {
   }
 };
 
+inline constexpr const char* kGlassRoomElsewhere =
+    "make and pack the scene with the full build (glint-bench dataset make, dataset pack)";
+
 // Hash of the options and of the generator's version: the cache key, written to scene.json.
-std::string glassroom_hash(const GlassRoomOptions& options);
+inline constinit Service<std::string(const GlassRoomOptions&)> glassroom_hash{
+    "the version of a glassroom", kGlassRoomElsewhere};
 
 // Makes the scene in `folder` unless it is there already with the same hash (then returns false;
 // with `again` it is made all the same).
 // Rendered into a temporary folder and renamed, so an interrupted run leaves no half scene. A scene
 // of an earlier release gets gt/mesh_behind.ply added.
-bool make_glassroom(const GlassRoomOptions& options, const fs::path& folder, bool again = false);
+inline constinit Service<bool(const GlassRoomOptions& options, const fs::path& folder, bool again)>
+    make_glassroom{"making a glassroom", kGlassRoomElsewhere};
 
 }  // namespace glint

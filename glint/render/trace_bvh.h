@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Finds the surfels that a ray meets, nearest first, on an Embree BVH (lean build: on a tree of
-// its own). Surfels are kept in an order
-// in which neighbours in space are neighbours in memory; their place in it is called slot. Eight in
-// a row are one primitive of the tree and tested at once, one a lane.
+// Finds the surfels that a ray meets, nearest first, on Embree's BVH (library glint_trace_embree)
+// or on a tree of our own (glint_trace_tree). Surfels are kept in an order in which neighbours in
+// space are neighbours in memory; their place in it is called slot. Eight in a row are one
+// primitive of the tree and tested at once, one a lane.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace glint {
 
 class SurfelBvh {
  public:
-  static bool has_triangles();  // not in a lean build
+  static bool has_triangles();  // not in our own tree
 
   SurfelBvh();
   ~SurfelBvh();
@@ -27,7 +27,7 @@ class SurfelBvh {
 
   // Keeps a reference to `surfels`, in slot order. `refit`: the tree of the last call may be kept;
   // for surfels that are the same ones in the same slots.
-  // Errors (kEnvironment): Embree fails; a lean build has no triangles.
+  // Errors (kEnvironment): Embree fails; our own tree has no triangles.
   void update(const std::vector<TracedSurfel>& surfels, bool triangles, bool refit);
   // Adds the hits behind hits.after(). Returns how many clusters (or triangles) it took.
   std::size_t nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const;

@@ -11,6 +11,7 @@
 
 #include "glint/core/files.h"
 #include "glint/core/image.h"
+#include "glint/core/service.h"
 
 namespace glint {
 
@@ -31,8 +32,10 @@ void write_png(const fs::path& path, ImageView image);
 void write_exr(const fs::path& path, ImageView image, bool xyz = false);
 void write_npy(const fs::path& path, ImageView image);
 
-// Area average for shrinking, bilinear for growing (OpenCV).
-Image resize_image(ImageView image, ImageSize size);
+// Area average for shrinking, bilinear for growing (OpenCV, library glint_resize).
+inline constinit Service<Image(ImageView, ImageSize)> resize_image{
+    "resizing pictures",
+    "pack the scene at that size with the full build (glint-bench dataset pack --max-pixels)"};
 
 // IEC 61966-2-1. Values outside [0, 1] are continued (encode clamps below at 0).
 float srgb_encode(float linear);

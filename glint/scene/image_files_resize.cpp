@@ -6,8 +6,9 @@
 #include "glint/scene/image_files.h"
 
 namespace glint {
+namespace {
 
-Image resize_image(ImageView image, ImageSize size) {
+Image resize_by_opencv(ImageView image, ImageSize size) {
   Image result(size.width, size.height, image.channels);
   const int type = CV_32FC(image.channels);
   const cv::Mat from(image.height, image.width, type, const_cast<float*>(image.data));  // read only
@@ -16,5 +17,9 @@ Image resize_image(ImageView image, ImageSize size) {
   cv::resize(from, to, to.size(), 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
   return result;
 }
+
+}  // namespace
+
+GLINT_PROVIDE(resize_image, resize_by_opencv)
 
 }  // namespace glint

@@ -22,13 +22,15 @@ std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region>
   return values;
 }
 
-}  // namespace
-
 MetricFamily behind_depth() {
   Json protocol = config_to_json(DepthProtocol{});
   protocol["pixels"] = "glass";
   protocol["without_second_layer"] = "depth";
   return {{{"behind-absrel", "", Direction::kLowerIsBetter, 3, protocol}}, evaluate};
 }
+
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, behind_depth())
 
 }  // namespace glint::view_metrics

@@ -40,8 +40,6 @@ std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region>
   return values;
 }
 
-}  // namespace
-
 MetricFamily components() {
   Json protocol = config_to_json(PsnrProtocol{});
   protocol["pixels"] = "glass";
@@ -51,5 +49,9 @@ MetricFamily components() {
       {{"trans-psnr", "dB", higher, 2, protocol}, {"refl-psnr", "dB", higher, 2, protocol}},
       evaluate};
 }
+
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, components())
 
 }  // namespace glint::view_metrics

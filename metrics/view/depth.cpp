@@ -29,7 +29,7 @@ PairMetrics depth_metrics(const DepthProtocol& protocol, const std::string& suff
       score};
 }
 
-namespace view_metrics {
+namespace {
 
 MetricFamily depth() {
   return view_family(
@@ -37,6 +37,8 @@ MetricFamily depth() {
   );
 }
 
-}  // namespace view_metrics
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, depth())
 
 }  // namespace glint

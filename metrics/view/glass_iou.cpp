@@ -22,13 +22,15 @@ std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region>
   return values;
 }
 
-}  // namespace
-
 MetricFamily glass_iou() {
   Json protocol = Json::object();
   protocol["maps"] = "transparency, specularity: the better one";
   protocol["thresholds"] = "0.05, 0.10, ..., 0.95: the best one of each view";
   return {{{"glass-iou-best", "", Direction::kHigherIsBetter, 3, protocol}}, evaluate};
 }
+
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, glass_iou())
 
 }  // namespace glint::view_metrics

@@ -28,7 +28,6 @@ PairMetrics lpips_metrics(std::shared_ptr<Lpips> lpips, const LpipsProtocol& pro
   return {{lpips_metric(protocol)}, score};
 }
 
-namespace view_metrics {
 namespace {
 
 struct Variant {
@@ -76,8 +75,6 @@ MetricFiles files(const Metric& metric) {
   return {"", lpips_provenance(*weights)};
 }
 
-}  // namespace
-
 MetricFamily lpips() {
   MetricFamily family{{}, evaluate, files};
   for (const Variant& variant : kVariants)
@@ -85,6 +82,8 @@ MetricFamily lpips() {
   return family;
 }
 
-}  // namespace view_metrics
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, lpips())
 
 }  // namespace glint

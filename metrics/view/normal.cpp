@@ -41,10 +41,12 @@ PairMetrics normal_metrics() {
   return result;
 }
 
-namespace view_metrics {
+namespace {
 
 MetricFamily normal() { return view_family(normal_metrics(), "normal"); }
 
-}  // namespace view_metrics
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, normal())
 
 }  // namespace glint

@@ -17,12 +17,14 @@ PairMetrics psnr_metrics(const PsnrProtocol& protocol) {
   return {{{id, "dB", Direction::kHigherIsBetter, 2, config_to_json(protocol)}}, score};
 }
 
-namespace view_metrics {
+namespace {
 
 MetricFamily psnr() {
   return view_family(joined(psnr_metrics({}), psnr_metrics(psnr_8bit_protocol())), "rgb");
 }
 
-}  // namespace view_metrics
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, psnr())
 
 }  // namespace glint

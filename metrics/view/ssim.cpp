@@ -27,12 +27,14 @@ PairMetrics ssim_metrics(std::vector<SsimBorder> borders) {
   return result;
 }
 
-namespace view_metrics {
+namespace {
 
 MetricFamily ssim() {
   return view_family(ssim_metrics({SsimBorder::kZeroPadded, SsimBorder::kValid}), "rgb");
 }
 
-}  // namespace view_metrics
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, ssim())
 
 }  // namespace glint

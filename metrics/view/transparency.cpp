@@ -19,8 +19,6 @@ std::vector<MetricValues> evaluate(const ViewPair& pair, std::span<const Region>
   return values;
 }
 
-}  // namespace
-
 MetricFamily transparency() {
   const Json protocol = config_to_json(TransparencyProtocol{});
   return {
@@ -28,5 +26,9 @@ MetricFamily transparency() {
        {"transparency-mae", "", Direction::kLowerIsBetter, 3, protocol}},
       evaluate};
 }
+
+}  // namespace
+
+GLINT_REGISTER(MetricFamily, transparency())
 
 }  // namespace glint::view_metrics

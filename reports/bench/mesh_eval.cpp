@@ -33,9 +33,7 @@ Surface prepared(
   return std::move(input.surface);
 }
 
-}  // namespace
-
-std::map<std::string, double> score_meshes(
+MeshValues score_run_meshes(
     const RunSpec& spec, const Scene& scene, const MeshProtocol& protocol, Json& recipe
 ) {
   const std::vector<Camera> cameras = train_cameras(scene);
@@ -61,5 +59,9 @@ std::map<std::string, double> score_meshes(
   }
   return values;
 }
+
+}  // namespace
+
+GLINT_PROVIDE(score_meshes, score_run_meshes)
 
 }  // namespace glint

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "glint/core/service.h"
 #include "glint/scene/scene.h"
 #include "metrics/mesh/mesh_protocol.h"
 #include "reports/records/run_folder.h"
@@ -14,8 +15,9 @@ namespace glint {
 // Both distances, to triangles and to samples. `recipe` gets the protocol and what was done to
 // either mesh, to stand beside the values. Empty: no mesh, or no true one. Errors: kBadPrediction
 // and kBadReference for damaged meshes.
-std::map<std::string, double> score_meshes(
-    const RunSpec& spec, const Scene& scene, const MeshProtocol& protocol, Json& recipe
-);
+using MeshValues = std::map<std::string, double>;  // by metric id
+inline constinit Service<
+    MeshValues(const RunSpec& spec, const Scene& scene, const MeshProtocol& protocol, Json& recipe)>
+    score_meshes{"scoring meshes", "use the full build"};
 
 }  // namespace glint

@@ -4,41 +4,9 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
-#include "glint/scene/ply.h"
 
 namespace glint {
 namespace {
-
-fs::path train_folder(const fs::path& run, const View& view) {
-  return run / "renders_train" / view_folder(run, view.name).filename();
-}
-
-// The scene's bounds are those of its points or cameras; surfaces may lie a little outside.
-void set_bounds(TsdfOptions& options, const Scene& scene) {
-  if (options.bounded()) return;
-  constexpr double kMargin = 0.1;
-  const Vec3f low = scene.bounds_min, high = scene.bounds_max;
-  const double lows[3] = {low.x, low.y, low.z}, highs[3] = {high.x, high.y, high.z};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double margin = kMargin * (highs[i] - lows[i]);
-    options.bounds_min[i] = lows[i] - margin;
-    options.bounds_max[i] = highs[i] + margin;
-  }
-}
-
-FusionView load_view(const fs::path& run, const View& view, MapId map) {
-  const fs::path folder = train_folder(run, view);
-  return with_exit_code(ExitCode::kBadPrediction, [&] {
-    return FusionView{
-        read_image(folder / map.row().file, 1),
-        read_image(folder / MapId("rgb").row().picture, 3),
-        view.camera};
-  });
-}
-
-bool has_map(const fs::path& run, const Scene& scene, MapId map) {
-  return fs::exists(train_folder(run, scene.train.front()) / map.row().file);
-}
 
 // Depth of what is seen through the glass; the first surface where there is none (t of at most a
 // half). Empty: the method does not look behind glass.
@@ -58,13 +26,17 @@ fs::path mesh_of(const fs::path& run, const MeshLayer& layer) {
   return fs::exists(path) ? path : run / kMeshLayers[0].mesh;
 }
 
+fs::path train_view_folder(const fs::path& run, const View& view) {
+  return run / "renders_train" / view_folder(run, view.name).filename();
+}
+
 void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method) {
   Progress progress("render training views", scene.train.size());
   for (const View& view : scene.train) {
     throw_if_interrupted();
     const MapSet output = method.render(view.camera);
     synchronize();
-    const fs::path folder = train_folder(spec.folder, view);
+    const fs::path folder = train_view_folder(spec.folder, view);
     const auto write = [&](MapId id, const Image& map) {
       if (!map.empty()) write_exr(folder / id.row().file, map);
     };
@@ -75,28 +47,6 @@ void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method)
   }
 }
 
-Json fuse_stage(const RunSpec& spec, const Scene& scene, TsdfOptions options) {
-  set_bounds(options, scene);
-  Json result = {{"options", config_to_json(options)}, {"views", "training"}};
-  result["meshes"] = Json::object();
-  for (const MeshLayer& layer : kMeshLayers) {
-    std::error_code code;
-    fs::remove(spec.folder / layer.mesh, code);
-    if (!has_map(spec.folder, scene, layer.map)) continue;
-    const auto view = [&](std::size_t i) {
-      throw_if_interrupted();
-      return load_view(spec.folder, scene.train[i], layer.map);
-    };
-    TsdfReport report;
-    write_mesh_ply(
-        spec.folder / layer.mesh, fuse_depth(view, scene.train.size(), options, &report)
-    );
-    result["meshes"][layer.mesh] = config_to_json(report);
-  }
-  write_file(spec.folder / "mesh.json", result.dump(2) + "\n");
-  return result;
-}
-
 Json mesh_stage(
     const RunSpec& spec,
     const Scene& scene,
@@ -104,6 +54,7 @@ Json mesh_stage(
     const TsdfOptions& options,
     bool keep_renders
 ) {
+  fuse_stage.require();
   std::error_code code;
   fs::remove_all(spec.folder / "renders_train", code);
   render_train_stage(spec, scene, method);

@@ -4,6 +4,7 @@
 // through glass, mesh_transmission.ply (what lies behind it).
 #pragma once
 
+#include "glint/core/service.h"
 #include "metrics/fusion/tsdf.h"
 #include "metrics/mesh/mesh_protocol.h"
 #include "reports/records/run_folder.h"
@@ -25,6 +26,9 @@ inline constexpr MeshLayer kMeshLayers[] = {
 // layer may lie behind the glass.
 fs::path mesh_of(const fs::path& run, const MeshLayer& layer);
 
+// Where a training view is rendered to.
+fs::path train_view_folder(const fs::path& run, const View& view);
+
 // rgb.png, depth.exr and, of methods that look behind glass, behind_depth.exr (of the first surface
 // where t is at most a half) of every training view.
 void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method);
@@ -32,9 +36,11 @@ void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method)
 // Fuses renders_train/; bounds that are not set are the scene's, grown by a tenth. Writes the
 // meshes and mesh.json: options, what was fused, per mesh. Errors: kBadPrediction (no
 // renders_train/, a damaged map), those of fuse_depth.
-Json fuse_stage(const RunSpec& spec, const Scene& scene, TsdfOptions options);
+inline constinit Service<Json(const RunSpec& spec, const Scene& scene, TsdfOptions options)>
+    fuse_stage{"meshes", "use the full build"};
 
-// Both, and renders_train/ removed again unless `keep_renders`.
+// Both (first asking whether the second can be done), and renders_train/ removed again unless
+// `keep_renders`.
 Json mesh_stage(
     const RunSpec& spec,
     const Scene& scene,

@@ -16,9 +16,9 @@ const char* device_kind() { return on_gpu() ? "cuda" : "cpu"; }
 Json code_for(const std::string& method, const std::string& stage) {
   std::vector<std::string> entries;
   if (!stage.empty()) entries.push_back(stage);
-  const auto found = method_registry().find(method);
+  const auto found = Registry<MethodSpec>::all().find(method);
   const std::string own =
-      found == method_registry().end() ? "" : code_entry_of(found->second.source);
+      found == Registry<MethodSpec>::all().end() ? "" : code_entry_of(found->second.source);
   if (!own.empty()) entries.push_back(own);
   if (on_gpu()) entries.push_back("cuda");
   return code_json(entries);

@@ -68,7 +68,7 @@ void render_stage(const RunSpec& spec, const Scene& scene, Method& method) {
     );
     write_render(view_folder(spec.folder, view.name), output);
   }
-  write_strips(spec.folder, scene.test);
+  if (write_strips.here()) write_strips(spec.folder, scene.test);
 }
 
 double measure_fps(Method& method, const Scene& scene, const TimingOptions& options) {
@@ -95,7 +95,7 @@ std::map<std::string, double> eval_stage(
     }));
   Scores means = mean_scores(scores);
   Json recipe = Json::object();
-  means.merge(score_meshes(spec, scene, mesh, recipe));
+  if (score_meshes.here()) means.merge(score_meshes(spec, scene, mesh, recipe));
   means.insert(cost.begin(), cost.end());
   write_metrics(spec, means, scores, scene.test, recipe);
   return means;

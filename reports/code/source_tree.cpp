@@ -10,7 +10,6 @@
 namespace glint {
 namespace {
 
-constexpr std::string_view kLean = "_lean.cpp";
 constexpr std::size_t kHashDigits = 12;
 
 std::string extension_of(const std::string& file) { return fs::path(file).extension().string(); }
@@ -23,21 +22,17 @@ bool is_unit(const std::string& file) {
 }
 fs::path folder_of(const std::string& file) { return fs::path(file).parent_path(); }
 
-// "a/x" of a/x.cpp, a/x.cu and a/x_lean.cpp.
-std::string stem_of(const std::string& file) {
-  if (file.ends_with(kLean)) return file.substr(0, file.size() - kLean.size());
-  return fs::path(file).replace_extension().string();
-}
+// "a/x" of a/x.cpp and a/x.cu.
+std::string stem_of(const std::string& file) { return fs::path(file).replace_extension().string(); }
 
 }  // namespace
 
-SourceTree::SourceTree(const fs::path& root, bool lean) {
+SourceTree::SourceTree(const fs::path& root) {
   for (const char* folder : {"glint", "metrics", "datasets", "baselines", "reports"}) {
     if (!fs::exists(root / folder)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / folder))
       if (is_source(entry.path().string())) read(root, entry.path());
   }
-  pick_lean(lean);
   find_implementations();
 }
 
@@ -49,13 +44,6 @@ void SourceTree::read(const fs::path& root, const fs::path& file) {
   source.registers = is_unit(name) && !name.starts_with("reports/") &&
                      source.code.find("GLINT_REGISTER") != std::string::npos;
   sources_[name] = std::move(source);
-}
-
-void SourceTree::pick_lean(bool lean) {
-  std::vector<std::string> left_out;
-  for (const auto& [name, source] : sources_)
-    if (name.ends_with(kLean)) left_out.push_back(lean ? stem_of(name) + ".cpp" : name);
-  for (const std::string& name : left_out) sources_.erase(name);
 }
 
 void SourceTree::find_implementations() {

@@ -15,9 +15,9 @@ namespace glint {
 
 class SourceTree {
  public:
-  // Reads the sources below `root` in glint/, metrics/, datasets/, baselines/ and reports/. In a
-  // lean build x_lean.cpp stands for x.cpp; in others it is left out. Errors: as read_file.
-  SourceTree(const fs::path& root, bool lean);
+  // Reads the sources below `root` in glint/, metrics/, datasets/, baselines/ and reports/. Errors:
+  // as read_file.
+  explicit SourceTree(const fs::path& root);
 
   // Files that match a glob ("metrics/view/*.cpp"). Errors (kBadReference): none does.
   std::vector<std::string> matching(const std::string& pattern) const;
@@ -36,7 +36,6 @@ class SourceTree {
     bool registers = false;
   };
   void read(const fs::path& root, const fs::path& file);
-  void pick_lean(bool lean);
   void find_implementations();
 
   std::map<std::string, Source> sources_;

@@ -17,6 +17,7 @@ const std::vector<StageSources>& stage_sources() {
        {"glint/scene/image_files.h",
         "glint/scene/ply.h",
         "metrics/fusion/*.cpp",
+        "reports/bench/fuse_stage.cpp",
         "reports/bench/mesh_stage.*"}},
       {"score",
        {"glint/scene/image_files.h",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// glint-code-hashes ROOT OUTPUT [--lean]: writes the C++ file behind reports/records/code_hashes.h.
+// glint-code-hashes ROOT OUTPUT: writes the C++ file behind reports/records/code_hashes.h.
 // Run at every build; the file is touched only when a hash has changed.
 #include <fmt/format.h>
 #include <cstdio>
@@ -36,12 +36,12 @@ std::string generated(const SourceTree& tree) {
 }
 
 int write_code_hashes(int argc, const char* const* argv) {
-  if (argc < 3) {
-    fmt::print(stderr, "usage: glint-code-hashes ROOT OUTPUT [--lean]\n");
+  if (argc != 3) {
+    fmt::print(stderr, "usage: glint-code-hashes ROOT OUTPUT\n");
     return 1;
   }
   const fs::path output = argv[2];
-  const std::string text = generated(SourceTree(argv[1], argc > 3));
+  const std::string text = generated(SourceTree(argv[1]));
   if (!fs::exists(output) || read_file(output) != text) write_file(output, text);
   return 0;
 }

@@ -8,7 +8,7 @@
 namespace glint {
 
 std::string method_title(const std::string& id) {
-  const auto& registry = method_registry();
+  const auto& registry = Registry<MethodSpec>::all();
   const auto method = registry.find(id);
   if (method == registry.end()) return id;
   const std::string& title = method->second.title;

@@ -21,9 +21,7 @@ void keep(const fs::path& png, const Drawing& drawing, std::vector<fs::path>& wr
   written.push_back(png);
 }
 
-}  // namespace
-
-std::vector<fs::path> write_figures(const FigureOptions& options) {
+std::vector<fs::path> draw_figures(const FigureOptions& options) {
   const auto records = read_records(options.folder / "records.jsonl");
   const auto scenes = figure_scenes(records, options);
   const fs::path folder = options.folder / "figures";
@@ -39,6 +37,11 @@ std::vector<fs::path> write_figures(const FigureOptions& options) {
   return written;
 }
 
-std::string figures_font() { return found_font_family(); }
+std::string font() { return found_font_family(); }
+
+}  // namespace
+
+GLINT_PROVIDE(write_figures, draw_figures)
+GLINT_PROVIDE(figures_font, font)
 
 }  // namespace glint

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "glint/core/files.h"
+#include "glint/core/service.h"
 #include "reports/records/run_folder.h"
 
 namespace glint {
@@ -20,11 +21,12 @@ struct FigureOptions {
 // FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves, f1,
 // meshes}.png, each with a PDF beside it; returns the PNGs of those that have something to show.
 // What is absent inside a figure says "missing"; scenes without data are left out of figures with
-// maps, with a warning. The lean build has none. Errors: those of read_records(), kEnvironment
-// (disk).
-std::vector<fs::path> write_figures(const FigureOptions& options);
+// maps, with a warning.
+// Errors: those of read_records(), kEnvironment (disk).
+inline constinit Service<std::vector<fs::path>(const FigureOptions&)> write_figures{
+    "drawing figures", "use the full build"};
 
-// What is found here of kFontFamily (glint/drawing/canvas.h); empty in the lean build.
-std::string figures_font();
+// What is found here of kFontFamily (glint/drawing/canvas.h).
+inline constinit Service<std::string()> figures_font{"the font of figures", "use the full build"};
 
 }  // namespace glint

@@ -154,7 +154,7 @@ std::vector<std::string> import_predictions(
     );
   const fs::path mesh = options.mesh.empty() ? found.mesh : fs::path(options.mesh);
   if (!mesh.empty()) copy_mesh(mesh, spec.folder / "mesh.ply");
-  write_strips(spec.folder, scene.test);
+  if (write_strips.here()) write_strips(spec.folder, scene.test);
   return notes;
 }
 

@@ -60,9 +60,9 @@ std::string ratio(double value) { return value > 0 ? fmt::format("{:.2f}x", valu
 }  // namespace
 
 std::vector<PerfRow> run_perf(const PerfOptions& options) {
-  std::vector<PerfCase> cases = raster_cases(options);
-  for (PerfCase& c : trace_cases(options)) cases.push_back(std::move(c));
-  for (PerfCase& c : training_cases(options)) cases.push_back(std::move(c));
+  std::vector<PerfCase> cases;
+  for (const auto& [id, registered] : Registry<PerfCases>::all())
+    for (PerfCase& c : registered.make(options)) cases.push_back(std::move(c));
   std::vector<PerfRow> rows;
   const int max_threads = std::thread::hardware_concurrency() > 1 && !on_gpu() ? 2 : 1;
   Progress progress("perf", cases.size() * static_cast<std::size_t>(max_threads));

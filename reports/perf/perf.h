@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Timings of the ops, side by side in one run: SIMD against the scalar instantiation of the same
-// text, one thread against two. A file perf/<name>_cases.cpp adds cases.
+// text, one thread against two. A file perf/<name>_cases.cpp registers cases.
 #pragma once
 
 #include <functional>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "glint/core/config.h"
+#include "glint/core/registry.h"
 
 namespace glint {
 
@@ -42,9 +43,11 @@ struct PerfOptions {
   std::string only = "*";  // glob over case names
 };
 
-std::vector<PerfCase> raster_cases(const PerfOptions& options);
-std::vector<PerfCase> trace_cases(const PerfOptions& options);
-std::vector<PerfCase> training_cases(const PerfOptions& options);
+// Registered with GLINT_REGISTER(PerfCases, {"raster", raster_cases}); run in the order of ids.
+struct PerfCases {
+  std::string id;
+  std::vector<PerfCase> (*make)(const PerfOptions& options);
+};
 
 // Every case at 1 and 2 threads (1 only where the machine has one), or on the GPU in use. Runs of
 // SIMD and scalar alternate, so a machine that slows down slows both.

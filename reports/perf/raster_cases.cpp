@@ -49,8 +49,6 @@ struct RasterState {
   double pairs() const { return static_cast<double>(rasterizer.num_pixel_pairs()); }
 };
 
-}  // namespace
-
 std::vector<PerfCase> raster_cases(const PerfOptions& options) {
   const auto s = std::make_shared<RasterState>(options);
   s->forward(false);
@@ -73,5 +71,9 @@ std::vector<PerfCase> raster_cases(const PerfOptions& options) {
       {"activate + SH degree 3", "surfels", surfels, [s] { s->shade(); }, {}},
       {"activate + SH degree 3, backward", "surfels", surfels, [s] { s->shade_vjp(); }, {}}};
 }
+
+}  // namespace
+
+GLINT_REGISTER(PerfCases, {"raster", raster_cases})
 
 }  // namespace glint

@@ -131,8 +131,6 @@ void add_cases(
   cases.push_back({forward + " backward", "hits", hits, [s] { s->backward(); }, {}});
 }
 
-}  // namespace
-
 std::vector<PerfCase> trace_cases(const PerfOptions& options) {
   std::vector<PerfCase> cases;
   const auto add = [&](const char* name, TraceScene scene, bool triangles) {
@@ -149,5 +147,9 @@ std::vector<PerfCase> trace_cases(const PerfOptions& options) {
   add("large surfels", mirrored_fog({12, 5, 0.2f, 0.3f}), false);
   return cases;
 }
+
+}  // namespace
+
+GLINT_REGISTER(PerfCases, {"trace", trace_cases})
 
 }  // namespace glint

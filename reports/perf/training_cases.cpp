@@ -120,13 +120,11 @@ PerfCase ssim_metric_case() {
       {}};
 }
 
-}  // namespace
-
 std::vector<PerfCase> training_cases(const PerfOptions& options) {
   std::vector<PerfCase> cases = {
       photometric_case(options), normal_case(options), adam_case(options)};
   if (!on_gpu()) cases.push_back(ssim_metric_case());
-  for (const auto& [id, spec] : method_registry())
+  for (const auto& [id, spec] : Registry<MethodSpec>::all())
     if (spec.overrides.empty())
       cases.push_back(step_case(id + " training step", id, Json::object(), options));
   cases.push_back(step_case(
@@ -134,5 +132,9 @@ std::vector<PerfCase> training_cases(const PerfOptions& options) {
   ));
   return cases;
 }
+
+}  // namespace
+
+GLINT_REGISTER(PerfCases, {"training", training_cases})
 
 }  // namespace glint

@@ -129,7 +129,8 @@ std::vector<std::string> strip_titles(const fs::path& run, const std::vector<Vie
   return titles_of(plan_strips(run, views));
 }
 
-void write_strips(const fs::path& run, const std::vector<View>& views) {
+namespace {
+void draw_strips(const fs::path& run, const std::vector<View>& views) {
   if (views.empty()) return;
   const StripPlan plan = plan_strips(run, views);
   for (const View& view : views)
@@ -139,5 +140,8 @@ void write_strips(const fs::path& run, const std::vector<View>& views) {
   for (std::size_t i = 0; i < count; ++i) spread.push_back(&views[i * views.size() / count]);
   write_strip(run / "strip.png", plan, spread);
 }
+}  // namespace
+
+GLINT_PROVIDE(write_strips, draw_strips)
 
 }  // namespace glint

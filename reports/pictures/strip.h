@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "glint/core/files.h"
+#include "glint/core/service.h"
 #include "glint/scene/scene.h"
 #include "reports/pictures/depth_scale.h"
 
@@ -23,6 +24,7 @@ std::vector<std::string> strip_titles(const fs::path& run, const std::vector<Vie
 // renders/<view>/strip.png of every view and `run`/strip.png, from the files under `run`/renders. A
 // map that only this view lacks, or that is damaged (a warning says so), is grey. Errors
 // (kBadReference): rgb.exr is missing or damaged.
-void write_strips(const fs::path& run, const std::vector<View>& views);
+inline constinit Service<void(const fs::path& run, const std::vector<View>& views)> write_strips{
+    "drawing strips", "use the full build"};
 
 }  // namespace glint

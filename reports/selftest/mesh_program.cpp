@@ -5,10 +5,6 @@
 
 namespace glint {
 
-int run_mesh_program(
-    const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err
-) {
-  return run_mesh_tool(arguments, out, err);
-}
+GLINT_PROVIDE(run_mesh_program, run_mesh_tool)
 
 }  // namespace glint

@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "glint/core/service.h"
+
 namespace glint {
 
-// As run_mesh_tool(); a lean build's ends with exit code 6.
-int run_mesh_program(
-    const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err
-);
+// As run_mesh_tool().
+inline constinit Service<
+    int(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err)>
+    run_mesh_program{"glint-mesh", "use the full build"};
 
 }  // namespace glint

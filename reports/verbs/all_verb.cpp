@@ -48,7 +48,7 @@ int run_all(const CommonOptions& common, bool force) {
   const RunSummary summary = run_profile(options);
   const auto tables = result_tables(options.out);
   write_tables(options.out, tables);
-  write_figures({options.out, load_run_data});
+  if (write_figures.here()) write_figures({options.out, load_run_data});
   const fs::path page = write_report(common, options.out, tables);
   if (common.json)
     print_summary_json(summary, options.out, page, tables);
@@ -66,8 +66,6 @@ int run_all(const CommonOptions& common, bool force) {
   return exit_code_of(summary);
 }
 
-}  // namespace
-
 void add_all_verb(CommandLine& line) {
   auto force = std::make_shared<bool>(false);
   CLI::App* verb = line.add_verb(
@@ -78,5 +76,9 @@ void add_all_verb(CommandLine& line) {
   );
   verb->add_flag("--force", *force, "run finished cells again, training included");
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"all", add_all_verb})
 
 }  // namespace glint

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "reports/verbs/command_line.h"
+
 #include <unistd.h>
 
 #include <cstdlib>
@@ -90,24 +92,7 @@ void CommonOptions::apply() const {
 CommandLine::CommandLine() {
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("glint-bench 0.1.0 ({})", git_revision()));
-  for (const auto add :
-       {add_all_verb,
-        add_plan_verb,
-        add_dataset_verb,
-        add_train_verb,
-        add_render_verb,
-        add_eval_verb,
-        add_mesh_verb,
-        add_selftest_verb,
-        add_results_verb,
-        add_table_verb,
-        add_report_verb,
-        add_compare_verb,
-        add_figures_verb,
-        add_status_verb,
-        add_perf_verb,
-        add_doctor_verb})
-    add(*this);
+  for (const auto& [id, verb] : Registry<Verb>::all()) verb.add(*this);
 }
 
 CLI::App* CommandLine::add_verb(

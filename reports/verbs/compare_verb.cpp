@@ -28,8 +28,6 @@ int run_compare(const CommonOptions& common, const CompareVerbOptions& options) 
   return static_cast<int>(regressed ? ExitCode::kCheckFailed : ExitCode::kSuccess);
 }
 
-}  // namespace
-
 void add_compare_verb(CommandLine& line) {
   auto options = std::make_shared<CompareVerbOptions>();
   CLI::App* verb = line.add_verb(
@@ -59,5 +57,9 @@ void add_compare_verb(CommandLine& line) {
       "--markdown", options->markdown, "write a Markdown table to FILE, '-': print it"
   );
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"compare", add_compare_verb})
 
 }  // namespace glint

@@ -37,7 +37,7 @@ int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
   for (const std::string& scene : options.scenes) {
     options.room.scene = scene;
     const fs::path folder = folder_for(common, options.room, out_given, options.scenes.size() == 1);
-    const bool is_new = make_glassroom(options.room, folder);
+    const bool is_new = make_glassroom(options.room, folder, false);
     made.push_back({{"scene", scene}, {"folder", folder.string()}, {"made", is_new}});
     if (!common.json)
       print_text(fmt::format("{} {}\n", folder.string(), is_new ? "made" : "was there already"));
@@ -181,8 +181,6 @@ void add_folder_verb(
   add_loader_option(*verb, options->loader);
 }
 
-}  // namespace
-
 void add_dataset_verb(CommandLine& line) {
   CLI::App* dataset = line.app.add_subcommand("dataset", "make, describe, check and pack datasets");
   dataset->require_subcommand(1);
@@ -191,5 +189,9 @@ void add_dataset_verb(CommandLine& line) {
   add_folder_verb(line, *dataset, "check", "everything wrong with a folder; exit 4", run_check);
   add_pack(line, *dataset);
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"dataset", add_dataset_verb})
 
 }  // namespace glint

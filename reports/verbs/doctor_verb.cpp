@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/ranges.h>
 
-#include "glint/drawing/canvas.h"
 #include "glint/core/error.h"
 #include "glint/core/machine.h"
 #include "glint/core/parallel.h"
 #include "glint/cuda/backend.h"
+#include "glint/drawing/canvas.h"
 #include "metrics/feature_net.h"
 
 #include "metrics/lpips_weights.h"
@@ -43,7 +43,8 @@ std::string cuda_text() {
 // Which networks LPIPS has weights of.
 Examined lpips_weights() {
   const fs::path place = lpips_weights_place();
-  if (place.empty()) return {"lpips", "off: its columns will say 'no weights'", true, ""};
+  if (place.empty() || !make_feature_net.here())
+    return {"lpips", "off: its columns will say 'no weights'", true, ""};
   std::vector<std::string> found;
   try {
     for (const LpipsNetwork& network : lpips_networks())
@@ -58,7 +59,7 @@ Examined lpips_weights() {
 
 // Of figures. Another font is no failure: only their look differs.
 Examined font() {
-  const std::string found = figures_font();
+  const std::string found = figures_font.here() ? figures_font() : "";
   if (found.empty()) return {"font", "off: this build draws no figures", true, ""};
   if (found == kFontFamily) return {"font", found, true, ""};
   return {
@@ -84,7 +85,7 @@ std::vector<Examined> examine(const CommonOptions& common) {
        disk >= kNeededDisk,
        "2 GiB are needed; free some or choose another --out"},
       {"cuda", cuda_text(), true, ""},
-      {"networks", feature_net_libraries(), true, ""},
+      {"networks", feature_net_libraries.here() ? feature_net_libraries() : "none", true, ""},
       lpips_weights(),
       font(),
       {"revision", git_revision(), true, ""}};
@@ -109,12 +110,14 @@ int run_doctor(const CommonOptions& common) {
   return static_cast<int>(good ? ExitCode::kSuccess : ExitCode::kEnvironment);
 }
 
-}  // namespace
-
 void add_doctor_verb(CommandLine& line) {
   line.add_verb(line.app, "doctor", "is this machine fit for it", [&line] {
     return run_doctor(line.common);
   });
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"doctor", add_doctor_verb})
 
 }  // namespace glint

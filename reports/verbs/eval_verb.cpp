@@ -132,7 +132,7 @@ int eval_predictions(const CommonOptions& common, const PredictionArguments& arg
       "give --run FOLDER, or --predictions FOLDER --dataset FOLDER --method NAME"
   );
   GLINT_CHECK(
-      !arguments.method.empty() && !method_registry().contains(arguments.method),
+      !arguments.method.empty() && !Registry<MethodSpec>::all().contains(arguments.method),
       kUsage,
       "--method '{}': name the method that made these renders, not one of ours; e.g. --method pgsr",
       arguments.method
@@ -168,8 +168,6 @@ int eval_predictions(const CommonOptions& common, const PredictionArguments& arg
   return print_scores(common, spec.folder, record.metrics);
 }
 
-}  // namespace
-
 void add_eval_verb(CommandLine& line) {
   auto folder = std::make_shared<std::string>();
   auto arguments = std::make_shared<PredictionArguments>();
@@ -199,5 +197,9 @@ void add_eval_verb(CommandLine& line) {
   verb->add_option("--max-pixels", arguments->max_pixels, "shrink images below this area")
       ->check(CLI::NonNegativeNumber);
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"eval", add_eval_verb})
 
 }  // namespace glint

@@ -17,12 +17,14 @@ int run_figures(const CommonOptions& common) {
   return 0;
 }
 
-}  // namespace
-
 void add_figures_verb(CommandLine& line) {
   line.add_verb(line.app, "figures", "write OUT/PROFILE/figures/*.png and *.pdf", [&line] {
     return run_figures(line.common);
   });
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"figures", add_figures_verb})
 
 }  // namespace glint

@@ -52,8 +52,6 @@ int run_mesh(const CommonOptions& common, const MeshArguments& arguments) {
   return 0;
 }
 
-}  // namespace
-
 void add_mesh_verb(CommandLine& line) {
   auto arguments = std::make_shared<MeshArguments>();
   CLI::App* verb =
@@ -69,5 +67,9 @@ void add_mesh_verb(CommandLine& line) {
   verb->add_option("--max-memory", options.max_memory_mb, "MB; 0: half of the machine's");
   verb->add_flag("--keep-renders", arguments->keep_renders, "leave renders_train/ for glint-tsdf");
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"mesh", add_mesh_verb})
 
 }  // namespace glint

@@ -4,6 +4,7 @@
 
 namespace glint {
 
+namespace {
 void add_perf_verb(CommandLine& line) {
   auto options = std::make_shared<PerfOptions>();
   CommonOptions& common = line.common;
@@ -30,5 +31,8 @@ void add_perf_verb(CommandLine& line) {
   verb->add_option("--runs", options->runs, "runs of each op")->check(CLI::PositiveNumber);
   verb->add_option("--op", options->only, "only ops whose name matches a glob");
 }
+}  // namespace
+
+GLINT_REGISTER(Verb, {"perf", add_perf_verb})
 
 }  // namespace glint

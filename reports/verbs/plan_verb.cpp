@@ -102,8 +102,6 @@ int run_plan(const CommonOptions& common) {
   return 0;
 }
 
-}  // namespace
-
 void add_plan_verb(CommandLine& line) {
   line.add_verb(
       line.app,
@@ -112,5 +110,9 @@ void add_plan_verb(CommandLine& line) {
       [&line] { return run_plan(line.common); }
   );
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"plan", add_plan_verb})
 
 }  // namespace glint

@@ -25,8 +25,6 @@ int run_render(const CommonOptions& common, const std::string& folder) {
   return 0;
 }
 
-}  // namespace
-
 void add_render_verb(CommandLine& line) {
   auto folder = std::make_shared<std::string>();
   line.add_verb(
@@ -38,5 +36,9 @@ void add_render_verb(CommandLine& line) {
       ->add_option("--run", *folder, "run folder")
       ->required();
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"render", add_render_verb})
 
 }  // namespace glint

@@ -59,6 +59,7 @@ fs::path write_report(
   return write_page(options, tables);
 }
 
+namespace {
 void add_report_verb(CommandLine& line) {
   auto single_file = std::make_shared<bool>(false);
   CLI::App* verb = line.add_verb(
@@ -69,5 +70,8 @@ void add_report_verb(CommandLine& line) {
   );
   verb->add_flag("--single-file", *single_file, "everything inside index.html");
 }
+}  // namespace
+
+GLINT_REGISTER(Verb, {"report", add_report_verb})
 
 }  // namespace glint

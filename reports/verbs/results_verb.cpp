@@ -19,8 +19,6 @@ int run_results(const std::string& root) {
   return 0;
 }
 
-}  // namespace
-
 void add_results_verb(CommandLine& line) {
   auto root = std::make_shared<std::string>(".");
   CLI::App* verb = line.add_verb(
@@ -31,5 +29,9 @@ void add_results_verb(CommandLine& line) {
   );
   verb->add_option("--root", *root, "the project's folder")->capture_default_str();
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"results", add_results_verb})
 
 }  // namespace glint

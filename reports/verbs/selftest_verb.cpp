@@ -85,8 +85,6 @@ int run_selftest(const CommonOptions& common, const SelftestArguments& arguments
   return static_cast<int>(failed ? ExitCode::kCheckFailed : ExitCode::kSuccess);
 }
 
-}  // namespace
-
 void add_selftest_verb(CommandLine& line) {
   auto arguments = std::make_shared<SelftestArguments>();
   CLI::App* verb = line.add_verb(
@@ -101,5 +99,9 @@ void add_selftest_verb(CommandLine& line) {
       "--check", arguments->check, "JSON of another implementation: vector id -> its value"
   );
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"selftest", add_selftest_verb})
 
 }  // namespace glint

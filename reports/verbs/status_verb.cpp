@@ -81,12 +81,14 @@ int run_status(const CommonOptions& common) {
   return 0;
 }
 
-}  // namespace
-
 void add_status_verb(CommandLine& line) {
   line.add_verb(line.app, "status", "how far a profile is", [&line] {
     return run_status(line.common);
   });
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"status", add_status_verb})
 
 }  // namespace glint

@@ -36,8 +36,6 @@ int run_table(const CommonOptions& common, const TableVerbOptions& options) {
   return 0;
 }
 
-}  // namespace
-
 void add_table_verb(CommandLine& line) {
   auto options = std::make_shared<TableVerbOptions>();
   CLI::App* verb = line.add_verb(
@@ -51,5 +49,9 @@ void add_table_verb(CommandLine& line) {
       ->check(CLI::IsMember({"terminal", "md", "tex", "csv", "html", "json"}))
       ->capture_default_str();
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"table", add_table_verb})
 
 }  // namespace glint

@@ -38,8 +38,6 @@ int run_train(
   return 0;
 }
 
-}  // namespace
-
 void add_train_verb(CommandLine& line) {
   auto options = std::make_shared<SingleRunOptions>();
   auto transmission = std::make_shared<std::string>();
@@ -54,5 +52,9 @@ void add_train_verb(CommandLine& line) {
   verb->add_option("--max-pixels", options->max_pixels, "shrink images below this area")
       ->check(CLI::NonNegativeNumber);
 }
+
+}  // namespace
+
+GLINT_REGISTER(Verb, {"train", add_train_verb})
 
 }  // namespace glint

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "glint/core/registry.h"
 #include "reports/bench/plan.h"
 #include "reports/records/scene_source.h"
 #include "reports/tables/table_writers.h"
@@ -53,25 +54,11 @@ struct CommandLine {
   );
 };
 
-void add_all_verb(CommandLine& line);
-void add_plan_verb(CommandLine& line);
-void add_status_verb(CommandLine& line);
-void add_dataset_verb(CommandLine& line);
-void add_train_verb(CommandLine& line);
-void add_render_verb(CommandLine& line);
-void add_eval_verb(CommandLine& line);
-void add_mesh_verb(CommandLine& line);
-void add_results_verb(CommandLine& line);
-void add_selftest_verb(CommandLine& line);
-void add_table_verb(CommandLine& line);
-void add_report_verb(CommandLine& line);
-void add_compare_verb(CommandLine& line);
-void add_figures_verb(CommandLine& line);
-void add_perf_verb(CommandLine& line);
-void add_doctor_verb(CommandLine& line);
-
-// Parses, runs and reports errors on standard error: the whole of main().
-int run_command_line(int argc, const char* const* argv);
+// Registered with GLINT_REGISTER(Verb, {"plan", add_plan_verb}); help lists them by id.
+struct Verb {
+  std::string id;
+  void (*add)(CommandLine& line);
+};
 
 // Results go here: one JSON document, or text.
 void print_json(const Json& json);

@@ -51,7 +51,7 @@ bool same_bytes(const Image& a, const Image& b) {
 }  // namespace
 
 TEST_CASE("Every method's loss falls and its parameters stay finite") {
-  for (const auto& [id, spec] : method_registry()) {
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     INFO(id);
     std::vector<double> losses;
     const auto method = trained(spec, 150, &losses);
@@ -62,7 +62,7 @@ TEST_CASE("Every method's loss falls and its parameters stay finite") {
 }
 
 TEST_CASE("Every method renders colour, depth and unit normals that face the camera") {
-  for (const auto& [id, spec] : method_registry()) {
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     INFO(id);
     const View& view = small_room().test.front();
     const MapSet out = after_60_steps(spec).render(view.camera);
@@ -85,7 +85,7 @@ TEST_CASE("Every method renders colour, depth and unit normals that face the cam
 }
 
 TEST_CASE("Every method renders the same bytes after saving and loading") {
-  for (const auto& [id, spec] : method_registry()) {
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     INFO(id);
     const TempFolder folder;
     Method& method = after_60_steps(spec);
@@ -101,7 +101,7 @@ TEST_CASE("Every method renders the same bytes after saving and loading") {
 }
 
 TEST_CASE("Every method trains to the same bytes with one and two threads") {
-  for (const auto& [id, spec] : method_registry()) {
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     INFO(id);
     const Camera& camera = small_room().test.front().camera;
     set_num_threads(1);
@@ -115,7 +115,7 @@ TEST_CASE("Every method trains to the same bytes with one and two threads") {
 }
 
 TEST_CASE("Every method names an unknown config field and lists the known ones") {
-  for (const auto& [id, spec] : method_registry()) {
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     INFO(id);
     try {
       create_method(id, Json{{"lambda_typo", 1}});
@@ -130,7 +130,7 @@ TEST_CASE("Every method names an unknown config field and lists the known ones")
 
 TEST_CASE("A variant differs from its method in what it overrides, and the user has the last word"
 ) {
-  for (const auto& [id, spec] : method_registry()) {
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     INFO(id);
     const Json config = create_method(id)->config();
     const std::size_t slash = id.find('/');

@@ -37,7 +37,7 @@ struct Training {
 // Later, rounding grows into other surfels: trainings are chaotic.
 TEST_CASE("Every method's first steps have the same losses on a GPU") {
   constexpr int kFirstSteps = 6;
-  for (const auto& [id, spec] : method_registry()) {
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     // So short that all sets and losses are there from the start.
     const Training cpu(id, kFirstSteps, kFirstSteps);
     for_each_gpu_backend([&, &id = id](const std::string& backend) {

@@ -35,7 +35,7 @@ bool any_says(const std::vector<std::string>& warnings, const std::string& text)
 
 template <class Body>
 void for_every_method(Body&& body) {
-  for (const auto& [id, spec] : method_registry()) {
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     INFO(id);
     body(spec);
   }

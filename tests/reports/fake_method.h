@@ -71,7 +71,7 @@ inline void register_fake_methods() {
     MethodSpec spec;
     spec.id = spec.title = id;
     spec.create = [](const Json& config) { return std::make_unique<FakeMethod>(config); };
-    register_method(spec);
+    Registry<MethodSpec>::add(spec, __FILE__);
   }
 }
 

@@ -34,20 +34,20 @@ std::size_t num_entries(const fs::path& folder) {
 TEST_CASE("The same options give the same bytes, and a finished scene is not made again") {
   const QuietFolder temporary;
   const fs::path a = temporary.path() / "a", b = temporary.path() / "b";
-  REQUIRE(make_glassroom(kTiny, a));
-  REQUIRE(make_glassroom(kTiny, b));
+  REQUIRE(make_glassroom(kTiny, a, false));
+  REQUIRE(make_glassroom(kTiny, b, false));
   CHECK(file_hashes(a) == file_hashes(b));
   const auto written = fs::last_write_time(a / "scene.json");
-  CHECK_FALSE(make_glassroom(kTiny, a));
+  CHECK_FALSE(make_glassroom(kTiny, a, false));
   CHECK(fs::last_write_time(a / "scene.json") == written);
   CHECK(num_entries(temporary.path()) == 2);  // nothing temporary is left
   fs::remove(a / "gt" / "mesh_behind.ply");   // as earlier releases left it
-  CHECK_FALSE(make_glassroom(kTiny, a));
+  CHECK_FALSE(make_glassroom(kTiny, a, false));
   CHECK(file_hashes(a) == file_hashes(b));
 
   GlassRoomOptions other = kTiny;
   other.seed = 1;
-  CHECK(make_glassroom(other, a));
+  CHECK(make_glassroom(other, a, false));
   CHECK(file_hashes(a) != file_hashes(b));
   CHECK(num_entries(temporary.path()) == 2);
 }
@@ -55,7 +55,7 @@ TEST_CASE("The same options give the same bytes, and a finished scene is not mad
 TEST_CASE("A scene folder loads, and its maps agree with each other") {
   const QuietFolder temporary;
   const fs::path folder = temporary.path() / "room_2";
-  make_glassroom(kTiny, folder);
+  make_glassroom(kTiny, folder, false);
   const Scene scene = load_scene(folder, {});
   CHECK(scene.simulated_priors);
   CHECK(scene.dataset == "glassroom");
@@ -154,12 +154,14 @@ TEST_CASE("An error leaves no folder behind, and foreign folders are not touched
   const QuietFolder temporary;
   GlassRoomOptions bad = kTiny;
   bad.scene = "room_7";
-  CHECK_THROWS_AS(make_glassroom(bad, temporary.path() / "x"), Error);
+  CHECK_THROWS_AS(make_glassroom(bad, temporary.path() / "x", false), Error);
   CHECK(num_entries(temporary.path()) == 0);
 
   const fs::path foreign = temporary.path() / "holiday";
   write_file(foreign / "photo.txt", "mine");
-  CHECK_THROWS_WITH(make_glassroom(kTiny, foreign), Catch::Contains("not a GlassRoom scene"));
+  CHECK_THROWS_WITH(
+      make_glassroom(kTiny, foreign, false), Catch::Contains("not a GlassRoom scene")
+  );
   CHECK(read_file(foreign / "photo.txt") == "mine");
 }
 
@@ -189,7 +191,7 @@ TEST_CASE("glTF furniture replaces the procedural pieces") {
   GlassRoomOptions options = kTiny;
   options.scene = "room_1";
   options.assets = assets.string();
-  REQUIRE(make_glassroom(options, temporary.path() / "room"));
+  REQUIRE(make_glassroom(options, temporary.path() / "room", false));
   const Json json = Json::parse(read_file(temporary.path() / "room" / "scene.json"));
   std::set<std::string> materials;
   for (const Json& material : json["materials"]) materials.insert(material["name"]);

@@ -185,7 +185,7 @@ TEST_CASE("every constant of the comparison of meshes changes the score's key") 
 
 TEST_CASE("every field of every method's config changes the training's key") {
   const Json data = {{"content", "c"}};
-  for (const auto& [id, spec] : method_registry()) {
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     const Json before = train_document(id, Json::object(), {}, data);
     REQUIRE_FALSE(before.at("config").empty());
     for (const auto& [name, value] : before.at("config").items()) {

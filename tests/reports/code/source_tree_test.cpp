@@ -23,7 +23,6 @@ class SmallTree {
     write("glint/render/rays.cpp", "#include \"glint/render/rays.h\"\nint rays;");
     write("glint/render/draw.h", "#include \"glint/render/rays.h\"\nvoid draw();");
     write("glint/render/draw_fast.cpp", "#include \"glint/render/draw.h\"\nvoid draw() {}");
-    write("glint/render/draw_fast_lean.cpp", "#include \"glint/render/draw.h\"\nvoid draw();");
     write("glint/train/loss.h", "int loss();");
     write("glint/train/loss.cpp", "#include \"glint/train/loss.h\"\nint loss() { return 1; }");
     write("baselines/a.cpp", "#include \"glint/render/draw.h\"\nGLINT_REGISTER(a())");
@@ -37,7 +36,7 @@ class SmallTree {
   void write(const std::string& file, const std::string& text) const {
     write_file(folder_.path() / file, text);
   }
-  SourceTree read(bool lean = false) const { return {folder_.path(), lean}; }
+  SourceTree read() const { return SourceTree(folder_.path()); }
   // The hashes that the files behind `root` have now.
   std::vector<std::string> hashes(const std::string& root) const {
     const SourceTree tree = read();
@@ -69,13 +68,6 @@ TEST_CASE("a file depends on what it includes and on what implements those heade
 TEST_CASE("of files that drive a computation only those that are named count") {
   const SmallTree sources;
   CHECK(sources.read().closure({"reports/bench/run.cpp"}) == Files{"reports/bench/run.cpp"});
-}
-
-TEST_CASE("in a lean build the stand-ins count") {
-  const SmallTree sources;
-  const Files closure = sources.read(true).closure({"glint/render/draw.h"});
-  CHECK(std::count(closure.begin(), closure.end(), "glint/render/draw_fast_lean.cpp") == 1);
-  CHECK(std::count(closure.begin(), closure.end(), "glint/render/draw_fast.cpp") == 0);
 }
 
 TEST_CASE("a change of code reaches who depends on it, a comment nobody") {

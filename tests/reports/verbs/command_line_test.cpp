@@ -8,7 +8,7 @@
 
 #include "glint/core/device.h"
 #include "glint/cuda/backend.h"
-#include "reports/verbs/verb.h"
+#include "reports/verbs/command_line.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;

@@ -7,7 +7,7 @@
 using namespace glint;
 using namespace glint::test;
 
-TEST_CASE("a lean build that should resize says which build can") {
+TEST_CASE("a program without glint_resize says which build can") {
   const Image image(4, 4, 1);
   CHECK_THAT(
       error_of(

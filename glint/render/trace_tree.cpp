@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// In place of the Embree tree, for a lean build: eight clusters in a row have a node with their
+// In place of Embree's tree: eight clusters in a row have a node with their
 // boxes, eight nodes in a row have one, and so on. Clusters are in an order in which neighbours in
 // memory are neighbours in space, so nothing is sorted; a ray finds the same hits as with Embree.
 #include <algorithm>
@@ -121,7 +121,7 @@ void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool triangles,
   GLINT_CHECK(
       !triangles,
       kEnvironment,
-      "rays against triangles need Embree, which this lean build does without; use the full build "
+      "rays against triangles need Embree, which this program does without; use the full build "
       "(cmake --preset release) or triangles=false"
   );
   make_clusters(surfels, impl_->clusters);

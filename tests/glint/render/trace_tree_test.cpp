@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The lean build's tree, linked in place of Embree's: the hits that all clusters give.
+// Our own tree, linked in place of Embree's: the hits that all clusters give.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -67,7 +67,7 @@ Vec3f random_ray_direction(Rng& rng, int i) {
 
 }  // namespace
 
-TEST_CASE("the lean tree finds the hits that all clusters have, in their order") {
+TEST_CASE("our own tree finds the hits that all clusters have, in their order") {
   Rng rng(21);
   for (const auto& [count, size] :
        {std::pair{std::size_t{1}, 0.5f}, {7, 0.5f}, {65, 0.3f}, {700, 0.2f}, {5000, 0.05f}}) {
@@ -96,7 +96,7 @@ TEST_CASE("the lean tree finds the hits that all clusters have, in their order")
   }
 }
 
-TEST_CASE("the lean tree follows surfels that move, and none are no error") {
+TEST_CASE("our own tree follows surfels that move, and none are no error") {
   Rng rng(22);
   std::vector<TracedSurfel> surfels = random_surfels(100, 0.4f, rng);
   SurfelBvh bvh;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// In place of the loaders of folders, which need image libraries.
+// In place of the loaders of folders (library folder_loaders), which need image libraries.
 #include "datasets/dataset.h"
 #include "glint/core/error.h"
 
@@ -25,6 +25,6 @@ LoaderMatch match(const fs::path& path) {
 
 }  // namespace
 
-GLINT_REGISTER_LOADER({"folder", match, load, "nothing: folders need the full build"})
+GLINT_REGISTER(LoaderSpec, {"folder", match, load, "nothing: folders need the full build"})
 
 }  // namespace glint
