@@ -161,7 +161,10 @@ TEST_CASE("titles of rows stand left of the panels and widen the picture by the 
 TEST_CASE("a legend longer than the panels widens the picture") {
   PictureGrid grid{{"one"}, {{fit_panel(Image(40, 30, 3))}}, {{"short"}}};
   const int narrow = draw_grid(grid).width();
-  grid.legend.push_back({std::string(200, 'w'), LegendBar::kDepth, "end"});
+  LegendLine& line = grid.legend.emplace_back();
+  line.text = std::string(200, 'w');
+  line.bar = LegendBar::kDepth;
+  line.rest = "end";
   CHECK(narrow == kMinPanelWidth);
   CHECK(draw_grid(grid).width() > 5 * narrow);
 }
