@@ -138,7 +138,7 @@ TEST_CASE("The picture is the sum of what the maps say of it") {
 
 TEST_CASE("Ablated sets leave no map behind") {
   const std::pair<const char*, MapId> ablations[] = {
-      {"glint/no-trans", "transmission"}, {"glint/no-refl", "reflection"}};
+      {"glint/no-trans", MapId("transmission")}, {"glint/no-refl", MapId("reflection")}};
   for (const auto& [id, map] : ablations) {
     const auto method = create_method(id);
     RunOptions options;

@@ -125,7 +125,7 @@ TEST_CASE("large views keep every nth pixel") {
   CHECK(probe_step({960, 540}) == 2);
   Image t(3, 3, 1);
   for (int i = 0; i < 9; ++i) t.values()[static_cast<std::size_t>(i)] = static_cast<float>(i) / 8;
-  const auto bytes = unpacked(probe_values({{"t", t}}, 2)["t"]["data"], 4);
+  const auto bytes = unpacked(probe_values({{"transparency", t}}, 2)["transparency"]["data"], 4);
   CHECK(bytes == std::vector<std::uint8_t>{0, 64, 191, 255});
 }
 
