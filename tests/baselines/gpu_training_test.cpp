@@ -27,7 +27,7 @@ struct Training {
   }
   double test_psnr() const {
     double sum = 0;
-    for (const View& view : scene.test) sum += psnr(method->render(view.camera).rgb, view.rgb);
+    for (const View& view : scene.test) sum += psnr(method->render(view.camera)["rgb"], view.rgb);
     return sum / static_cast<double>(scene.test.size());
   }
 };

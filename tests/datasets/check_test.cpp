@@ -197,7 +197,7 @@ TEST_CASE("small pictures show the same defects, and none when nothing is wrong"
     const auto depth_scaled = [&](float factor) {
       return list(found([&](std::vector<View>& views) {
         for (View& view : views)
-          for (float& z : view.truth.depth.values()) z *= factor;
+          for (float& z : view.truth["depth"].values()) z *= factor;
       }));
     };
     CHECK_THAT(depth_scaled(1000), Contains("[depth-poses]"));  // millimetres
@@ -211,7 +211,7 @@ TEST_CASE("small pictures show the same defects, and none when nothing is wrong"
     );
     only(
         found([](std::vector<View>& views) {
-          for (View& view : views) flip_axis(view.truth.normal, 1);
+          for (View& view : views) flip_axis(view.truth["normal"], 1);
         }),
         "normal-axes"
     );

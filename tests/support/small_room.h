@@ -18,7 +18,7 @@ inline const fs::path& small_room_folder() {
     options.height = 36;
     options.views = 16;
     options.spp = 8;
-    make_glassroom(options, folder.path() / "room_1");
+    make_glassroom(options, folder.path() / "room_1", false);
     return folder.path() / "room_1";
   }();
   return room;
