@@ -115,8 +115,7 @@ struct SourceFile {
 
 std::vector<SourceFile> source_files() {
   std::vector<SourceFile> files;
-  for (const char* folder :
-       {"glint", "drawing", "metrics", "baselines", "datasets", "reports", "tests"})
+  for (const char* folder : {"glint", "metrics", "baselines", "datasets", "reports", "tests"})
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension == ".h" || extension == ".cpp" || extension == ".cu" || extension == ".cuh")
@@ -325,6 +324,12 @@ std::vector<std::string> types_of(std::string_view text) {
   return types;
 }
 
+// Two implementations of one interface, of which a program links one: they share their types'
+// names.
+bool are_alternatives(const std::string& a, const std::string& b) {
+  return a == "glint/render/trace_embree.cpp" && b == "glint/render/trace_tree.cpp";
+}
+
 // "type: file and file" of types that stand in two files.
 std::vector<std::string> types_defined_twice(const std::vector<SourceFile>& files) {
   std::map<std::string, std::string> place_of;
@@ -332,7 +337,8 @@ std::vector<std::string> types_defined_twice(const std::vector<SourceFile>& file
   for (const SourceFile& file : files)
     for (const std::string& type : types_of(file.text)) {
       const auto [place, fresh] = place_of.emplace(type, file.path);
-      if (!fresh) twice.push_back(fmt::format("{}: {} and {}", type, place->second, file.path));
+      if (!fresh && !are_alternatives(place->second, file.path))
+        twice.push_back(fmt::format("{}: {} and {}", type, place->second, file.path));
     }
   return twice;
 }
@@ -399,9 +405,9 @@ TEST_CASE(
       "datasets/glassroom/",
       "datasets/opencv_yaml.cpp",
       "datasets/undistort.cpp",
+      "glint/drawing/",
       "glint/render/trace_embree.cpp",
       "glint/scene/image_files_resize.cpp",
-      "glint/scene/image_files_text.cpp",
       "metrics/feature_net_onednn.cpp",
       "metrics/fusion/clusters.cpp",
       "metrics/fusion/tsdf_open3d.cpp",

@@ -98,7 +98,7 @@ TEST_CASE("a pattern without a file is an error that says where it stands") {
 
 // What no root reaches would change results without changing a key.
 TEST_CASE("every source of this project that results depend on is behind some key") {
-  const SourceTree tree(".", false);
+  const SourceTree tree(".");
   Files roots = tree.registering();
   for (const StageSources& stage : stage_sources())
     for (const std::string& pattern : stage.patterns)
@@ -119,7 +119,7 @@ TEST_CASE("every source of this project that results depend on is behind some ke
 }
 
 TEST_CASE("a method's key goes by its own file, not by another method's or a table's") {
-  const SourceTree tree(".", false);
+  const SourceTree tree(".");
   const Files files = tree.closure({"baselines/2dgs.cpp"});
   const auto has = [&](const char* file) {
     return std::find(files.begin(), files.end(), file) != files.end();
