@@ -64,8 +64,8 @@ std::string made_content(const fs::path& folder) {
   return sha256(description.value("files", Json::object()).dump());
 }
 
-Json load_code(const fs::path& folder) {
-  return code_json({"load", code_entry_of(find_loader(folder).source)});
+Json load_code(const fs::path& folder, const std::string& loader) {
+  return code_json({"load", code_entry_of(find_loader(folder, loader).source)});
 }
 
 SceneIdentity made_identity(const SceneSource& source, const fs::path& data_folder) {
@@ -75,7 +75,7 @@ SceneIdentity made_identity(const SceneSource& source, const fs::path& data_fold
   identity.document["scene"]["max_pixels"] = source.max_pixels;
   if (!identity.why_not.empty()) return identity;
   identity.document["content"] = made_content(folder);
-  identity.document["code"] = load_code(folder);
+  identity.document["code"] = load_code(folder, source.loader);
   return identity;
 }
 
@@ -96,14 +96,19 @@ SceneIdentity identify_source(const SceneSource& source, const fs::path& data_fo
     return {
         {{"scene", {{"max_pixels", source.max_pixels}}}},
         folder.string() + ": no such folder or file"};
-  return {data_document(folder, source.max_pixels, data_folder), ""};
+  return {data_document(folder, source.max_pixels, data_folder, source.loader), ""};
 }
 
-Json data_document(const fs::path& dataset, double max_pixels, const fs::path& data_folder) {
+Json data_document(
+    const fs::path& dataset,
+    double max_pixels,
+    const fs::path& data_folder,
+    const std::string& loader
+) {
   return {
       {"scene", {{"max_pixels", max_pixels}}},
       {"content", content_hash(dataset, hash_cache(data_folder))},
-      {"code", load_code(dataset)}};
+      {"code", load_code(dataset, loader)}};
 }
 
 LoadedScene load_source(const SceneSource& source, const fs::path& data_folder) {

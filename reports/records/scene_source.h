@@ -27,9 +27,14 @@ struct SceneIdentity {
 SceneIdentity identify_source(const SceneSource& source, const fs::path& data_folder);
 using SceneIdentifier = std::function<SceneIdentity(const SceneSource&)>;
 
-// Of a folder or packed file of the user's; hashes are kept below `data_folder`. Errors
-// (kBadReference): as identify_source, and nothing there that a loader knows.
-Json data_document(const fs::path& dataset, double max_pixels, const fs::path& data_folder);
+// Of a folder or packed file of the user's; hashes are kept below `data_folder`. `loader`: as
+// find_loader's. Errors (kBadReference): as identify_source, and nothing there that a loader knows.
+Json data_document(
+    const fs::path& dataset,
+    double max_pixels,
+    const fs::path& data_folder,
+    const std::string& loader = ""
+);
 
 // Makes the scene first when it is missing, or was made by other code. Errors (kBadReference,
 // kEnvironment): as make_glassroom and load_scene.

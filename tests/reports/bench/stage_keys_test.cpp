@@ -205,6 +205,7 @@ TEST_CASE("every field of a room counts, where it lies and what it is called do 
   const std::map<std::string, std::pair<Json, bool>> places = {
       {"dataset", {"other", false}},
       {"scene", {"room_2", true}},
+      {"loader", {"nerfstudio", false}},  // of folders, where the code of the loader counts
       {"max_pixels", {100.0, true}},
       {"width", {161, true}},
       {"height", {91, true}},

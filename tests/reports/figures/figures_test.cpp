@@ -215,7 +215,7 @@ TEST_CASE("columns of a figure are the truth and every method, empty where one h
   const LayerMaps without = {{"rgb", Image(kWidth, kHeight, 3)}};
   const PictureGrid grid =
       qualitative_figure({scene_of({{"a", with_depth}, {"a/variant", without}, {"b", without}})});
-  CHECK(grid.titles == std::vector<std::string>{"Truth", "a", "b"});
+  CHECK(grid.titles == std::vector<std::string>{"truth", "a", "b"});
   REQUIRE(grid.rows.size() == 4);  // image and depth with their crops; no normals
   CHECK(grid.row_titles[2] == "room_1\nDepth");
   CHECK(grid.rows[2][0].empty());
