@@ -112,7 +112,7 @@ class TwoDgs final : public Method {
     write_surfel_ply(fs::path(folder) / "interface.ply", set_.cloud());
   }
   void load(const std::string& folder) override {
-    set_ = TrainableSet(read_surfel_ply(fs::path(folder) / "interface.ply"));
+    set_.load(read_surfel_ply(fs::path(folder) / "interface.ply"));
     sh_degree_ = 3;
   }
   Json config() const override { return config_to_json(config_); }

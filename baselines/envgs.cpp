@@ -162,8 +162,8 @@ class EnvGs final : public Method {
     write_surfel_ply(fs::path(folder) / "reflection.ply", environment_.cloud());
   }
   void load(const std::string& folder) override {
-    base_ = TrainableSet(read_surfel_ply(fs::path(folder) / "interface.ply"));
-    environment_ = TrainableSet(read_surfel_ply(fs::path(folder) / "reflection.ply"));
+    base_.load(read_surfel_ply(fs::path(folder) / "interface.ply"));
+    environment_.load(read_surfel_ply(fs::path(folder) / "reflection.ply"));
     GLINT_CHECK(
         base_.cloud().extra_names == std::vector<std::string>({kSpecular}),
         kBadPrediction,

@@ -88,12 +88,12 @@ class Glint final : public Method {
     write_surfel_ply(fs::path(folder) / "reflection.ply", model_.reflection.cloud());
   }
   void load(const std::string& folder) override {
-    const auto read = [&](const char* name) {
-      return TrainableSet(read_surfel_ply(fs::path(folder) / name));
+    const auto load = [&](TrainableSet& set, const char* name) {
+      set.load(read_surfel_ply(fs::path(folder) / name));
     };
-    model_.interface = read("interface.ply");
-    model_.transmission = read("transmission.ply");
-    model_.reflection = read("reflection.ply");
+    load(model_.interface, "interface.ply");
+    load(model_.transmission, "transmission.ply");
+    load(model_.reflection, "reflection.ply");
     GLINT_CHECK(
         model_.interface.cloud().extra_names ==
             std::vector<std::string>({kTransparency, kSpecular}),

@@ -43,6 +43,7 @@ class Method {
   virtual void draw(const Camera& camera) { render(camera); }
   // Surfel sets as PLY files and whatever else is needed to render again.
   virtual void save(const std::string& folder) const = 0;
+  // After initialize(), step() goes on from what is loaded; else it can only be rendered.
   virtual void load(const std::string& folder) = 0;
   virtual Json config() const = 0;
   // Throws Error naming the parameter array and surfel when a parameter is not finite.

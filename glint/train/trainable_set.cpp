@@ -18,9 +18,9 @@ SetTraining with_extra_rates(SetTraining training, const InitialSurfels& initial
 TrainableSet::TrainableSet(SurfelCloud cloud, const SetTraining& training)
     : SurfelSet(std::move(cloud)),
       training_(std::make_unique<Training>(Training{
+          training,
           {},
           training.rates,
-          training.extent,
           false,
           {},
           Densifier(training.densify, training.extent, training.seed)})) {
@@ -34,6 +34,11 @@ TrainableSet::TrainableSet(
     : TrainableSet(
           surfels_from_points(points, initial), with_extra_rates(std::move(training), initial)
       ) {}
+
+void TrainableSet::load(SurfelCloud cloud) {
+  *this = training_ ? TrainableSet(std::move(cloud), training_->settings)
+                    : TrainableSet(std::move(cloud));
+}
 
 TrainableSet::Training& TrainableSet::training() const {
   GLINT_CHECK(training_ != nullptr, kUsage, "a set that was loaded to be rendered cannot train");
@@ -66,7 +71,7 @@ void TrainableSet::freeze_geometry() {
 
 DensifyCounts TrainableSet::update(int step) {
   Training& t = training();
-  t.adam.step(cloud_, t.gradient, t.rates, t.extent);
+  t.adam.step(cloud_, t.gradient, t.rates, t.settings.extent);
   const DensifyCounts counts =
       t.frozen_geometry ? DensifyCounts{} : t.densifier.update(step, cloud_, t.adam);
   t.gradient.resize(cloud_.size());  // zero after every step

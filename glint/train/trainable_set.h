@@ -27,6 +27,10 @@ class TrainableSet final : public SurfelSet {
   // New surfels at the points, with the rates of their extra channels.
   TrainableSet(const PointCloud& points, const InitialSurfels& initial, SetTraining training);
 
+  // Other surfels from now on, such as those of a file. A set that trains goes on from them with a
+  // new optimiser, all others are only rendered.
+  void load(SurfelCloud cloud);
+
   // Back through the last forward(): adds to the gradient of the parameters, and to the statistics
   // of density control. These and all below throw (kUsage) where the set is only to be rendered.
   void backward(const RasterOutputGradient& dL_doutput);
@@ -43,9 +47,9 @@ class TrainableSet final : public SurfelSet {
 
  private:
   struct Training {
+    SetTraining settings;  // as given
     SurfelCloud gradient;
-    SurfelRates rates;
-    float extent;
+    SurfelRates rates;  // now
     bool frozen_geometry;
     SurfelAdam adam;
     Densifier densifier;
