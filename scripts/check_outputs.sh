@@ -18,7 +18,7 @@ for figure in qualitative curves f1 meshes; do
   done
 done
 grep -q '^2DGS\|^2dgs' "$out/tables/table1_photometric.csv" || fail "no row for 2dgs in table1_photometric.csv"
-for file in index.html assets/data.js assets/scene_0.js assets/probe_0_0.js assets/pictures/s0/v0_r0_render.png; do
+for file in index.html assets/data.js assets/scene_0.js assets/probe_0_0.js assets/pictures/s0/v0_r0_rgb.png; do
   [ -s "$out/report/$file" ] || fail "$out/report/$file is missing or empty"
 done
 # Variants (2dgs/prior) are one folder deeper than methods.
