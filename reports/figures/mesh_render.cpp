@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "glint/core/parallel.h"
 #include "glint/drawing/color_maps.h"
 #include "glint/drawing/picture_grid.h"
-#include "glint/core/parallel.h"
 #include "metrics/mesh/mesh_scores.h"
 #include "metrics/mesh/triangle_tree.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "glint/drawing/color_maps.h"
 #include "glint/core/progress.h"
+#include "glint/drawing/color_maps.h"
 #include "glint/scene/image_files.h"
 #include "metrics/components.h"
 #include "metrics/normal.h"
