@@ -102,6 +102,7 @@ class TwoDgs final : public Method {
     MapSet result;
     expected_depth_map(out, result["depth"]);
     result["normal"] = unit_normals(out.normal);
+    add_depth_estimates(out, result);
     result["rgb"] = out.features;
     return result;
   }

@@ -145,6 +145,7 @@ class EnvGs final : public Method {
     const GlassBuffer& buffer = transport_.buffer();
     out["depth"] = buffer.depth;
     out["normal"] = buffer.normal;
+    add_depth_estimates(*base_output_, out);
     out["specularity"] = buffer.specularity;
     out["interface"] = layers_.interface;
     if (!with_environment_) return out;

@@ -101,13 +101,13 @@ void GlintModel::backward(
 
 // Median depth of the transmission set behind the interface, which a few faint surfels between the
 // layers do not move; where nothing is, the interface's.
-Image GlintModel::behind_depth(const Camera& camera) {
-  Image depth =
-      transmission.forward(behind_pass_, camera, phase_.transmission_degree, {}, near_limit_)
-          .depth_median;
+void GlintModel::add_behind_depth(const Camera& camera, MapSet& out) {
+  const RasterOutput& behind =
+      transmission.forward(behind_pass_, camera, phase_.transmission_degree, {}, near_limit_);
+  add_depth_estimates(behind, out);
+  Image& depth = out["behind_depth"] = behind.depth_median;
   for (std::size_t i = 0; i < depth.num_pixels(); ++i)
     if (depth.data()[i] <= 0) depth.data()[i] = buffer().depth.data()[i];
-  return depth;
 }
 
 // The shares of a pixel's radiance that came through the interface and that it mirrored.
@@ -131,7 +131,10 @@ MapSet GlintModel::render(
   out["specularity"] = buffer().specularity;
   out["interface"] = layers_.interface;
   if (phase.transmission) out["transmission"] = layers_.transmission;
-  if (phase.transmission) out["behind_depth"] = behind_depth(camera);
+  if (phase.transmission)
+    add_behind_depth(camera, out);
+  else
+    add_depth_estimates(*interface_output_, out);
   if (phase.reflection) out["reflection"] = layers_.reflection;
   add_components(out);
   return out;

@@ -43,7 +43,7 @@ class GlintModel {
  private:
   void render_transmission(const Camera& camera, const GlintConfig& config);
   void transmission_vjp(const GlintConfig& config, const Image& dL_dradiance);
-  Image behind_depth(const Camera& camera);
+  void add_behind_depth(const Camera& camera, MapSet& out);
   void add_components(MapSet& out) const;
 
   Camera camera_;  // of the last forward call, as is the phase

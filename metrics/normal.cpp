@@ -39,6 +39,7 @@ double angle_at(
 struct Angles {
   std::vector<double> scored;
   std::size_t predicted = 0, dropped = 0;
+  std::size_t background = 0, in_background = 0;  // pixels; those of them with a prediction
 };
 
 Angles collect_angles(
@@ -51,7 +52,12 @@ Angles collect_angles(
   for (int y = 0; y < angles_deg.height(); ++y)
     for (int x = 0; x < angles_deg.width(); ++x) {
       const double angle = angles_deg.at(x, y);
-      if (!counts(mask, x, y) || angle == kMissingReference) continue;
+      if (!counts(mask, x, y)) continue;
+      if (angle == kMissingReference) {
+        ++angles.background;
+        angles.in_background += length_at(prediction, x, y, protocol) > 0;
+        continue;
+      }
       if (angle == kDroppedReference) {
         ++angles.dropped;
         continue;
@@ -60,6 +66,13 @@ Angles collect_angles(
       angles.predicted += length_at(prediction, x, y, protocol) > 0;
     }
   return angles;
+}
+
+double with_background(double mean_deg, const Angles& angles, const NormalProtocol& protocol) {
+  const double n = static_cast<double>(angles.scored.size());
+  const double wrong = static_cast<double>(angles.in_background);
+  return (mean_deg * n + protocol.missing_deg * wrong) /
+         (n + static_cast<double>(angles.background));
 }
 
 }  // namespace
@@ -100,6 +113,7 @@ std::optional<NormalErrors> normal_errors_from_angles(
   const double dropped = static_cast<double>(angles.dropped);
   errors.dropped = 100 * dropped / (dropped + n);
   errors.median_deg = median(angles.scored);
+  errors.mean_with_background_deg = with_background(errors.mean_deg, angles, protocol);
   return errors;
 }
 

@@ -29,6 +29,10 @@ struct NormalProtocol {
 
 struct NormalErrors {
   double mean_deg = 0, median_deg = 0, rms_deg = 0;
+  // Mean over background, too, which the others leave out: pixels without a true normal count as 0
+  // where nothing is predicted and as missing_deg where something is. Empty pictures thus score
+  // well: papers that average over whole pictures print such numbers.
+  double mean_with_background_deg = 0;
   std::array<double, 5> below{};  // percent strictly below kNormalThresholdsDeg
   double coverage = 0;            // percent of the scored pixels that have a prediction
   double dropped = 0;             // percent of the reference's normals that are not of unit length

@@ -34,6 +34,11 @@ void expected_depth_map_vjp(
   );
 }
 
+void add_depth_estimates(const RasterOutput& output, MapSet& maps) {
+  expected_depth_map(output, maps["behind_expected"]);
+  maps["behind_median"] = output.depth_median;
+}
+
 void clear_image(Image& image, ImageSize size, int channels) {
   fit(image, size, channels);
   fill(image.data(), image.values().size(), 0.0f);

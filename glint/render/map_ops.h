@@ -3,6 +3,7 @@
 #pragma once
 
 #include "glint/render/rasterize.h"
+#include "glint/scene/maps.h"
 
 namespace glint {
 
@@ -12,6 +13,10 @@ void expected_depth_map(const RasterOutput& output, Image& depth);
 void expected_depth_map_vjp(
     const RasterOutput& output, const Image& dL_ddepth, RasterOutputGradient& dL_doutput
 );
+// The maps "behind_expected" and "behind_median" of the set that stands for what is behind glass,
+// with 0 where nothing was hit: what every method's depth behind glass is scored by, besides its
+// own.
+void add_depth_estimates(const RasterOutput& output, MapSet& maps);
 // Camera-space unit normals; zero: nothing hit.
 Image unit_normals(const Image& normal);
 // The first three of some feature channels.

@@ -38,9 +38,11 @@ struct MapRow {
   std::string_view picture;  // 8 bits, for people, there
   std::string_view truth;    // folder of a dataset's gt/
   std::string_view prior;    // folder of its diffrens/
+  bool shown = true;         // false: stored and scored, but in no picture, figure or page
 
   constexpr int channels() const { return channels_of(kind); }
-  constexpr std::string_view shown_file() const { return file.empty() ? picture : file; }
+  constexpr std::string_view stored_file() const { return file.empty() ? picture : file; }
+  constexpr std::string_view shown_file() const { return shown ? stored_file() : ""; }
 };
 
 // In the order in which they are shown. "x_normal" is the normal of the surface at "x_depth".
@@ -56,6 +58,24 @@ inline constexpr auto kMaps = [] {
       {"specularity", "Specularity k_s", kShare, "specularity.exr", "", "", ""},
       // The first surface that is not glass along the straight ray.
       {"behind_depth", "Depth behind glass", kDepth, "behind_depth.exr", "", "behind_depth", ""},
+      // The same of every method by one rule each, for fair scores: of the set that stands for what
+      // is behind glass, or of the only one. Holes stay holes. See add_depth_estimates().
+      {"behind_expected",
+       "Depth behind glass, expected",
+       kDepth,
+       "behind_expected.exr",
+       "",
+       "",
+       "",
+       false},
+      {"behind_median",
+       "Depth behind glass, median",
+       kDepth,
+       "behind_median.exr",
+       "",
+       "",
+       "",
+       false},
       {"behind_normal", "Normal behind glass", kNormal, "", "", "behind_normal", ""},
       // Radiance of each surfel set on its own.
       {"interface", "Interface", kColor, "", "interface.png", "", ""},

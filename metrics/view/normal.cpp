@@ -9,7 +9,7 @@ namespace {
 MetricValues values_of(const NormalErrors& errors) {
   MetricValues row = {errors.mean_deg, errors.median_deg};
   row.insert(row.end(), errors.below.begin(), errors.below.end());
-  row.insert(row.end(), {errors.coverage, errors.dropped});
+  row.insert(row.end(), {errors.coverage, errors.dropped, errors.mean_with_background_deg});
   return row;
 }
 
@@ -20,7 +20,7 @@ std::vector<MetricValues> score(
   std::vector<MetricValues> rows;
   for (const Region& region : regions) {
     const auto errors = normal_errors_from_angles(angles, prediction, region.mask);
-    rows.push_back(errors ? values_of(*errors) : MetricValues(4 + kNormalThresholdsDeg.size()));
+    rows.push_back(errors ? values_of(*errors) : MetricValues(5 + kNormalThresholdsDeg.size()));
   }
   return rows;
 }
@@ -37,6 +37,9 @@ PairMetrics normal_metrics() {
     result.metrics.push_back({fmt::format("normal-{}", threshold), "%", higher, 2, protocol});
   result.metrics.push_back({"normal-coverage", "%", higher, 2, protocol});
   result.metrics.push_back({"normal-dropped", "%", lower, 2, protocol});
+  Json whole = protocol;
+  whole["background"] = "0 where nothing is predicted, missing_deg where something is";
+  result.metrics.push_back({"normal-mae-background", "deg", lower, 2, whole});
   result.score = score;
   return result;
 }

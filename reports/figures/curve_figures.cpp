@@ -22,8 +22,8 @@ using RecordPointers = std::vector<const Record*>;
 using MethodRecords = std::vector<std::pair<std::string, RecordPointers>>;
 using SceneRecords = std::vector<std::pair<std::string, MethodRecords>>;
 
-// Finished records of each scene and method, in the order of the records.
-SceneRecords finished_runs(const std::vector<Record>& records) {
+// Finished records of each scene and chosen method, in the order of the records.
+SceneRecords finished_runs(const std::vector<Record>& records, const MethodChoice& choice) {
   SceneRecords scenes;
   const auto entry = [](auto& list, const std::string& name) -> auto& {
     const auto it = std::find_if(list.begin(), list.end(), [&](const auto& candidate) {
@@ -34,7 +34,8 @@ SceneRecords finished_runs(const std::vector<Record>& records) {
     return list.back().second;
   };
   for (const Record& record : records)
-    if (record.ok()) entry(entry(scenes, record.cell.scene), record.cell.method).push_back(&record);
+    if (record.ok() && choice.in_curves(record.cell.method))
+      entry(entry(scenes, record.cell.scene), record.cell.method).push_back(&record);
   return scenes;
 }
 
@@ -126,10 +127,12 @@ Chart f1_chart(const MethodRecords& methods, const char* prefix, const Methods& 
 
 }  // namespace
 
-Drawing curves_figure(const std::vector<Record>& records, const fs::path& folder) {
+Drawing curves_figure(
+    const std::vector<Record>& records, const fs::path& folder, const MethodChoice& choice
+) {
   const Methods all(records);
   ChartSheet sheet{{"training", "quality and time", "quality and size"}, {}, all.titles()};
-  for (const auto& [scene, methods] : finished_runs(records))
+  for (const auto& [scene, methods] : finished_runs(records, choice))
     sheet.rows.push_back(
         {scene,
          {training_chart(methods, folder, all),
@@ -139,10 +142,10 @@ Drawing curves_figure(const std::vector<Record>& records, const fs::path& folder
   return draw_charts(sheet);
 }
 
-Drawing f1_figure(const std::vector<Record>& records) {
+Drawing f1_figure(const std::vector<Record>& records, const MethodChoice& choice) {
   const Methods all(records);
   ChartSheet sheet{{"mesh", "mesh behind glass"}, {}, all.titles()};
-  for (const auto& [scene, methods] : finished_runs(records))
+  for (const auto& [scene, methods] : finished_runs(records, choice))
     sheet.rows.push_back({scene, {f1_chart(methods, "", all), f1_chart(methods, kBehindMesh, all)}}
     );
   return draw_charts(sheet);

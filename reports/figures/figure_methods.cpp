@@ -1,27 +1,47 @@
 // SPDX-License-Identifier: MIT
 #include "reports/figures/figure_methods.h"
 
+#include <algorithm>
 #include <set>
 
-#include "glint/method.h"
+#include "reports/tables/tables.h"
 
 namespace glint {
 
-std::string method_title(const std::string& id) {
-  const auto& registry = Registry<MethodSpec>::all();
-  const auto method = registry.find(id);
-  if (method == registry.end()) return id;
-  const std::string& title = method->second.title;
-  const auto base = registry.find(id.substr(0, id.find('/')));
-  if (base == registry.end() || title.starts_with(base->second.title)) return title;
-  return base->second.title + ", " + title;
+namespace {
+
+bool is_variant(const std::string& id) { return id.find('/') != std::string::npos; }
+
+bool any_matches(const std::vector<std::string>& globs, const std::string& id) {
+  return std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
+    return glob_match(glob, id);
+  });
+}
+
+std::set<std::string> ablation_variants() {
+  std::set<std::string> ids;
+  for (const TableDefinition& definition : table_definitions())
+    if (definition.paper_table == "3")
+      for (const TableRowDefinition& row : definition.rows)
+        if (is_variant(row.method)) ids.insert(row.method);
+  return ids;
+}
+
+}  // namespace
+
+bool MethodChoice::in_pictures(const std::string& id) const {
+  return globs.empty() ? !is_variant(id) : any_matches(globs, id);
+}
+
+bool MethodChoice::in_curves(const std::string& id) const {
+  static const std::set<std::string> ablations = ablation_variants();
+  return globs.empty() ? !ablations.contains(id) : any_matches(globs, id);
 }
 
 std::vector<std::string> figure_methods(const std::vector<Record>& records) {
   std::set<std::pair<bool, std::string>> methods;
   for (const Record& record : records)
-    if (record.ok())
-      methods.emplace(record.cell.method.find('/') != std::string::npos, record.cell.method);
+    if (record.ok()) methods.emplace(is_variant(record.cell.method), record.cell.method);
   std::vector<std::string> ids;
   for (const auto& [variant, id] : methods) ids.push_back(id);
   return ids;

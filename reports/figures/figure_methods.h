@@ -6,12 +6,19 @@
 #include <vector>
 
 #include "reports/records/records.h"
+#include "reports/tables/method_title.h"
 
 namespace glint {
 
-// "2DGS"; of a variant that is named by what it lacks, with its method: "GLINT, w/o G_refl". Of
-// imported renders, which no registry knows, their id.
-std::string method_title(const std::string& id);
+// Which methods figures show: those of the globs; without any, pictures show methods but no
+// variants (about eight fit beside the truth), and curves all but the rows of the ablation table,
+// which has its own figure.
+struct MethodChoice {
+  std::vector<std::string> globs;
+
+  bool in_pictures(const std::string& id) const;
+  bool in_curves(const std::string& id) const;
+};
 
 // Every method with a finished record: methods, then variants, each by id. The place in the list is
 // the index of series_style().

@@ -16,6 +16,7 @@ namespace glint {
 struct FigureOptions {
   fs::path folder;                            // OUT/PROFILE with records.jsonl and runs/
   std::function<Scene(const RunSpec&)> load;  // the data that a run was scored against
+  std::vector<std::string> methods = {};      // MethodChoice
 };
 
 // FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves, f1,

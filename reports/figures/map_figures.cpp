@@ -45,13 +45,12 @@ Image mask_panel(const MaskImage& mask) {
 }
 
 std::set<std::string> methods_with(
-    const std::vector<FigureScene>& scenes, const std::string& layer, bool variants
+    const std::vector<FigureScene>& scenes, const std::string& layer
 ) {
   std::set<std::string> methods;
   for (const FigureScene& scene : scenes)
     for (const auto& [method, maps] : scene.methods)
-      if (has(&maps, layer) && (variants || method.find('/') == std::string::npos))
-        methods.insert(method);
+      if (has(&maps, layer)) methods.insert(method);
   return methods;
 }
 
@@ -165,7 +164,7 @@ PictureGrid method_rows(
   PictureGrid grid;
   for (const FigureColumn& column : columns) grid.titles.push_back(column.title);
   for (const FigureScene& scene : scenes)
-    for (const std::string& method : methods_with({scene}, needed, false)) {
+    for (const std::string& method : methods_with({scene}, needed)) {
       std::vector<Image> row;
       for (const FigureColumn& column : columns)
         row.push_back(brightened(
@@ -184,7 +183,7 @@ std::vector<std::pair<std::string, std::string>> ablation_methods(
     const std::vector<FigureScene>& scenes
 ) {
   std::vector<std::pair<std::string, std::string>> methods;
-  const auto rendered = methods_with(scenes, "rgb", true);
+  const auto rendered = methods_with(scenes, "rgb");
   for (const TableDefinition& definition : table_definitions())
     if (definition.paper_table == "3")
       for (const TableRowDefinition& row : definition.rows)
@@ -197,7 +196,7 @@ std::vector<std::pair<std::string, std::string>> ablation_methods(
 
 PictureGrid qualitative_figure(const std::vector<FigureScene>& scenes) {
   PictureGrid grid;
-  const auto methods = methods_with(scenes, "rgb", false);
+  const auto methods = methods_with(scenes, "rgb");
   if (methods.empty()) return grid;
   grid.titles.emplace_back("truth");
   for (const std::string& method : methods) grid.titles.push_back(method_title(method));
@@ -223,7 +222,7 @@ PictureGrid transparency_figure(const std::vector<FigureScene>& scenes) {
   grid.titles = {"image", "true glass"};
   for (const MapRow& row : maps()) {
     if (row.kind != MapKind::kShare) continue;
-    for (const std::string& method : methods_with(scenes, std::string(row.id), false)) {
+    for (const std::string& method : methods_with(scenes, std::string(row.id))) {
       panels.emplace_back(method, row.id);
       grid.titles.push_back(fmt::format("{}, {}", method_title(method), row.title));
     }

@@ -148,8 +148,7 @@ PictureGrid meshes_figure(const std::vector<FigureScene>& scenes) {
   PictureGrid grid;
   std::set<std::string> methods;
   for (const FigureScene& scene : scenes)
-    for (const auto& [method, folder] : scene.runs)
-      if (method.find('/') == std::string::npos) methods.insert(method);
+    for (const auto& [method, folder] : scene.runs) methods.insert(method);
   for (const FigureScene& scene : scenes) {
     MeshPainter painter(scene);
     for (const MeshKind& kind : kKinds)

@@ -199,6 +199,15 @@ std::string table_csv(const Table& table) {
   return text;
 }
 
+Json agreement_json(const OrderAgreement& order) {
+  Json json = {
+      {"column", order.column}, {"kendall_tau", order.tau}, {"n_methods", order.num_methods}};
+  json["interval"] =
+      order.interval ? Json{order.interval->low, order.interval->high} : Json(nullptr);
+  json["random_orders_within"] = order.chance.high;
+  return json;
+}
+
 Json table_json(const Table& table) {
   Json json = {{"id", table.id}, {"title", table.title}, {"caption", table.caption}};
   json["columns"] = Json::array();
@@ -215,9 +224,7 @@ Json table_json(const Table& table) {
   json["differences"] = differences_json(difference_table(table));
   json["order_agreement"] = Json::array();
   for (const OrderAgreement& order : table.agreement)
-    json["order_agreement"].push_back(
-        {{"column", order.column}, {"kendall_tau", order.tau}, {"n_methods", order.num_methods}}
-    );
+    json["order_agreement"].push_back(agreement_json(order));
   json["notes"] = table_notes(table);
   return json;
 }

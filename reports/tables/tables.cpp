@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "reports/tables/kendall.h"
+#include "reports/tables/method_title.h"
 #include "reports/tables/published.h"
 #include "reports/tables/statistics.h"
 
@@ -90,7 +90,7 @@ std::vector<TableRowDefinition> rows_of(
   };
   for (const Record& record : records)
     if (!listed.count(record.cell.method) && is_other(record)) extra.insert(record.cell.method);
-  for (const std::string& method : extra) rows.push_back({method, method, ""});
+  for (const std::string& method : extra) rows.push_back({method, method_title(method), ""});
   for (TableRowDefinition& row : rows)
     if (is_imported(records, row.method)) row.title += " (renders imported)";
   return rows;
@@ -308,16 +308,38 @@ void add_agreement(Table& table, std::size_t measured, const std::string& paper_
       });
   if (it == table.columns.end()) return;
   const auto published = static_cast<std::size_t>(it - table.columns.begin());
-  std::vector<double> ours, theirs;
+  std::vector<ComparedMethod> methods;
   for (const TableRow& row : table.rows)
     if (row.cells[measured].status == CellStatus::kOk &&
-        row.cells[published].status == CellStatus::kOk) {
-      ours.push_back(row.cells[measured].value);
-      theirs.push_back(row.cells[published].value);
-    }
-  const double tau = kendall_tau(ours, theirs);
-  if (std::isfinite(tau))
-    table.agreement.push_back({table.columns[measured].id, tau, static_cast<int>(ours.size())});
+        row.cells[published].status == CellStatus::kOk)
+      methods.push_back(
+          {row.cells[measured].value, row.cells[published].value, row.cells[measured].values}
+      );
+  std::optional<OrderAgreement> agreement = order_agreement(methods);
+  if (!agreement) return;
+  agreement->column = table.columns[measured].id;
+  table.agreement.push_back(*std::move(agreement));
+}
+
+std::string agreement_note(const OrderAgreement& order) {
+  const std::string interval =
+      order.interval
+          ? fmt::format(
+                ", 95 % interval over scenes and seeds {:.2f} to {:.2f}",
+                order.interval->low,
+                order.interval->high
+            )
+          : fmt::format(", fewer than {} pairs of scene and seed: no interval", kMinBootstrapPairs);
+  return fmt::format(
+      "Kendall's tau of the method order, measured against published, {}: {:.2f} ({} methods{}; 95 "
+      "% "
+      "of random orders lie within ±{:.2f}).",
+      order.column,
+      order.tau,
+      order.num_methods,
+      interval,
+      order.chance.high
+  );
 }
 
 std::string counted(std::size_t number, std::string_view what) {
@@ -358,13 +380,7 @@ void add_notes(
     for (const TableRow& row : table.rows)
       if (!record.ok() && record.cell.method == row.method) failures.insert(failure_note(record));
   table.notes.insert(table.notes.end(), failures.begin(), failures.end());
-  for (const OrderAgreement& order : table.agreement)
-    table.notes.push_back(fmt::format(
-        "Kendall's tau of the method order, measured against published, {}: {:.2f} ({} methods).",
-        order.column,
-        order.tau,
-        order.num_methods
-    ));
+  for (const OrderAgreement& order : table.agreement) table.notes.push_back(agreement_note(order));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "glint/core/config.h"
 #include "reports/records/records.h"
+#include "reports/tables/agreement.h"
 
 namespace glint {
 
@@ -75,12 +76,6 @@ struct TableCell {
 struct TableRow {
   std::string method, title, paper_row;
   std::vector<TableCell> cells;  // one a column
-};
-
-struct OrderAgreement {  // of one measured column with its published counterpart
-  std::string column;    // id of the measured column
-  double tau = 0;        // Kendall's tau-b
-  int num_methods = 0;
 };
 
 struct Table {

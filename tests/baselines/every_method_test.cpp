@@ -70,6 +70,8 @@ TEST_CASE("Every method renders colour, depth and unit normals that face the cam
     REQUIRE(out["rgb"].channels() == 3);
     REQUIRE(out["depth"].size() == view.camera.size());
     REQUIRE(out["normal"].size() == view.camera.size());
+    REQUIRE(out["behind_expected"].size() == view.camera.size());
+    REQUIRE(out["behind_median"].size() == view.camera.size());
     std::size_t hits = 0;
     for (int y = 0; y < view.camera.height; ++y)
       for (int x = 0; x < view.camera.width; ++x) {

@@ -105,6 +105,12 @@ TEST_CASE("every metric of the protocol is registered once, with direction and p
         "transparency-mae",
         "glass-iou-best",
         "behind-absrel",
+        "behind-coverage",
+        "behind-absrel-expected",
+        "behind-coverage-expected",
+        "behind-absrel-median",
+        "behind-coverage-median",
+        "normal-mae-background",
         "trans-psnr",
         "refl-psnr"})
     CHECK(ids.count(id) == 1);
@@ -146,6 +152,27 @@ TEST_CASE("a method with one layer is scored by its depth behind glass, too") {
       evaluate_view(pair).at("behind-absrel") ==
       depth_errors(maps.depth, behind, maps.glass)->absrel
   );
+}
+
+TEST_CASE("behind glass, each estimate of depth is scored by itself, holes counted as they are") {
+  const Maps maps;
+  ViewPair pair = maps.pair();
+  const Image behind(kWidth, kHeight, 1, 4.0f), expected(kWidth, kHeight, 1, 5.0f);
+  Image median(kWidth, kHeight, 1, 4.0f);
+  for (int y = 10; y < 15; ++y)
+    for (int x = 10; x < 20; ++x) median.at(x, y) = 0;  // half of the glass
+  pair.truth["behind_depth"] = behind;
+  pair.rendered["behind_depth"] = behind;
+  CHECK(evaluate_view(pair).count("behind-absrel-expected") == 0);
+  pair.rendered["behind_expected"] = expected;
+  pair.rendered["behind_median"] = median;
+  const auto scores = evaluate_view(pair);
+  CHECK(scores.at("behind-absrel") == 0);
+  CHECK(scores.at("behind-coverage") == 100);
+  CHECK(scores.at("behind-absrel-expected") == 0.25);
+  CHECK(scores.at("behind-coverage-expected") == 100);
+  CHECK(scores.at("behind-absrel-median") == 0.5);
+  CHECK(scores.at("behind-coverage-median") == 50);
 }
 
 TEST_CASE("glass may be found in a specularity, where there is no transparency") {

@@ -67,6 +67,21 @@ TEST_CASE("reference normals that are not of unit length are dropped and counted
   CHECK(errors->mean_deg == Approx(20).epsilon(1e-6));
 }
 
+TEST_CASE("with background, empty pixels are right where nothing is predicted and wrong elsewhere"
+) {
+  Image reference = turned(4, 1, 0.0), prediction = turned(4, 1, 20.0);
+  for (int x = 0; x < 3; ++x)
+    for (int c = 0; c < 3; ++c) reference.at(x, 0, c) = 0;  // three pixels of background
+  for (int x = 0; x < 2; ++x)
+    for (int c = 0; c < 3; ++c) prediction.at(x, 0, c) = 0;  // two of them left empty
+  const auto errors = normal_errors(prediction, reference);
+  CHECK(errors->mean_deg == Approx(20).epsilon(1e-6));
+  CHECK(errors->mean_with_background_deg == Approx((20 + 0 + 0 + 90) / 4.0).epsilon(1e-6));
+  const Image whole = turned(4, 1, 0.0);
+  const auto covered = normal_errors(turned(4, 1, 20.0), whole);
+  CHECK(covered->mean_with_background_deg == covered->mean_deg);
+}
+
 TEST_CASE("masks choose the pixels of normal errors") {
   const Image reference = turned(2, 1, 0.0);
   const Image prediction = turned(2, 1, [](int x, int) { return x == 0 ? 10.0 : 50.0; });

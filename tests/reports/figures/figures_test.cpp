@@ -99,6 +99,32 @@ TEST_CASE("figures have what the runs rendered and nothing else") {
   }
 }
 
+TEST_CASE("by default pictures show methods and curves no ablations; globs choose instead") {
+  const MethodChoice usual;
+  CHECK(usual.in_pictures("glint"));
+  CHECK_FALSE(usual.in_pictures("glint/release"));
+  CHECK(usual.in_curves("glint/release"));
+  CHECK_FALSE(usual.in_curves("glint/no-trans"));
+  const MethodChoice chosen{{"glint/*", "2dgs"}};
+  CHECK(chosen.in_pictures("glint/no-trans"));
+  CHECK(chosen.in_curves("glint/no-trans"));
+  CHECK(chosen.in_curves("2dgs"));
+  CHECK_FALSE(chosen.in_pictures("glint"));
+}
+
+TEST_CASE("chosen methods alone are in pictures, whatever else was run") {
+  const test::TempFolder folder;
+  add_run(folder.path(), "2dgs", 0.4f);
+  const auto width_of_first = [&](std::vector<std::string> methods) {
+    const auto written = write_figures({folder.path(), load_fake, std::move(methods)});
+    return read_image(written.front(), 3).width();
+  };
+  const int one = width_of_first({});
+  add_run(folder.path(), "2dgs/prior", 0.3f);
+  CHECK(width_of_first({}) == one);
+  CHECK(width_of_first({"2dgs*"}) > one);
+}
+
 TEST_CASE("the same records give the same bytes of a figure") {
   const test::TempFolder folder;
   add_run(folder.path(), "2dgs", 0.4f);
@@ -213,8 +239,7 @@ TEST_CASE("columns of a figure are the truth and every method, empty where one h
       {"error", Image(kWidth, kHeight, 1, 0.1f)},
       {"depth", Image(kWidth, kHeight, 1, 1.0f)}};
   const LayerMaps without = {{"rgb", Image(kWidth, kHeight, 3)}};
-  const PictureGrid grid =
-      qualitative_figure({scene_of({{"a", with_depth}, {"a/variant", without}, {"b", without}})});
+  const PictureGrid grid = qualitative_figure({scene_of({{"a", with_depth}, {"b", without}})});
   CHECK(grid.titles == std::vector<std::string>{"truth", "a", "b"});
   REQUIRE(grid.rows.size() == 4);  // image and depth with their crops; no normals
   CHECK(grid.row_titles[2] == "room_1\nDepth");

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "reports/tables/agreement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "glint/core/rng.h"
+#include "reports/tables/kendall.h"
+
+namespace glint {
+
+namespace {
+
+using ValueKey = std::pair<std::string, std::uint64_t>;
+
+constexpr std::uint64_t kOrderSeed = 1938;  // [Kendall38]
+constexpr std::size_t kResamples = 2000, kSampledOrders = 20'000;
+constexpr int kEnumerated = 8;  // 8! = 40,320 orders
+constexpr double kLevel = 0.95;
+
+std::vector<ValueKey> common_keys(std::span<const ComparedMethod> methods) {
+  std::vector<ValueKey> keys;
+  for (const auto& [key, value] : methods.front().values)
+    if (std::all_of(methods.begin(), methods.end(), [&key = key](const ComparedMethod& method) {
+          return method.values.contains(key);
+        }))
+      keys.push_back(key);
+  return keys;
+}
+
+// A resample counts each key as often as it was drawn.
+std::vector<double> resampled_means(
+    std::span<const ComparedMethod> methods, const std::vector<ValueKey>& keys, Rng& rng
+) {
+  std::vector<double> sums(methods.size());
+  for (std::size_t draw = 0; draw < keys.size(); ++draw) {
+    const ValueKey& key = keys[rng.below(static_cast<std::uint32_t>(keys.size()))];
+    for (std::size_t m = 0; m < methods.size(); ++m) sums[m] += methods[m].values.at(key);
+  }
+  return sums;
+}
+
+std::optional<Interval> bootstrapped_tau(
+    std::span<const ComparedMethod> methods, const std::vector<double>& published
+) {
+  const std::vector<ValueKey> keys = common_keys(methods);
+  if (keys.size() < kMinBootstrapPairs) return std::nullopt;
+  Rng rng(kOrderSeed);
+  std::vector<double> taus;
+  for (std::size_t i = 0; i < kResamples; ++i)
+    if (const double tau = kendall_tau(resampled_means(methods, keys, rng), published);
+        std::isfinite(tau))
+      taus.push_back(tau);
+  if (taus.empty()) return std::nullopt;
+  std::sort(taus.begin(), taus.end());
+  const std::size_t tail = taus.size() / 40;  // 2.5 % to either side
+  return Interval{taus[tail], taus[taus.size() - 1 - tail]};
+}
+
+std::vector<double> taus_of_random_orders(int n) {
+  std::vector<double> order(static_cast<std::size_t>(n)), taus;
+  std::iota(order.begin(), order.end(), 0.0);
+  const std::vector<double> sorted = order;
+  const auto add = [&] { taus.push_back(kendall_tau(order, sorted)); };
+  if (n <= kEnumerated) {
+    do add();
+    while (std::next_permutation(order.begin(), order.end()));
+    return taus;
+  }
+  Rng rng(kOrderSeed);
+  for (std::size_t sample = 0; sample < kSampledOrders; ++sample) {
+    for (std::size_t i = order.size() - 1; i > 0; --i)
+      std::swap(order[i], order[rng.below(static_cast<std::uint32_t>(i + 1))]);
+    add();
+  }
+  return taus;
+}
+
+}  // namespace
+
+Interval chance_interval(int n) {
+  if (n < 2) return {-1, 1};
+  std::vector<double> sizes = taus_of_random_orders(n);
+  for (double& tau : sizes) tau = std::abs(tau);
+  std::sort(sizes.begin(), sizes.end());
+  const auto rank = static_cast<std::size_t>(std::ceil(kLevel * static_cast<double>(sizes.size())));
+  return {-sizes[rank - 1], sizes[rank - 1]};
+}
+
+std::optional<OrderAgreement> order_agreement(std::span<const ComparedMethod> methods) {
+  std::vector<double> measured, published;
+  for (const ComparedMethod& method : methods) {
+    measured.push_back(method.measured);
+    published.push_back(method.published);
+  }
+  OrderAgreement result;
+  result.tau = kendall_tau(measured, published);
+  if (!std::isfinite(result.tau)) return std::nullopt;
+  result.num_methods = static_cast<int>(methods.size());
+  result.interval = bootstrapped_tau(methods, published);
+  result.chance = chance_interval(result.num_methods);
+  return result;
+}
+
+}  // namespace glint
