@@ -17,10 +17,10 @@ constexpr const char* kFile = "interface.ply";
 
 PlanarConfig::PlanarConfig() {
   densify.clone_scale = 0.001f;
-  densify.sample_clones = true;
-  densify.abs_gradient = 8e-4f;
-  densify.abs_radius_px = 20;
-  densify.max_abs_splits = 0;
+  // densify.sample_clones = true;
+  // densify.abs_gradient = 8e-4f;
+  // densify.abs_radius_px = 20;
+  // densify.max_abs_splits = 0;
   densify.min_opacity = 0.05f;
 }
 
@@ -68,7 +68,7 @@ const View& PlanarModel::forward(int iteration, StepStats& stats) {
   sh_degree_ = std::min(3, iteration / windows_.sh_interval);
   RasterSettings settings;
   settings.with_plane_distance = iteration >= windows_.planes.from;
-  settings.with_statistics = windows_.densify.max_abs_splits > 0;
+  settings.with_statistics = false;
   output_ = &set_.forward(view.camera, sh_degree_, settings);
   clear_gradient(view.camera.size(), output_->features.channels(), gradient_);
   if (settings.with_plane_distance) clear_image(gradient_.plane_distance, view.camera.size(), 1);
@@ -93,7 +93,7 @@ void PlanarModel::backward(StepStats& stats) {
   stats.num_surfels = set_.cloud().size();
 }
 
-void PlanarModel::trim(int step) {}
+void PlanarModel::trim(int) {}
 
 MapSet PlanarModel::render(const Camera& camera) {
   const RasterOutput& out = draw(camera);

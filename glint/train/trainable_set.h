@@ -40,6 +40,8 @@ class TrainableSet final : public SurfelSet {
   const Rays& trace_backward(const TraceOutputGradient& dL_doutput);
   // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.
   void freeze_geometry();
+  // Only opacities stay.
+  void freeze_opacity() { training().rates.opacity = 0; }
   // Optimiser step and, when due, densification. `step` counts from 1.
   DensifyCounts update(int step);
 
