@@ -29,6 +29,8 @@ namespace glint {
 
 namespace {
 
+constexpr const char* kSceneFile = "scene_unit.json";
+
 struct TsgsConfig {
   PlanarConfig planar;
   float lambda_normal = 0.1f, min_cosine = 0.3f;
@@ -36,6 +38,8 @@ struct TsgsConfig {
   bool delighted = true;
   int photo_from = 15000;
   bool freeze_opacity = true;
+  float surface_window = 0.03f;  // published scene units
+  float surface_weight = 0.2f;   // what its code renders test views with; .1 elsewhere
 
   template <class V>
   void visit(V&& v) {
@@ -47,6 +51,8 @@ struct TsgsConfig {
     v("delighted", delighted, "glass is compared with the de-lighted photo first");
     v("photo_from", photo_from, "first published iteration with the photo everywhere");
     v("freeze_opacity", freeze_opacity, "opacities stay from then on");
+    v("surface_window", surface_window, "of depths of the first surface, published scene units");
+    v("surface_weight", surface_weight, "cumulative weight within which it is looked for");
   }
   void scale_to(int iterations) {
     for (int* window : {&gate_from, &normal_until, &photo_from})
@@ -84,6 +90,7 @@ class Tsgs final : public Method {
     windows_ = config_;
     windows_.scale_to(options.iterations);
     warnings_ = model_.set_up(config_.planar, scene, options, "tsgs");
+    scene_unit_ = model_.scene_unit();
     require_prior(scene, "normal", "L_normal", "tsgs", windows_.lambda_normal, warnings_);
     float wanted = config_.delighted ? 1.0f : 0.0f;
     require_prior(scene, "delighted", "the de-lighted target", "tsgs", wanted, warnings_);
@@ -115,8 +122,22 @@ class Tsgs final : public Method {
   MapSet render(const Camera& camera) override { return rendered(camera, {}); }
   MapSet render_view(const View& view) override { return rendered(view.camera, glass_mask(view)); }
   void draw(const Camera& camera) override { model_.draw(camera); }
-  void save(const std::string& folder) const override { model_.save(folder); }
-  void load(const std::string& folder) override { model_.load(folder); }
+  void save(const std::string& folder) const override {
+    model_.save(folder);
+    write_file(fs::path(folder) / kSceneFile, Json{{"scene_unit", scene_unit_}}.dump() + "\n");
+  }
+  void load(const std::string& folder) override {
+    model_.load(folder);
+    const fs::path file = fs::path(folder) / kSceneFile;
+    const Json json = read_json_object(file, ExitCode::kBadPrediction);
+    GLINT_CHECK(
+        json.contains("scene_unit") && json["scene_unit"].is_number(),
+        kBadPrediction,
+        "{}: expected the number scene_unit, metres; train the run again",
+        file.string()
+    );
+    scene_unit_ = json["scene_unit"].get<float>();
+  }
   Json config() const override { return config_to_json(config_); }
   void check_finite() const override { glint::check_finite(model_.set().cloud(), "interface"); }
   std::size_t num_surfels() const override { return model_.set().cloud().size(); }
@@ -151,12 +172,25 @@ class Tsgs final : public Method {
     stats.terms["normal"] = static_cast<double>(windows_.lambda_normal) * sum / count;
   }
 
-  MapSet rendered(const Camera& camera, const Image& mask) { return model_.render(camera); }
+  // Without a mask no pixel sees through glass.
+  MapSet rendered(const Camera& camera, const Image& mask) {
+    MapSet maps = model_.render(camera);
+    if (mask.empty()) {
+      maps["depth"] = model_.output().depth_median;
+      return maps;
+    }
+    check_fits("glass mask", mask, camera.size(), 1);
+    const FirstSurfaceSettings settings{
+        config_.surface_window * scene_unit_, config_.surface_weight};
+    model_.set().first_surface(mask, settings, maps["depth"]);
+    return maps;
+  }
 
   TsgsConfig config_, windows_;
   std::vector<std::string> warnings_, notes_;
   PlanarModel model_;
   Image target_;
+  float scene_unit_ = 1;  // metres that a published scene unit stands for
 };
 
 MethodSpec tsgs_spec() {

@@ -17,11 +17,12 @@ constexpr const char* kFile = "interface.ply";
 
 PlanarConfig::PlanarConfig() {
   densify.clone_scale = 0.001f;
-  // densify.sample_clones = true;
-  // densify.abs_gradient = 8e-4f;
-  // densify.abs_radius_px = 20;
-  // densify.max_abs_splits = 0;
+  densify.sample_clones = true;
+  densify.abs_gradient = 8e-4f;
+  densify.abs_radius_px = 20;
+  densify.max_abs_splits = 0;
   densify.min_opacity = 0.05f;
+  densify.min_observations = 2;
 }
 
 void PlanarConfig::scale_to(int iterations) {
@@ -68,7 +69,7 @@ const View& PlanarModel::forward(int iteration, StepStats& stats) {
   sh_degree_ = std::min(3, iteration / windows_.sh_interval);
   RasterSettings settings;
   settings.with_plane_distance = iteration >= windows_.planes.from;
-  settings.with_statistics = false;
+  settings.with_statistics = windows_.densify.max_abs_splits > 0;
   output_ = &set_.forward(view.camera, sh_degree_, settings);
   clear_gradient(view.camera.size(), output_->features.channels(), gradient_);
   if (settings.with_plane_distance) clear_image(gradient_.plane_distance, view.camera.size(), 1);
@@ -93,7 +94,12 @@ void PlanarModel::backward(StepStats& stats) {
   stats.num_surfels = set_.cloud().size();
 }
 
-void PlanarModel::trim(int) {}
+void PlanarModel::trim(int step) {
+  if (step >= windows_.trim_until || step % windows_.trim_interval != 0) return;
+  std::vector<Camera> cameras;
+  for (const View& view : scene_->train) cameras.push_back(view.camera);
+  set_.trim(cameras);
+}
 
 MapSet PlanarModel::render(const Camera& camera) {
   const RasterOutput& out = draw(camera);
@@ -107,7 +113,8 @@ MapSet PlanarModel::render(const Camera& camera) {
 const RasterOutput& PlanarModel::draw(const Camera& camera) {
   RasterSettings settings;
   settings.with_plane_distance = true;
-  return set_.forward(camera, sh_degree_, settings);
+  output_ = &set_.forward(camera, sh_degree_, settings);
+  return *output_;
 }
 
 void PlanarModel::save(const std::string& folder) const {

@@ -15,7 +15,6 @@ struct PlanarConfig {
   int random_points = 30000;
   float initial_opacity = 0.1f;
   int trim_interval = 1000, trim_until = 15000;
-  int trim_min_views = 2;
   PlanarLossConfig planes;
   ExposureConfig exposure;
   DensifyConfig densify;
@@ -30,7 +29,6 @@ struct PlanarConfig {
     v("initial_opacity", initial_opacity, "of the initial surfels");
     v("trim_interval", trim_interval, "steps between trims of what too few views see");
     v("trim_until", trim_until, "last step of trims, exclusive");
-    v("trim_min_views", trim_min_views, "training views that a surfel must be in front in");
     planes.visit(v);
     exposure.visit(v);
     densify.visit(v);
@@ -58,9 +56,11 @@ class PlanarModel {
   void add_losses(const Image& target, StepStats& stats);
   void backward(StepStats& stats);
 
-  const RasterOutput& output() const { return *output_; }
+  const RasterOutput& output() const { return *output_; }  // of the last forward() or draw()
   RasterOutputGradient& gradient() { return gradient_; }
   const PlanarConfig& windows() const { return windows_; }
+  // Metres that a published scene unit stands for.
+  float scene_unit() const { return windows_.planes.neighbors.unit * scene_->spatial_scale; }
 
   // "rgb", "depth" (of planes), "normal". The output stays valid until the next call.
   MapSet render(const Camera& camera);
@@ -85,7 +85,6 @@ class PlanarModel {
   ExposureLoss photometric_;
   const RasterOutput* output_ = nullptr;
   RasterOutputGradient gradient_;
-  RasterPass trim_pass_;
 };
 
 }  // namespace glint
