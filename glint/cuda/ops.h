@@ -73,6 +73,15 @@ class RasterizerOn final : public RasterBackend {
   ) override {
     pipeline_.backward(device_maps(dL_doutput), device_gradients(gradient));
   }
+  void first_surface(
+      const RasterCall&,
+      const RasterOutput&,
+      ImageView mask,
+      const FirstSurfaceSettings& settings,
+      Image& depth
+  ) override {
+    pipeline_.first_surface(mask.data, settings, depth.data());
+  }
   std::size_t num_pairs() override { return pipeline_.num_pairs(); }
   std::size_t num_pixel_pairs() override { return pipeline_.num_pixel_pairs(); }
 

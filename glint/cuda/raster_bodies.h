@@ -5,6 +5,7 @@
 
 #include "glint/cuda/block.h"
 #include "glint/render/pixel_pass.h"
+#include "glint/render/surface_pixel.h"
 
 namespace glint::gpu {
 
@@ -367,6 +368,36 @@ struct BackwardTile {
     const float* feature = pass.feature(shared.surfels[k]);
     state.hit(hit, shared.splats[k], feature, known(), pass.range, sums);
     return true;
+  }
+};
+
+// Depth of the first surface of a pixel (first_surface.h).
+struct FirstSurface {
+  TilePass pass;
+  DeviceMaps out;
+  const float* mask;  // [H][W]
+  FirstSurfaceSettings settings;
+  float* depth;  // [H][W]
+
+  GLINT_HD void operator()(std::size_t i) const {
+    if (1 - out.alpha[i] > settings.max_transmittance)
+      depth[i] = 0;
+    else
+      depth[i] = mask[i] > 0.5f ? behind_mask(i) : out.depth_median[i];
+  }
+
+ private:
+  GLINT_HD float behind_mask(std::size_t i) const {
+    const int x = static_cast<int>(i) % pass.width, y = static_cast<int>(i) / pass.width;
+    const float* limit = pass.near_limit;
+    SurfacePixel pixel(
+        x, y, limit == nullptr ? pass.near_plane : max_of(pass.near_plane, limit[i])
+    );
+    const int across = tile_grid(pass.width, pass.height).across;
+    const PairRange range = pass.ranges[y / kDeviceTile * across + x / kDeviceTile];
+    for (std::uint32_t k = range.begin; k < range.end; ++k)
+      if (!pixel.add(pass.splats[pass.pairs[k]])) break;
+    return first_surface_depth(pixel.hits, settings);
   }
 };
 

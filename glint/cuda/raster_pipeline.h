@@ -68,6 +68,14 @@ class RasterPipeline {
     });
   }
 
+  // Of the last forward call. mask, depth: [H][W].
+  void first_surface(const float* mask, const FirstSurfaceSettings& settings, float* depth) {
+    exec_.for_each(
+        static_cast<std::size_t>(pass_.width) * static_cast<std::size_t>(pass_.height),
+        FirstSurface{pass_, call_.out, mask, settings, depth}
+    );
+  }
+
   std::size_t num_pairs() const { return num_pairs_; }
   // Pixels inside the surfels' screen boxes. Waits for the device.
   std::size_t num_pixel_pairs() {

@@ -101,4 +101,20 @@ const RasterGradient& Rasterizer::backward(const RasterOutputGradient& dL_doutpu
   return state_->gradient;
 }
 
+void Rasterizer::first_surface(ImageView mask, const FirstSurfaceSettings& settings, Image& depth) {
+  const RasterCall& call = state_->last_call();
+  GLINT_CHECK(
+      mask.size() == call.camera.size() && mask.channels == 1,
+      kUsage,
+      "first_surface: the mask is {}x{}x{}, expected the camera's {}x{}x1",
+      mask.width,
+      mask.height,
+      mask.channels,
+      call.camera.width,
+      call.camera.height
+  );
+  fit(depth, call.camera.size(), 1);
+  state_->device().first_surface(call, state_->output, mask, settings, depth);
+}
+
 }  // namespace glint

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "glint/render/first_surface.h"
 #include "glint/render/raster_maps.h"
 #include "glint/scene/camera.h"
 
@@ -102,6 +103,11 @@ class Rasterizer {
   const RasterOutput& forward(const RasterCall& call);
   // Gradients of the last forward call.
   const RasterGradient& backward(const RasterOutputGradient& dL_doutput);
+
+  // Of the last forward call: depth [H][W][1] of the first surface (first_surface.h), metres, 0:
+  // none. mask [H][W][1]: pixels above 0.5 see something behind it. Errors (kUsage): the mask has
+  // not the image's size; there was no forward().
+  void first_surface(ImageView mask, const FirstSurfaceSettings& settings, Image& depth);
 
   const RasterCall& call() const;      // the last one; errors (kUsage): there was none
   const RasterOutput& output() const;  // of it
