@@ -70,11 +70,13 @@ std::string mask_note(const std::vector<View>& views) {
   const auto all = static_cast<std::ptrdiff_t>(views.size());
   const auto priors = count([](const View& view) { return view.priors.has("glass"); });
   const auto masks = count([](const View& view) { return !glass_mask(view).empty(); });
-  if (priors == all) return "glass masks: the prior folder's";
+  if (priors == all) return "glass masks, test views' too: the prior folder's";
   if (masks == 0) return "glass masks: none";
-  if (priors == 0 && masks == all) return "glass masks: the dataset's ground truth";
+  if (priors == 0 && masks == all)
+    return "glass masks, test views' too: the dataset's ground truth";
   return fmt::format(
-      "glass masks: the prior folder's for {}, the dataset's ground truth for {}, none for {} "
+      "glass masks, test views' too: the prior folder's for {}, the dataset's ground truth for {}, "
+      "none for {} "
       "training views",
       priors,
       masks - priors,

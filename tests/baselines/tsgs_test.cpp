@@ -58,9 +58,9 @@ FloatArray saved_opacities(const Method& method) {
 
 TEST_CASE("Notes say whose glass masks were used: the priors', else the truth's, else none") {
   Scene scene = small_room();
-  CHECK(first_note(scene) == "glass masks: the dataset's ground truth");
+  CHECK(first_note(scene) == "glass masks, test views' too: the dataset's ground truth");
   for (View& view : scene.train) view.priors["glass"] = view.truth["glass"];
-  CHECK(first_note(scene) == "glass masks: the prior folder's");
+  CHECK(first_note(scene) == "glass masks, test views' too: the prior folder's");
   scene.train[0].priors["glass"] = {};
   CHECK(first_note(scene).find("ground truth for 1, none for 0") != std::string::npos);
   for (View& view : scene.train) view.priors["glass"] = view.truth["glass"] = {};
