@@ -39,6 +39,9 @@ class Method {
   // Maps of one view, all of the camera's size; rgb is not clamped. Not const: buffers are kept
   // from one view to the next, and shared with step().
   virtual MapSet render(const Camera& camera) = 0;
+  // The same for a view of the dataset. A method that was published with an input mask at test
+  // views overrides it; it looks at the view's mask alone, never at its picture, and notes() say so.
+  virtual MapSet render_view(const View& view) { return render(view.camera); }
   // The picture alone, left on the device where it was made: what FPS counts.
   virtual void draw(const Camera& camera) { render(camera); }
   // Surfel sets as PLY files and whatever else is needed to render again.
@@ -50,6 +53,8 @@ class Method {
   virtual void check_finite() const = 0;
   virtual std::size_t num_surfels() const = 0;
   virtual std::vector<std::string> warnings() const { return {}; }  // losses off, missing priors
+  // What readers of tables have to know of this run, a line each: which masks it was given, say.
+  virtual std::vector<std::string> notes() const { return {}; }
 };
 
 // Registered with GLINT_REGISTER(MethodSpec, ...); all of them: Registry<MethodSpec>::all().

@@ -90,8 +90,8 @@ void ContactSheet::add(
   add_row(std::string(MapId("rgb").row().title), pictures.image);
   for (const bool is_truth : {true, false})
     for (const MapRow& entry : maps()) {
-      if (!is_shown(entry, is_truth)) continue;
       const Image& map = (is_truth ? truth.maps : priors)[entry];
+      if (!is_shown(entry, is_truth) || (!is_truth && map.empty())) continue;  // not simulated
       const float far_depth = is_truth ? kFarDepth : 1;  // priors are relative
       add_row(
           title_of(entry, is_truth), map.empty() ? Image() : pictures.of(entry.kind, map, far_depth)

@@ -26,6 +26,7 @@ inline DeviceSurfels device_surfels(const RasterInput& in) {
       .opacities = in.opacities.data(),
       .features = in.features.data()};
 }
+inline float* pointer(FloatArray& array) { return array.empty() ? nullptr : array.data(); }
 inline DeviceMaps device_maps(const RasterMaps<ImageMap>& maps) {
   DeviceMaps result;
   for_each_map(
@@ -40,17 +41,22 @@ inline DeviceGradients device_gradients(RasterGradient& g) {
       .rotations = g.rotations.data(),
       .opacities = g.opacities.data(),
       .features = g.features.data(),
-      .screen = g.screen.data()};
+      .screen = g.screen.data(),
+      .screen_abs = pointer(g.screen_abs)};
 }
 inline DeviceRasterCall device_call(const RasterCall& call, RasterOutput& output) {
   return {
       .surfels = device_surfels(call.input),
       .camera = camera_of(call),
       .near_limit = call.input.near_limit.data,
+      .has = call.maps(),
       .range = distortion_range(call.settings),
       .out = device_maps(output),
-      .visibility = output.visibility.data(),
-      .in_view = output.in_view.data()};
+      .seen = {
+          .visibility = output.visibility.data(),
+          .in_view = output.in_view.data(),
+          .owned_pixels = pointer(output.owned_pixels),
+          .radii = pointer(output.radii)}};
 }
 
 template <class Exec>
@@ -66,6 +72,15 @@ class RasterizerOn final : public RasterBackend {
       RasterGradient& gradient
   ) override {
     pipeline_.backward(device_maps(dL_doutput), device_gradients(gradient));
+  }
+  void first_surface(
+      const RasterCall&,
+      const RasterOutput&,
+      ImageView mask,
+      const FirstSurfaceSettings& settings,
+      Image& depth
+  ) override {
+    pipeline_.first_surface(mask.data, settings, depth.data());
   }
   std::size_t num_pairs() override { return pipeline_.num_pairs(); }
   std::size_t num_pixel_pairs() override { return pipeline_.num_pixel_pairs(); }

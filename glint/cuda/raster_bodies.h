@@ -5,6 +5,7 @@
 
 #include "glint/cuda/block.h"
 #include "glint/render/pixel_pass.h"
+#include "glint/render/surface_pixel.h"
 
 namespace glint::gpu {
 
@@ -108,14 +109,33 @@ struct FindTileRanges {
   }
 };
 
-struct ResetVisibility {
-  const std::uint32_t* num_tiles;
+// Per surfel, shapes of RasterOutput; null where a call has them not.
+struct DeviceSeen {
   float* visibility;
   std::uint8_t* in_view;  // 1: reached at least one tile
+  float *owned_pixels, *radii;
+};
+
+struct ResetSeen {
+  const std::uint32_t* num_tiles;
+  DeviceSeen out;
 
   GLINT_HD void operator()(std::size_t i) const {
-    visibility[i] = 0;
-    in_view[i] = num_tiles[i] > 0 ? 1 : 0;
+    out.visibility[i] = 0;
+    out.in_view[i] = num_tiles[i] > 0 ? 1 : 0;
+    if (out.owned_pixels != nullptr) out.owned_pixels[i] = 0;
+  }
+};
+
+struct ScreenRadii {
+  DeviceSurfels surfels;
+  CameraOf<float> camera;
+  const std::uint32_t* num_tiles;
+  float* radii;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const float max_rho = max_rho_of(surfels.opacities[i]);
+    radii[i] = num_tiles[i] > 0 ? screen_radius(geometry_at(surfels, i), camera, max_rho) : 0.0f;
   }
 };
 
@@ -127,15 +147,12 @@ struct TilePass {
   const PairRange* ranges;
   const float* near_limit;  // [H][W] or null
   float near_plane;
-  int width, height, channels;
+  int width, height;
+  MapChannels has;
   DistortionRange range;
 
   GLINT_HD const float* feature(std::uint32_t surfel) const {
-    return features + static_cast<std::size_t>(surfel) * static_cast<std::size_t>(channels);
-  }
-  template <int kChannels>
-  GLINT_HD MapChannels maps() const {
-    return {kChannels > 0 ? kChannels : channels, range.on};
+    return features + static_cast<std::size_t>(surfel) * static_cast<std::size_t>(has.features);
   }
   GLINT_HD int tile_x(int tile) const { return tile % tile_grid(width, height).across; }
   GLINT_HD int tile_y(int tile) const { return tile / tile_grid(width, height).across; }
@@ -203,19 +220,19 @@ GLINT_HD int batch_size(std::uint32_t first, std::uint32_t end) {
 using DeviceMaps = RasterMaps<PointerMap>;
 using DeviceKept = KeptMaps<PointerMap>;
 
-template <int kChannels>
+template <class Code>
 struct ForwardTile {
   static constexpr int kThreads = kTileThreads;
   using Shared = SplatBatch;
   TilePass pass;
   DeviceMaps out;
   DeviceKept kept;
-  float* visibility;  // [N]
+  float *visibility, *owned_pixels;  // [N]
 
   template <class Block>
   GLINT_HD void operator()(Block& block, Shared& shared) const {
     typename Block::template PerThread<TilePixel> pixels;
-    typename Block::template PerThread<PixelSums<float, kChannels>> sums;
+    typename Block::template PerThread<PixelSums<float, Code>> sums;
     block.each([&](int thread) {
       pixels[thread].start(pass, block.index, thread);
       sums[thread].clear();
@@ -228,7 +245,7 @@ struct ForwardTile {
       for (int k = 0; k < size; ++k)
         block.template add_over_warps<1>(
             [&](int thread, float* weight) {
-              return step(shared, k, pixels[thread], sums[thread], *weight);
+              return step(block, shared, k, pixels[thread], sums[thread], *weight);
             },
             visibility + shared.surfels[k]
         );
@@ -238,21 +255,26 @@ struct ForwardTile {
   }
 
  private:
+  template <class Block>
   GLINT_HD bool step(
+      Block& block,
       const Shared& shared,
       int k,
       TilePixel& pixel,
-      PixelSums<float, kChannels>& sums,
+      PixelSums<float, Code>& sums,
       float& weight
   ) const {
     SplatHit<float> hit;
     if (!pixel.live() || !pixel.composite(shared.splats[k], hit)) return false;
     const float* feature = pass.feature(shared.surfels[k]);
-    sums.add(hit, shared.splats[k], feature, pass.channels, pass.range);
+    sums.add(hit, shared.splats[k], feature, known(), pass.range);
+    // Whole numbers: the same in every order.
+    if (known().statistics && owns_pixel(hit)) block.add(owned_pixels + shared.surfels[k], 1.0f);
     weight = hit.weight;
     return true;
   }
-  GLINT_HD void store(const TilePixel& pixel, PixelSums<float, kChannels>& sums) const {
+  GLINT_HD MapChannels known() const { return Code::known(pass.has); }
+  GLINT_HD void store(const TilePixel& pixel, PixelSums<float, Code>& sums) const {
     if (!pixel.inside) return;
     const std::size_t i = pixel.index(pass);
     sums.finish(abs_of(pixel.transmittance), pass.range);
@@ -260,7 +282,7 @@ struct ForwardTile {
       for (int c = 0; c < width; ++c) map[place(i, width, c)] = values[c];
     };
     for_each_map(
-        pass.maps<kChannels>(),
+        known(),
         [&](const char*, int width, const float* values, float* map) {
           store_map(width, values, map);
         },
@@ -268,7 +290,7 @@ struct ForwardTile {
         out
     );
     for_each_kept_map(
-        pass.maps<kChannels>(),
+        known(),
         [&](int width, float, const float* values, float* map) { store_map(width, values, map); },
         sums.kept,
         kept
@@ -276,10 +298,10 @@ struct ForwardTile {
   }
 };
 
-template <int kChannels>
+template <class Code>
 struct BackwardTile {
   static constexpr int kThreads = kTileThreads;
-  static constexpr int kSums = splat_sums(kChannels > 0 ? kChannels : kMaxChannels);
+  static constexpr int kSums = Code::kSums;
   using Shared = SplatBatch;
   TilePass pass;
   DeviceMaps out, dL_dout;
@@ -289,7 +311,7 @@ struct BackwardTile {
   template <class Block>
   GLINT_HD void operator()(Block& block, Shared& shared) const {
     typename Block::template PerThread<TilePixel> pixels;
-    typename Block::template PerThread<PixelGradient<float, kChannels>> states;
+    typename Block::template PerThread<PixelGradient<float, Code>> states;
     block.each([&](int thread) {
       pixels[thread].start(pass, block.index, thread);
       if (pixels[thread].inside) start(pixels[thread].index(pass), states[thread]);
@@ -311,10 +333,11 @@ struct BackwardTile {
   }
 
  private:
-  GLINT_HD void start(std::size_t i, PixelGradient<float, kChannels>& state) const {
-    PixelMaps<float, kChannels> maps;
+  GLINT_HD MapChannels known() const { return Code::known(pass.has); }
+  GLINT_HD void start(std::size_t i, PixelGradient<float, Code>& state) const {
+    PixelMaps<float, Code> maps{};  // what the call has not: 0
     for_each_map(
-        pass.maps<kChannels>(),
+        known(),
         [i](const char*, int width, float* dL, float* values, const float* dL_dmap, const float* map
         ) {
           for (int c = 0; c < width; ++c) {
@@ -328,33 +351,60 @@ struct BackwardTile {
         out
     );
     for_each_kept_map(
-        pass.maps<kChannels>(),
+        known(),
         [i](int width, float, float* values, const float* map) {
           if (width > 0) *values = map[i];
         },
         state.kept,
         kept
     );
-    state.start(maps, pass.channels, pass.range.on);
+    state.start(maps, known());
   }
   GLINT_HD bool step(
-      const Shared& shared,
-      int k,
-      TilePixel& pixel,
-      PixelGradient<float, kChannels>& state,
-      float* sums
+      const Shared& shared, int k, TilePixel& pixel, PixelGradient<float, Code>& state, float* sums
   ) const {
     SplatHit<float> hit;
     if (!pixel.live() || !pixel.composite(shared.splats[k], hit)) return false;
     const float* feature = pass.feature(shared.surfels[k]);
-    state.hit(hit, shared.splats[k], feature, pass.channels, pass.range, sums);
+    state.hit(hit, shared.splats[k], feature, known(), pass.range, sums);
     return true;
+  }
+};
+
+// Depth of the first surface of a pixel (first_surface.h).
+struct FirstSurface {
+  TilePass pass;
+  DeviceMaps out;
+  const float* mask;  // [H][W]
+  FirstSurfaceSettings settings;
+  float* depth;  // [H][W]
+
+  GLINT_HD void operator()(std::size_t i) const {
+    if (1 - out.alpha[i] > settings.max_transmittance)
+      depth[i] = 0;
+    else
+      depth[i] = mask[i] > 0.5f ? behind_mask(i) : out.depth_median[i];
+  }
+
+ private:
+  GLINT_HD float behind_mask(std::size_t i) const {
+    const int x = static_cast<int>(i) % pass.width, y = static_cast<int>(i) / pass.width;
+    const float* limit = pass.near_limit;
+    SurfacePixel pixel(
+        x, y, limit == nullptr ? pass.near_plane : max_of(pass.near_plane, limit[i])
+    );
+    const int across = tile_grid(pass.width, pass.height).across;
+    const PairRange range = pass.ranges[y / kDeviceTile * across + x / kDeviceTile];
+    for (std::uint32_t k = range.begin; k < range.end; ++k)
+      if (!pixel.add(pass.splats[pass.pairs[k]])) break;
+    return first_surface_depth(pixel.hits, settings);
   }
 };
 
 // dL/d(parameters), shapes of RasterGradient.
 struct DeviceGradients {
   float *means, *scales, *rotations, *opacities, *features, *screen;
+  float* screen_abs;  // null: not asked for
 };
 
 // From the sums over a surfel's pixels back to its parameters.
@@ -365,12 +415,14 @@ struct SurfelVjp {
   const std::uint32_t* num_tiles;
   const float* sums;  // [N][stride]
   int stride;
+  MapChannels has;
   DeviceGradients out;
 
   GLINT_HD void operator()(std::size_t i) const {
     const float* s = sums + i * static_cast<std::size_t>(stride);
     const bool seen = num_tiles[i] > 0;
-    const ProjectedSurfel<float> g = projected_gradient<float>([s](int slot) { return s[slot]; });
+    const ProjectedSurfel<float> g =
+        projected_gradient<float>(has, [s](int slot) { return s[slot]; });
     SurfelGeometry<float> dL_dsurfel{};
     Vec3f dL_dm{};
     // Surfels without pairs get exact zeros, whatever their parameters (they may not be finite).
@@ -391,6 +443,10 @@ struct SurfelVjp {
     for (std::size_t c = 0; c < channels; ++c) out.features[channels * i + c] = s[kSumFeatures + c];
     out.screen[2 * i] = screen.x;
     out.screen[2 * i + 1] = screen.y;
+    if (out.screen_abs == nullptr) return;
+    const float* pixels = s + extra_slot(surfels.channels, kSumScreenAbsX);
+    out.screen_abs[2 * i] = 0.5f * camera.width * pixels[0];
+    out.screen_abs[2 * i + 1] = 0.5f * camera.height * pixels[1];
   }
 };
 

@@ -15,10 +15,10 @@ struct DeviceRasterCall {
   DeviceSurfels surfels;
   CameraOf<float> camera;
   const float* near_limit;  // null: none
+  MapChannels has;
   DistortionRange range;
   DeviceMaps out;
-  float* visibility;
-  std::uint8_t* in_view;
+  DeviceSeen seen;
 };
 
 template <class Exec>
@@ -34,9 +34,12 @@ class RasterPipeline {
   void forward(const DeviceRasterCall& call) {
     call_ = call;
     list_tiles(call.surfels, call.camera);
-    exec_.for_each(
-        call.surfels.count, ResetVisibility{num_tiles_.data(), call.visibility, call.in_view}
-    );
+    exec_.for_each(call.surfels.count, ResetSeen{num_tiles_.data(), call.seen});
+    if (call.has.statistics)
+      exec_.for_each(
+          call.surfels.count,
+          ScreenRadii{call.surfels, call.camera, num_tiles_.data(), call.seen.radii}
+      );
     fit_kept();
     pass_.splats = splats_.data();
     pass_.features = call.surfels.features;
@@ -44,22 +47,33 @@ class RasterPipeline {
     pass_.ranges = ranges_.data();
     pass_.near_limit = call.near_limit;
     pass_.near_plane = call.camera.near_plane;
-    pass_.channels = call.surfels.channels;
+    pass_.has = call.has;
     pass_.range = call.range;
-    with_channels(pass_.channels, [&]<int kChannels>() {
-      exec_.launch(ranges_.size(), ForwardTile<kChannels>{pass_, call.out, kept_, call.visibility});
+    with_pass_code(pass_.has, [&]<class Code>() {
+      exec_.launch(
+          ranges_.size(),
+          ForwardTile<Code>{pass_, call.out, kept_, call.seen.visibility, call.seen.owned_pixels}
+      );
     });
   }
 
   // Of the last forward call.
   void backward(const DeviceMaps& dL_dout, const DeviceGradients& gradients) {
-    with_channels(pass_.channels, [&]<int kChannels>() {
-      using Tile = BackwardTile<kChannels>;
+    with_pass_code(pass_.has, [&]<class Code>() {
+      using Tile = BackwardTile<Code>;
       gradient_sums_.resize(call_.surfels.count * Tile::kSums);
       exec_.fill_zero(gradient_sums_);
       exec_.launch(ranges_.size(), Tile{pass_, call_.out, dL_dout, kept_, gradient_sums_.data()});
       vjp_of_surfels(Tile::kSums, gradients);
     });
+  }
+
+  // Of the last forward call. mask, depth: [H][W].
+  void first_surface(const float* mask, const FirstSurfaceSettings& settings, float* depth) {
+    exec_.for_each(
+        static_cast<std::size_t>(pass_.width) * static_cast<std::size_t>(pass_.height),
+        FirstSurface{pass_, call_.out, mask, settings, depth}
+    );
   }
 
   std::size_t num_pairs() const { return num_pairs_; }
@@ -114,13 +128,14 @@ class RasterPipeline {
             num_tiles_.data(),
             gradient_sums_.data(),
             stride,
+            call_.has,
             gradients}
     );
   }
   void fit_kept() {
     const auto pixels = static_cast<std::size_t>(pass_.width * pass_.height);
     for_each_kept_map(
-        {call_.surfels.channels, call_.range.on},
+        call_.has,
         [&](int width, float, float*& map, Buffer<float>& memory) {
           memory.resize(static_cast<std::size_t>(width) * pixels);
           map = memory.data();

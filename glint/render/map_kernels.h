@@ -6,6 +6,8 @@
 #include "glint/core/kernel.h"
 #include "glint/render/blend.h"
 #include "glint/render/depth_normal.h"
+#include "glint/render/pinhole.h"
+#include "glint/render/plane_depth.h"
 
 namespace glint {
 
@@ -21,6 +23,31 @@ struct ExpectedDepthVjp {
   float *dL_ddepth_sum, *dL_dalpha;  // added to
   GLINT_HD void operator()(std::size_t i) const {
     expected_depth_vjp(depth_sum[i], alpha[i], dL_ddepth[i], dL_ddepth_sum[i], dL_dalpha[i]);
+  }
+};
+
+struct PlaneDepth {
+  Pinhole<float> camera;
+  ImageView distance, normal;  // [H][W][1] metres, [H][W][3], as composited
+  ImageRef depth;
+  GLINT_HD void operator()(std::size_t i) const {
+    const int x = static_cast<int>(i) % depth.width, y = static_cast<int>(i) / depth.width;
+    const Vec3f n = get3(normal.data, i);
+    depth.data[i] = plane_depth(distance.data[i], n, camera.ray(x, y));
+  }
+};
+struct PlaneDepthVjp {
+  Pinhole<float> camera;
+  ImageView distance, normal, dL_ddepth;
+  float *dL_ddistance, *dL_dnormal;  // added to
+  GLINT_HD void operator()(std::size_t i) const {
+    const int x = static_cast<int>(i) % distance.width, y = static_cast<int>(i) / distance.width;
+    const Vec3f n = get3(normal.data, i);
+    Vec3f dL_dn = get3(dL_dnormal, i);
+    plane_depth_vjp(
+        distance.data[i], n, camera.ray(x, y), dL_ddepth.data[i], dL_ddistance[i], dL_dn
+    );
+    put3(dL_dnormal, i, dL_dn);
   }
 };
 
@@ -75,6 +102,8 @@ struct MoveAlongRays {
 using MapKernels = KernelList<
     ExpectedDepth,
     ExpectedDepthVjp,
+    PlaneDepth,
+    PlaneDepthVjp,
     CopyColor,
     UnitNormals,
     ShiftDepth,

@@ -39,6 +39,38 @@ void add_depth_estimates(const RasterOutput& output, MapSet& maps) {
   maps["behind_median"] = output.depth_median;
 }
 
+void plane_depth_map(
+    const Camera& camera, const Image& distance, const Image& normal, Image& depth
+) {
+  fit(depth, distance.size(), 1);
+  run_kernel(
+      depth.num_pixels(),
+      kPixelGrain,
+      PlaneDepth{pinhole_of<float>(camera), distance, normal, depth.ref()}
+  );
+}
+
+void plane_depth_map_vjp(
+    const Camera& camera,
+    const Image& distance,
+    const Image& normal,
+    const Image& dL_ddepth,
+    Image& dL_ddistance,
+    Image& dL_dnormal
+) {
+  run_kernel(
+      dL_ddepth.num_pixels(),
+      kPixelGrain,
+      PlaneDepthVjp{
+          pinhole_of<float>(camera),
+          distance,
+          normal,
+          dL_ddepth,
+          dL_ddistance.data(),
+          dL_dnormal.data()}
+  );
+}
+
 void clear_image(Image& image, ImageSize size, int channels) {
   fit(image, size, channels);
   fill(image.data(), image.values().size(), 0.0f);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Maps made of a rasterised set's: expected depth, unit normals, colour; and the way back.
+// Maps made of a rasterised set's: expected and plane depth, unit normals, colour; and the way
+// back.
 #pragma once
 
 #include "glint/render/rasterize.h"
@@ -17,6 +18,19 @@ void expected_depth_map_vjp(
 // with 0 where nothing was hit: what every method's depth behind glass is scored by, besides its
 // own.
 void add_depth_estimates(const RasterOutput& output, MapSet& maps);
+// Depth of each pixel's plane (plane_depth.h), [H][W][1]; 0: none. distance, normal: composited.
+void plane_depth_map(
+    const Camera& camera, const Image& distance, const Image& normal, Image& depth
+);
+// Adds to the gradients of distance and normal.
+void plane_depth_map_vjp(
+    const Camera& camera,
+    const Image& distance,
+    const Image& normal,
+    const Image& dL_ddepth,
+    Image& dL_ddistance,
+    Image& dL_dnormal
+);
 // Camera-space unit normals; zero: nothing hit.
 Image unit_normals(const Image& normal);
 // The first three of some feature channels.

@@ -22,6 +22,13 @@ class RasterBackend {
       const RasterOutputGradient& dL_doutput,
       RasterGradient& gradient
   ) = 0;
+  virtual void first_surface(
+      const RasterCall& call,
+      const RasterOutput& output,
+      ImageView mask,
+      const FirstSurfaceSettings& settings,
+      Image& depth
+  ) = 0;
   virtual std::size_t num_pairs() = 0;
   virtual std::size_t num_pixel_pairs() = 0;
 };

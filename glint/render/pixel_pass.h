@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a pixel (or a group of pixels in lanes) sums over its hits, front to back, and the way back:
-// the text of every rasteriser backend. kChannels: feature channels; 0: known at run time only.
+// the text of every rasteriser backend.
 #pragma once
 
 #include <utility>
@@ -15,13 +15,36 @@ inline constexpr int kMaxChannels = 16;
 // Feature channels with code of their own: those that methods use. Others share one.
 using ChannelCounts = std::integer_sequence<int, 3, 4, 5>;
 
-// body<kChannels>() of a call with so many feature channels.
+// What the code of a pass knows of its call. kFeatures: feature channels; 0: known at run time
+// only. kExtras: false: the call has none (MapChannels::has_extras), and its code nothing of them.
+template <int kFeatures_, bool kExtras_>
+struct PassCode {
+  static constexpr int kFeatures = kFeatures_;
+  static constexpr bool kExtras = kExtras_;
+  static constexpr int kSums = splat_sums(kFeatures > 0 ? kFeatures : kMaxChannels, kExtras);
+
+  // The same call, what is known of it as constants.
+  GLINT_HD static constexpr MapChannels known(MapChannels has) {
+    if (kFeatures > 0) has.features = kFeatures;
+    has.plane_distance = kExtras && has.plane_distance;
+    has.statistics = kExtras && has.statistics;
+    return has;
+  }
+};
+
+// body<PassCode>() with the code of such calls.
 template <class F>
-void with_channels(int channels, F&& body) {
+void with_pass_code(MapChannels has, F&& body) {
+  const auto with_features = [&]<int kFeatures>() {
+    if (has.has_extras())
+      body.template operator()<PassCode<kFeatures, true>>();
+    else
+      body.template operator()<PassCode<kFeatures, false>>();
+  };
   [&]<int... kCounts>(std::integer_sequence<int, kCounts...>) {
     const bool found =
-        ((channels == kCounts && (body.template operator()<kCounts>(), true)) || ...);
-    if (!found) body.template operator()<0>();
+        ((has.features == kCounts && (with_features.template operator()<kCounts>(), true)) || ...);
+    if (!found) with_features.template operator()<0>();
   }
   (ChannelCounts{});
 }
@@ -37,19 +60,19 @@ struct PixelOf {
   template <int kWidth>
   using Map = T[kWidth > 0 ? kWidth : kMaxChannels];
 };
-template <class T, int kChannels>
-using PixelMaps = RasterMaps<PixelOf<T>::template Map, kChannels>;
+template <class T, class Code>
+using PixelMaps = RasterMaps<PixelOf<T>::template Map, Code::kFeatures>;
 template <class T>
 using PixelKept = KeptMaps<PixelOf<T>::template Map>;
 
-template <class T, int kChannels>
+template <class T, class Code>
 struct PixelSums {
-  PixelMaps<T, kChannels> maps;
+  PixelMaps<T, Code> maps;
   PixelKept<T> kept;
 
   GLINT_HD void clear() {
     for_each_map(
-        {kChannels > 0 ? kChannels : kMaxChannels, true},
+        {Code::kFeatures > 0 ? Code::kFeatures : kMaxChannels, true, Code::kExtras},
         [](const char*, int width, T* values) {
           for (int c = 0; c < width; ++c) values[c] = T(0);
         },
@@ -63,21 +86,20 @@ struct PixelSums {
       const SplatHit<T>& hit,
       const Splat& splat,
       const float* feature,
-      int channels,
+      MapChannels has,
       const DistortionRange& range
   ) {
     for_each_attribute(
         splat,
         feature,
-        kChannels > 0 ? kChannels : channels,
+        Code::known(has),
         [&](const auto& value, int, int width, T* sum) {
           for (int c = 0; c < width; ++c) sum[c] = fma_of(hit.weight, T(value[c]), sum[c]);
         },
         maps
     );
     *maps.depth_sum = fma_of(hit.weight, hit.depth, *maps.depth_sum);
-    const auto is_median = hit.valid & (hit.transmittance > T(0.5f));
-    *maps.depth_median = select(is_median, hit.depth, *maps.depth_median);
+    *maps.depth_median = select(owns_pixel(hit), hit.depth, *maps.depth_median);
     if (range.on) add_moments(hit, range);
   }
   // Behind the last hit.
@@ -99,23 +121,23 @@ struct PixelSums {
 };
 
 // dL/d(maps of a pixel), and what the way back needs of the maps themselves.
-template <class T, int kChannels>
+template <class T, class Code>
 struct PixelGradient {
-  PixelMaps<T, kChannels> dL;
+  PixelMaps<T, Code> dL;
   PixelKept<T> kept;
   T total_alpha;
   T median_behind;  // transmittance at or below which a hit may be the median
   T remaining;      // sum w dL/dw of the hits not met yet
 
   // From the maps, dL/d(maps) and `kept`; before the first hit.
-  GLINT_HD void start(const PixelMaps<T, kChannels>& maps, int channels, bool with_distortion) {
+  GLINT_HD void start(const PixelMaps<T, Code>& maps, MapChannels has) {
     total_alpha = *maps.alpha;
     median_behind = max_of(T(0.5f), *kept.transmittance);
     remaining = *dL.alpha * total_alpha + *dL.depth_sum * *maps.depth_sum;
     for_each_attribute(
         Splat{},  // no values are looked at
         nullptr,
-        kChannels > 0 ? kChannels : channels,
+        Code::known(has),
         [&](const auto&, int, int width, const T* gradient, const T* sum) {
           for (int c = 0; c < width; ++c) remaining = fma_of(gradient[c], sum[c], remaining);
         },
@@ -123,24 +145,25 @@ struct PixelGradient {
         maps
     );
     // sum w dL/dw of the distortion is twice the distortion itself: it is quadratic in w.
-    if (with_distortion)
+    if (has.distortion)
       remaining +=
           T(2) * *dL.distortion * (total_alpha * *kept.moment2 - *kept.moment1 * *kept.moment1);
   }
-  // Back through one hit, front to back. out: SplatSum, added to.
+  // Back through one hit, front to back. out: SplatSum and ExtraSum, added to.
   GLINT_HD void hit(
       const SplatHit<T>& hit,
       const Splat& splat,
       const float* feature,
-      int channels,
+      MapChannels has,
       const DistortionRange& range,
       T* out
   ) {
+    has = Code::known(has);
     T value = fma_of(*dL.depth_sum, hit.depth, *dL.alpha);
     for_each_attribute(
         splat,
         feature,
-        kChannels > 0 ? kChannels : channels,
+        has,
         [&](const auto& attribute, int slot, int width, const T* gradient) {
           for (int c = 0; c < width; ++c) {
             value = fma_of(gradient[c], T(attribute[c]), value);
@@ -156,7 +179,13 @@ struct PixelGradient {
     if (range.on) add_distortion(hit, range, value, dL_dz);
     remaining = remaining - hit.weight * value;
     const T dL_dalpha = blend_alpha_vjp(hit.transmittance, hit.alpha.alpha, value, remaining);
-    add_geometry(hit, splat, keep(hit.valid, dL_dalpha), keep(hit.valid, dL_dz), out);
+    T dL_drho(0);
+    splat_alpha_vjp(
+        T(splat.opacity), hit.alpha, keep(hit.valid, dL_dalpha), out[kSumOpacity], dL_drho
+    );
+    if (has.statistics)
+      add_screen_abs(hit, splat, dL_drho, &out[extra_slot(has.features, kSumScreenAbsX)]);
+    add_geometry(hit, splat, dL_drho, keep(hit.valid, dL_dz), out);
   }
 
  private:
@@ -170,12 +199,21 @@ struct PixelGradient {
     const T dL_dm = *dL.distortion * distortion_dm(hit.weight, m, total_alpha, *kept.moment1);
     dL_dz += distortion_depth_vjp(z, near, far, dL_dm);
   }
-  // From alpha and depth of the hit.
-  GLINT_HD static void add_geometry(
-      const SplatHit<T>& hit, const Splat& splat, T dL_dalpha, T dL_dz, T* out
+  // |dL/d(shift of the footprint by a pixel)| at this pixel: of what the hit's alpha does, as in
+  // [Ye24, AbsGS]; its depth's part is left out. out: x and y, added to.
+  GLINT_HD static void add_screen_abs(
+      const SplatHit<T>& hit, const Splat& splat, T dL_drho, T* out
   ) {
-    T dL_drho(0);
-    splat_alpha_vjp(T(splat.opacity), hit.alpha, dL_dalpha, out[kSumOpacity], dL_drho);
+    const PixelPlaneMap<T> map = broadcast_map<T>(splat.map);
+    const Vec2<T> slope = screen_slope(map, hit, T(splat.center_x), T(splat.center_y));
+    // Outside `valid` the slope may be infinite.
+    out[0] += keep(hit.valid, abs_of(dL_drho * slope.x));
+    out[1] += keep(hit.valid, abs_of(dL_drho * slope.y));
+  }
+  // From rho and depth of the hit.
+  GLINT_HD static void add_geometry(
+      const SplatHit<T>& hit, const Splat& splat, T dL_drho, T dL_dz, T* out
+  ) {
     const auto in_plane = hit.valid & hit.in_plane;
     const PlaneHit<T> plane{
         keep(in_plane, hit.plane.u),

@@ -82,6 +82,7 @@ struct ProjectedSurfel {
   T center_x, center_y;  // low-pass centre, relative to the reference point; far away: no low-pass
   T z_center;            // camera depth of the centre, metres
   Vec3<T> normal;        // facing the camera
+  T plane_distance;      // of its plane from the camera centre, metres: -(n.m) >= 0
   T box_min_x, box_max_x, box_min_y, box_max_y;  // pixels, absolute; empty (min > max): invisible
 };
 
@@ -254,6 +255,7 @@ GLINT_HD ProjectedSurfel<T> project_surfel(
       select(projects, screen_interval(rows.y, rows.z, T(kMaxRho), d).center, T(kNoLowPass));
   p.z_center = s.m.z;
   p.normal = s.normal;
+  p.plane_distance = -dot(s.normal, s.m);
   screen_box(s, rows, camera, max_rho, projects, p);
   p.box_min_x = select(in_front & (max_rho > T(0)), p.box_min_x, T(1e30f));
   return p;
@@ -268,7 +270,24 @@ GLINT_HD Vec2<T> screen_gradient(Vec3<T> dL_dm, T z, const CameraOf<T>& c) {
       dL_dm.x * depth / c.fx * (T(0.5f) * c.width), dL_dm.y * depth / c.fy * (T(0.5f) * c.height)};
 }
 
-// dL/d(projected): map, low-pass centre, z_center and normal are set; the box has no gradient.
+// Half the larger side of the 3-sigma ellipse's box on the screen, pixels. Where the ellipse meets
+// the camera plane that box does not exist: then of the box of everything that can contribute.
+template <class T>
+GLINT_HD T screen_radius(const SurfelGeometry<T>& surfel, const CameraOf<T>& camera, T max_rho) {
+  const ProjectedSurfel<T> p = project_surfel(surfel, camera, max_rho);
+  const SurfelInCam<T> s = surfel_in_cam(surfel, camera);
+  const ScreenRows<T> rows = screen_rows(s, camera, p.x_ref, p.y_ref);
+  const T d = screen_box_d(rows.z, T(kMaxRho));
+  const T of_ellipse = max_of(
+      screen_interval(rows.x, rows.z, T(kMaxRho), d).half,
+      screen_interval(rows.y, rows.z, T(kMaxRho), d).half
+  );
+  const T of_box = T(0.5f) * max_of(p.box_max_x - p.box_min_x, p.box_max_y - p.box_min_y);
+  return select(has_screen_box(rows.z) & (s.m.z > T(0)), of_ellipse, of_box);
+}
+
+// dL/d(projected): map, low-pass centre, z_center, normal and plane_distance are set; the box has
+// no gradient.
 // dL_dm: dL/d(centre in camera space), for the screen-space statistic of densification.
 template <class T>
 GLINT_HD void project_surfel_vjp(
@@ -306,7 +325,8 @@ GLINT_HD void project_surfel_vjp(
   g.h1 += select<T>(projects, pick(1), zero);
   g.m += select<T>(projects, pick(2), zero);
   g.m.z += dL_dprojected.z_center;
-  g.normal = dL_dprojected.normal;
+  g.normal = dL_dprojected.normal - dL_dprojected.plane_distance * s.m;
+  g.m += -dL_dprojected.plane_distance * s.normal;
   dL_dm = g.m;
   surfel_in_cam_vjp(surfel, camera, s.facing, g, dL_dsurfel);
 }

@@ -24,12 +24,20 @@ struct RasterMaps {
       depth_median;   // [H][W][1] z of the last contributor met while transmittance > 0.5; 0: none
   Map<3> normal;      // [H][W][3] sum w n in camera space, each n facing the camera; not unit
   Map<1> distortion;  // [H][W][1] sum_ij w_i w_j (m_i - m_j)^2, j < i; empty unless asked for
+  // [H][W][1] sum w d with d = |n.m| of the surfel's plane, its distance from the camera centre,
+  // metres; empty unless asked for.
+  Map<1> plane_distance;
 };
 
-// Which maps a call has.
+// Which maps and sums a call has.
 struct MapChannels {
   int features = 3;
   bool distortion = false;
+  bool plane_distance = false;
+  bool statistics = false;  // of density control
+
+  // Whether surfels get sums back that most calls have no use for.
+  GLINT_HD constexpr bool has_extras() const { return plane_distance || statistics; }
 };
 
 // f(name, channels, map of each argument) for every map; 0 channels: the call has it not.
@@ -41,6 +49,7 @@ GLINT_HD void for_each_map(MapChannels has, F&& f, Maps&... maps) {
   f("depth_median", 1, maps.depth_median...);
   f("normal", 3, maps.normal...);
   f("distortion", has.distortion ? 1 : 0, maps.distortion...);
+  f("plane_distance", has.plane_distance ? 1 : 0, maps.plane_distance...);
 }
 
 // What the way back needs of a pixel besides its maps.

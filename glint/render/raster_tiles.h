@@ -56,4 +56,14 @@ SurfelGeometry<T> load_geometry(const RasterInput& input, std::size_t i);
 
 void build_tile_lists(const RasterCall& call, TileLists& lists);  // fills `lists`
 
+// Rasterizer::first_surface() of what was listed; `depth` has the image's size.
+void first_surface_on_cpu(
+    const RasterCall& call,
+    const TileLists& lists,
+    const RasterOutput& output,
+    ImageView mask,
+    const FirstSurfaceSettings& settings,
+    Image& depth
+);
+
 }  // namespace glint

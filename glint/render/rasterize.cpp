@@ -59,12 +59,17 @@ void fit_output(const RasterCall& call, RasterOutput& out) {
   for_each_map(call.maps(), fit_map, out);
   out.visibility.resize(call.input.count);
   out.in_view.resize(call.input.count);
+  const std::size_t with_statistics = call.settings.with_statistics ? call.input.count : 0;
+  out.owned_pixels.resize(with_statistics);
+  out.radii.resize(with_statistics);
 }
 
-void fit_gradient(const RasterInput& input, RasterGradient& gradient) {
+void fit_gradient(const RasterCall& call, RasterGradient& gradient) {
   RasterGradient::for_each_array(
-      static_cast<std::size_t>(input.channels),
-      [&](const char*, std::size_t width, FloatArray& array) { array.resize(width * input.count); },
+      call.maps(),
+      [&](const char*, std::size_t width, FloatArray& array) {
+        array.resize(width * call.input.count);
+      },
       gradient
   );
 }
@@ -91,9 +96,25 @@ const RasterOutput& Rasterizer::forward(const RasterCall& call) {
 
 const RasterGradient& Rasterizer::backward(const RasterOutputGradient& dL_doutput) {
   const RasterCall& call = state_->last_call();
-  fit_gradient(call.input, state_->gradient);
+  fit_gradient(call, state_->gradient);
   state_->device().backward(call, state_->output, dL_doutput, state_->gradient);
   return state_->gradient;
+}
+
+void Rasterizer::first_surface(ImageView mask, const FirstSurfaceSettings& settings, Image& depth) {
+  const RasterCall& call = state_->last_call();
+  GLINT_CHECK(
+      mask.size() == call.camera.size() && mask.channels == 1,
+      kUsage,
+      "first_surface: the mask is {}x{}x{}, expected the camera's {}x{}x1",
+      mask.width,
+      mask.height,
+      mask.channels,
+      call.camera.width,
+      call.camera.height
+  );
+  fit(depth, call.camera.size(), 1);
+  state_->device().first_surface(call, state_->output, mask, settings, depth);
 }
 
 }  // namespace glint

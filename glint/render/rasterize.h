@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "glint/render/first_surface.h"
 #include "glint/render/raster_maps.h"
 #include "glint/scene/camera.h"
 
@@ -25,6 +26,9 @@ struct RasterSettings {
   bool with_distortion = false;  // also the distortion map [Huang24 Eq. 13]
   float distortion_near = 0.2f;  // metres, of the NDC mapping of the distortion loss
   float distortion_far = 100.0f;
+  bool with_plane_distance = false;  // also the plane_distance map
+  // Also owned_pixels and radii of the output and screen_abs of the gradient.
+  bool with_statistics = false;
   bool scalar = false;  // on the CPU: without SIMD lanes, the same text (for perf and tests)
 };
 
@@ -46,12 +50,21 @@ struct RasterCall {
   Camera camera;
   RasterSettings settings;
 
-  MapChannels maps() const { return {input.channels, settings.with_distortion}; }
+  MapChannels maps() const {
+    return {
+        input.channels,
+        settings.with_distortion,
+        settings.with_plane_distance,
+        settings.with_statistics};
+  }
 };
 
 struct RasterOutput : RasterMaps<ImageMap> {
   FloatArray visibility;        // [N] sum over pixels of w
   Array<std::uint8_t> in_view;  // [N] 1: reached at least one tile
+  // Both empty without with_statistics.
+  FloatArray owned_pixels;  // [N] number of pixels it counts at with T > 0.5 in front of it
+  FloatArray radii;         // [N] pixels, see screen_radius() in project.h; 0: not in view
 };
 
 using RasterOutputGradient = RasterMaps<ImageMap>;  // dL/d(output); empty images count as zero
@@ -59,16 +72,21 @@ using RasterOutputGradient = RasterMaps<ImageMap>;  // dL/d(output); empty image
 struct RasterGradient {
   FloatArray means, scales, rotations, opacities, features;  // shapes of RasterInput
   FloatArray screen;  // [N][2] dL/d(projected centre) x (W/2, H/2): NDC, for densification
+  // [N][2] sum over pixels of |dL/d(the surfel's footprint shifted on the screen)| x (W/2, H/2),
+  // see screen_slope() in splat_hit.h; empty without with_statistics.
+  FloatArray screen_abs;
 
-  // f(name, array of each, floats a surfel); channels: of features.
+  // f(name, array of each, floats a surfel; 0: the call has it not).
   template <class F, class... Others>
-  static void for_each_array(std::size_t channels, F&& f, Others&... gradients) {
+  static void for_each_array(MapChannels has, F&& f, Others&... gradients) {
+    const auto channels = static_cast<std::size_t>(has.features);
     f("means", std::size_t{3}, gradients.means...);
     f("scales", std::size_t{2}, gradients.scales...);
     f("rotations", std::size_t{4}, gradients.rotations...);
     f("opacities", std::size_t{1}, gradients.opacities...);
     f("features", channels, gradients.features...);
     f("screen", std::size_t{2}, gradients.screen...);
+    f("screen_abs", std::size_t{has.statistics ? 2u : 0u}, gradients.screen_abs...);
   }
 };
 
@@ -85,6 +103,11 @@ class Rasterizer {
   const RasterOutput& forward(const RasterCall& call);
   // Gradients of the last forward call.
   const RasterGradient& backward(const RasterOutputGradient& dL_doutput);
+
+  // Of the last forward call: depth [H][W][1] of the first surface (first_surface.h), metres, 0:
+  // none. mask [H][W][1]: pixels above 0.5 see something behind it. Errors (kUsage): the mask has
+  // not the image's size; there was no forward().
+  void first_surface(ImageView mask, const FirstSurfaceSettings& settings, Image& depth);
 
   const RasterCall& call() const;      // the last one; errors (kUsage): there was none
   const RasterOutput& output() const;  // of it

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <numeric>
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
@@ -15,6 +16,7 @@ struct RasterSaved {
   TileLists lists;
   KeptMaps<ImageMap> kept;
   std::vector<float> pair_visibility;  // [pairs]
+  std::vector<float> pair_owned;       // [pairs] pixels of the tile that the surfel owns, or empty
   // [pairs] blocks of the tile where a pixel has a hit, one bit each: backward looks at no others.
   std::vector<std::uint8_t> pair_blocks;
   std::vector<float> pair_gradients;  // [pairs][slot_width]
@@ -22,31 +24,28 @@ struct RasterSaved {
 
 // ---- forward -----------------------------------------------------------------------------------
 
-template <class T, int kChannels>
+template <class T, class Code>
 struct ForwardVisitor {
   const TileContext& tile;
   const DistortionRange range;
   RasterSaved& saved;
-  const int channels;
-  PixelSums<T, kChannels> sums[kGroupsPerTile<T>];
-  T visibility;
+  PixelSums<T, Code> sums[kGroupsPerTile<T>];
+  T visibility, owned;
   unsigned blocks;
   const float* feature;
   const Splat* splat;
 
   ForwardVisitor(const TileContext& tile, RasterSaved& saved)
-      : tile(tile),
-        range(distortion_range(tile.call.settings)),
-        saved(saved),
-        channels(tile.call.input.channels) {
+      : tile(tile), range(distortion_range(tile.call.settings)), saved(saved) {
     for (auto& group : sums) group.clear();
   }
 
+  MapChannels has() const { return Code::known(tile.call.maps()); }
   std::uint64_t groups(TileEntry entry) const {
     return groups_of_blocks<T>(blocks_of(tile, tile.lists.boxes[entry.surfel]));
   }
   void begin(TileEntry entry) {
-    visibility = T(0);
+    visibility = owned = T(0);
     blocks = 0;
     feature = tile.feature(entry.surfel);
     splat = &tile.lists.splats[entry.surfel];
@@ -55,14 +54,17 @@ struct ForwardVisitor {
     visibility += hit.weight;
     const bool counts = any(hit.transmittance_behind < hit.transmittance);  // or stops a pixel
     blocks |= static_cast<unsigned>(counts) << (g / kGroupsPerBlock<T>);
-    sums[g].add(hit, *splat, feature, channels, range);
+    if (has().statistics) owned += keep(owns_pixel(hit), T(1));
+    sums[g].add(hit, *splat, feature, has(), range);
   }
   void end(TileEntry entry) {
     saved.pair_visibility[entry.pair] = lane_sum(visibility);
+    if (has().statistics) saved.pair_owned[entry.pair] = lane_sum(owned);
     saved.pair_blocks[entry.pair] = static_cast<std::uint8_t>(blocks);
   }
   void skip(TileEntry entry) {
     saved.pair_visibility[entry.pair] = 0;
+    if (has().statistics) saved.pair_owned[entry.pair] = 0;
     saved.pair_blocks[entry.pair] = 0;
   }
 
@@ -90,28 +92,27 @@ struct ForwardVisitor {
   }
 };
 
-template <class T, int kChannels>
+template <class T, class Code>
 void forward_tile(const TileContext& tile, RasterSaved& saved, RasterOutput& out) {
   TilePixels<T> pixels(tile);
-  ForwardVisitor<T, kChannels> visitor(tile, saved);
+  ForwardVisitor<T, Code> visitor(tile, saved);
   for_each_hit(tile, pixels, visitor);
   visitor.store(pixels, out);
 }
 
 // ---- backward ----------------------------------------------------------------------------------
 
-constexpr int kMaxSums = splat_sums(kMaxChannels);
+constexpr int kMaxSums = splat_sums(kMaxChannels, true);
 
-template <class T, int kChannels>
+template <class T, class Code>
 struct BackwardVisitor {
-  static constexpr int kSums = splat_sums(kChannels > 0 ? kChannels : kMaxChannels);
   const TileContext& tile;
   const DistortionRange range;
   RasterSaved& saved;
-  const int channels;
-  PixelGradient<T, kChannels> pixels[kGroupsPerTile<T>];
+  const MapChannels flags;
+  PixelGradient<T, Code> pixels[kGroupsPerTile<T>];
   // Of the current surfel.
-  T sums[kSums];
+  T sums[Code::kSums];
   const float* feature;
   const Splat* splat;
 
@@ -124,7 +125,7 @@ struct BackwardVisitor {
       : tile(tile),
         range(distortion_range(tile.call.settings)),
         saved(saved),
-        channels(tile.call.input.channels) {
+        flags(tile.call.maps()) {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) load_group(g, out, dL_dout);
   }
 
@@ -133,7 +134,7 @@ struct BackwardVisitor {
       values[c] = map.empty() ? T(0) : load_pixels<T>(tile, map, group, c, outside);
   }
   void load_group(int g, const RasterOutput& out, const RasterOutputGradient& dL_dout) {
-    PixelMaps<T, kChannels> maps;
+    PixelMaps<T, Code> maps;
     for_each_map(
         tile.call.maps(),
         [&](const char*, int width, T* dL, T* values, const Image& dL_dmap, const Image& map) {
@@ -153,26 +154,27 @@ struct BackwardVisitor {
         pixels[g].kept,
         saved.kept
     );
-    pixels[g].start(maps, channels, range.on);
+    pixels[g].start(maps, has());
   }
 
+  MapChannels has() const { return Code::known(flags); }
   std::uint64_t groups(TileEntry entry) const {
     return groups_of_blocks<T>(saved.pair_blocks[entry.pair]);
   }
   void begin(TileEntry entry) {
-    std::fill_n(sums, splat_sums(channels), T(0));
+    std::fill_n(sums, splat_sums(has()), T(0));
     feature = tile.feature(entry.surfel);
     splat = &tile.lists.splats[entry.surfel];
   }
   void hit(int g, const SplatHit<T>& hit) {
-    pixels[g].hit(hit, *splat, feature, channels, range, sums);
+    pixels[g].hit(hit, *splat, feature, has(), range, sums);
   }
   float* slot_of(TileEntry entry) const {
-    return &saved.pair_gradients[entry.pair * static_cast<std::size_t>(splat_sums(channels))];
+    return &saved.pair_gradients[entry.pair * static_cast<std::size_t>(splat_sums(has()))];
   }
   void skip(TileEntry) {}  // sum_pairs() leaves out pairs without blocks
   void end(TileEntry entry) {
-    const int width = splat_sums(channels);
+    const int width = splat_sums(has());
     float* slot = slot_of(entry);
     if constexpr (kLanesOf<T> == 8)
       for (int i = 0; i < width; i += 8) lane_sums(&sums[i]).store(slot + i);
@@ -181,7 +183,7 @@ struct BackwardVisitor {
   }
 };
 
-template <class T, int kChannels>
+template <class T, class Code>
 void backward_tile(
     const TileContext& tile,
     RasterSaved& saved,
@@ -189,18 +191,18 @@ void backward_tile(
     const RasterOutputGradient& dL_dout
 ) {
   TilePixels<T> pixels(tile);
-  BackwardVisitor<T, kChannels> visitor(tile, saved, out, dL_dout);
+  BackwardVisitor<T, Code> visitor(tile, saved, out, dL_dout);
   for_each_hit(tile, pixels, visitor);
 }
 
-// Calls body<T, kChannels>(tile) for every tile, with the lane type and channel count of the call.
+// Calls body<T, Code>(tile) for every tile, with the lane type and PassCode of the call.
 template <class F>
 void for_each_tile(const RasterCall& call, const TileLists& lists, F&& body) {
   const auto with_lanes = [&](auto lane) {
-    with_channels(call.input.channels, [&]<int kChannels>() {
+    with_pass_code(call.maps(), [&]<class Code>() {
       parallel_for(lists.num_tiles(), 2, [&](std::size_t i) {
         const int tile = static_cast<int>(i);
-        body.template operator()<decltype(lane), kChannels>(TileContext{
+        body.template operator()<decltype(lane), Code>(TileContext{
             call, lists, call.camera.size(), tile % lists.tiles_x, tile / lists.tiles_x});
       });
     });
@@ -238,15 +240,26 @@ void store3(FloatArray& array, std::size_t i, Vec3<T> v) {
   for (int k = 0; k < 3; ++k) store_strided(&array[3 * i + k], 3, v[k]);
 }
 
+// |dL/d(screen)| from pixels to NDC.
+void store_screen_abs(
+    MapChannels has, const float* sums, ImageSize size, std::size_t i, RasterGradient& out
+) {
+  const float* s = sums + extra_slot(has.features, kSumScreenAbsX);
+  out.screen_abs[2 * i] = 0.5f * static_cast<float>(size.width) * s[0];
+  out.screen_abs[2 * i + 1] = 0.5f * static_cast<float>(size.height) * s[1];
+}
+
 template <class T>
 void surfel_vjp_lanes(
-    const RasterInput& input,
+    const RasterCall& call,
     const CameraOf<float>& camera,
     const RasterSaved& saved,
     std::size_t first,
     RasterGradient& out
 ) {
-  const int width = splat_sums(input.channels);
+  const RasterInput& input = call.input;
+  const MapChannels has = call.maps();
+  const int width = splat_sums(has);
   alignas(32) float sums[8 * kMaxSums];
   float z[8], num_pairs[8];
   for (int i = 0; i < kLanesOf<T>; ++i) {
@@ -255,6 +268,7 @@ void surfel_vjp_lanes(
         sums + i * width + kSumFeatures, input.channels, &out.features[(first + i) * input.channels]
     );
     out.opacities[first + i] = sums[i * width + kSumOpacity];
+    if (has.statistics) store_screen_abs(has, sums + i * width, call.camera.size(), first + i, out);
     num_pairs[i] = static_cast<float>(saved.lists.boxes[first + i].num_tiles());
     z[i] = num_pairs[i] > 0 ? saved.lists.splats[first + i].z_center : 1.0f;
   }
@@ -263,7 +277,7 @@ void surfel_vjp_lanes(
   SurfelGeometry<T> g{};
   Vec3<T> dL_dm;
   const auto sum = [&](int slot) { return load_strided<T>(sums + slot, width); };
-  project_surfel_vjp(surfel, c, projected_gradient<T>(sum), g, dL_dm);
+  project_surfel_vjp(surfel, c, projected_gradient<T>(has, sum), g, dL_dm);
   zero_unseen<T>(load_lanes<T>(num_pairs) > T(0), g, dL_dm);
   store3(out.means, first, g.mean);
   store_strided(&out.scales[2 * first], 2, g.scale.x);
@@ -280,14 +294,15 @@ void surfel_vjp(const RasterCall& call, const RasterSaved& saved, RasterGradient
   parallel_for_blocks(call.input.count, 512, [&](std::size_t begin, std::size_t end) {
     std::size_t i = begin;
     if (!call.settings.scalar)
-      for (; i + 8 <= end; i += 8) surfel_vjp_lanes<Float8>(call.input, camera, saved, i, out);
-    for (; i < end; ++i) surfel_vjp_lanes<float>(call.input, camera, saved, i, out);
+      for (; i + 8 <= end; i += 8) surfel_vjp_lanes<Float8>(call, camera, saved, i, out);
+    for (; i < end; ++i) surfel_vjp_lanes<float>(call, camera, saved, i, out);
   });
 }
 
 void fit_saved(const RasterCall& call, RasterSaved& saved) {
   saved.pair_visibility.resize(saved.lists.num_pairs());
   saved.pair_blocks.resize(saved.lists.num_pairs());
+  saved.pair_owned.resize(call.settings.with_statistics ? saved.lists.num_pairs() : 0);
   for_each_kept_map(
       call.maps(),
       [&](int channels, float, Image& map) {
@@ -309,15 +324,34 @@ void sum_visibility(const RasterSaved& saved, RasterOutput& output) {
   });
 }
 
+void sum_statistics(const RasterCall& call, const RasterSaved& saved, RasterOutput& output) {
+  const TileLists& lists = saved.lists;
+  const CameraOf<float> camera = camera_of(call);
+  parallel_for(output.radii.size(), 2048, [&](std::size_t i) {
+    output.owned_pixels[i] = std::accumulate(
+        saved.pair_owned.begin() + lists.pair_begin[i],
+        saved.pair_owned.begin() + lists.pair_begin[i + 1],
+        0.0f
+    );
+    output.radii[i] =
+        lists.boxes[i].empty()
+            ? 0.0f
+            : screen_radius(
+                  load_geometry<float>(call.input, i), camera, max_rho_of(call.input.opacities[i])
+              );
+  });
+}
+
 class RasterOnCpu final : public RasterBackend {
  public:
   void forward(const RasterCall& call, RasterOutput& output) override {
     build_tile_lists(call, saved_.lists);
     fit_saved(call, saved_);
-    for_each_tile(call, saved_.lists, [&]<class T, int kChannels>(const TileContext& tile) {
-      forward_tile<T, kChannels>(tile, saved_, output);
+    for_each_tile(call, saved_.lists, [&]<class T, class Code>(const TileContext& tile) {
+      forward_tile<T, Code>(tile, saved_, output);
     });
     sum_visibility(saved_, output);
+    sum_statistics(call, saved_, output);
   }
   void backward(
       const RasterCall& call,
@@ -326,11 +360,21 @@ class RasterOnCpu final : public RasterBackend {
       RasterGradient& gradient
   ) override {
     const std::size_t pairs = saved_.lists.num_pairs();
-    saved_.pair_gradients.resize(pairs * splat_sums(call.input.channels));
-    for_each_tile(call, saved_.lists, [&]<class T, int kChannels>(const TileContext& tile) {
-      backward_tile<T, kChannels>(tile, saved_, output, dL_doutput);
+    saved_.pair_gradients.resize(pairs * splat_sums(call.maps()));
+    for_each_tile(call, saved_.lists, [&]<class T, class Code>(const TileContext& tile) {
+      // Extras are asked for at run time: GCC 12 makes slower code for PassCode<., false> here.
+      backward_tile<T, PassCode<Code::kFeatures, true>>(tile, saved_, output, dL_doutput);
     });
     surfel_vjp(call, saved_, gradient);
+  }
+  void first_surface(
+      const RasterCall& call,
+      const RasterOutput& output,
+      ImageView mask,
+      const FirstSurfaceSettings& settings,
+      Image& depth
+  ) override {
+    first_surface_on_cpu(call, saved_.lists, output, mask, settings, depth);
   }
   std::size_t num_pairs() override { return saved_.lists.num_pairs(); }
   std::size_t num_pixel_pairs() override {

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "glint/render/project.h"
+#include "glint/render/raster_maps.h"
 
 namespace glint {
 
@@ -14,6 +15,7 @@ struct Splat {
   float x_ref, y_ref, center_x, center_y;
   float opacity, z_center;
   Vec3f normal;
+  float plane_distance;
 };
 
 GLINT_HD float lane_of(float v, int) { return v; }
@@ -34,7 +36,15 @@ GLINT_HD Splat splat_of(const ProjectedSurfel<T>& p, float opacity, int i = 0) {
   s.opacity = opacity;
   s.z_center = lane_of(p.z_center, i);
   s.normal = lane_of(p.normal, i);
+  s.plane_distance = lane_of(p.plane_distance, i);
   return s;
+}
+
+// The same map in all lanes.
+template <class T>
+GLINT_HD PixelPlaneMap<T> broadcast_map(const PixelPlaneMap<float>& m) {
+  const auto lift = [](Vec3f v) { return Vec3<T>{T(v.x), T(v.y), T(v.z)}; };
+  return {lift(m.gx), lift(m.gy), lift(m.g0), T(m.det)};
 }
 
 // Sums over pixels that one splat hands back to its surfel.
@@ -48,23 +58,36 @@ enum SplatSum {
   kSumCenterY = 12,
   kSumZCenter = 13,
   kSumNormal = 14,   // 3
-  kSumFeatures = 17  // channels
+  kSumFeatures = 17  // channels; behind them ExtraSum, where a call has extras
 };
-constexpr int splat_sums(int channels) { return (kSumFeatures + channels + 7) / 8 * 8; }
+enum ExtraSum { kSumPlaneDistance = 0, kSumScreenAbsX = 1, kSumScreenAbsY = 2, kExtraSums = 3 };
+GLINT_HD constexpr int extra_slot(int channels, ExtraSum sum) {
+  return kSumFeatures + channels + sum;
+}
+// How many a surfel has, in eights.
+GLINT_HD constexpr int splat_sums(int channels, bool with_extras) {
+  return (kSumFeatures + channels + (with_extras ? kExtraSums : 0) + 7) / 8 * 8;
+}
+GLINT_HD constexpr int splat_sums(MapChannels has) {
+  return splat_sums(has.features, has.has_extras());
+}
 
 // What a splat gives to the maps sum w v, the same v at all its pixels:
 // f(v, slot of dL/dv, channels, map of each argument).
 template <class F, class... Maps>
 GLINT_HD void for_each_attribute(
-    const Splat& splat, const float* feature, int channels, F&& f, Maps&... maps
+    const Splat& splat, const float* feature, MapChannels has, F&& f, Maps&... maps
 ) {
-  f(feature, kSumFeatures, channels, maps.features...);
+  f(feature, kSumFeatures, has.features, maps.features...);
   f(splat.normal, kSumNormal, 3, maps.normal...);
+  if (has.plane_distance)
+    f(&splat.plane_distance, extra_slot(has.features, kSumPlaneDistance), 1, maps.plane_distance...
+    );
 }
 
 // dL/d(projected) but for the features; sum(slot): a sum over the surfel's pixels.
 template <class T, class Sum>
-GLINT_HD ProjectedSurfel<T> projected_gradient(const Sum& sum) {
+GLINT_HD ProjectedSurfel<T> projected_gradient(MapChannels has, const Sum& sum) {
   const auto sum3 = [&](int slot) { return Vec3<T>{sum(slot), sum(slot + 1), sum(slot + 2)}; };
   ProjectedSurfel<T> g{};
   g.map = {sum3(kSumGx), sum3(kSumGy), sum3(kSumG0), sum(kSumDet)};
@@ -72,6 +95,7 @@ GLINT_HD ProjectedSurfel<T> projected_gradient(const Sum& sum) {
   g.center_y = sum(kSumCenterY);
   g.z_center = sum(kSumZCenter);
   g.normal = sum3(kSumNormal);
+  if (has.plane_distance) g.plane_distance = sum(extra_slot(has.features, kSumPlaneDistance));
   return g;
 }
 

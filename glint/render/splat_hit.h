@@ -77,6 +77,29 @@ GLINT_HD void geometry_of_hit(const Splat& s, const PixelPlaneMap<T>& map, Splat
   hit.depth = select(hit.in_plane, hit.plane.t, T(s.z_center));
 }
 
+// d rho/d(shift of the splat's footprint by a pixel): the slope over the screen, of rho at fixed
+// pixels. [D] of rho3 = u^2 + v^2 with u = zeta1 / zeta3 and zeta affine in the pixel: moving the
+// footprint by s is looking at it from the pixel p - s, so
+//   d rho3/ds = -d rho3/dp = -2 (u (g1 - u g3) + v (g2 - v g3)) / zeta3, g = gx or gy;
+//   d rho2/ds = -4 (p - c).
+template <class T>
+GLINT_HD Vec2<T> screen_slope(
+    const PixelPlaneMap<T>& map, const SplatHit<T>& hit, T center_x, T center_y
+) {
+  const PlaneHit<T>& p = hit.plane;
+  const auto along = [&](Vec3<T> g, T offset) {
+    const T of_plane = T(-2) * p.inverse * (p.u * (g.x - p.u * g.z) + p.v * (g.y - p.v * g.z));
+    return select(hit.in_plane, of_plane, T(-4) * offset);
+  };
+  return {along(map.gx, hit.x - center_x), along(map.gy, hit.y - center_y)};
+}
+
+// Whether the splat owns the pixel: counts while more than half of the light is left.
+template <class T>
+GLINT_HD Mask<T> owns_pixel(const SplatHit<T>& hit) {
+  return hit.valid & (hit.transmittance > T(0.5f));
+}
+
 // Composites a splat at the pixel centres (x, y), of which only hits behind `nearest` count;
 // `map`: the splat's, in lanes. Returns false where no lane has a hit (scalars only; lanes say it
 // by weight 0).

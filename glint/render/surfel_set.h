@@ -46,6 +46,11 @@ class SurfelSet {
   // The same for rays, which must stay as they are until trace_backward().
   const TraceOutput& trace(const Rays& rays, int sh_degree, const TraceSettings& settings = {});
 
+  // Depth of the first surface of what the first of them rasterised last, see Rasterizer.
+  void first_surface(ImageView mask, const FirstSurfaceSettings& settings, Image& depth) {
+    pass_.rasterizer.first_surface(mask, settings, depth);
+  }
+
   SurfelCloud& cloud() { return cloud_; }
   const SurfelCloud& cloud() const { return cloud_; }
   std::size_t num_pairs() const { return pass_.rasterizer.num_pairs(); }

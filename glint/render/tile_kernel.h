@@ -115,12 +115,6 @@ struct TilePixels {
   }
 };
 
-template <class T>
-PixelPlaneMap<T> broadcast_map(const PixelPlaneMap<float>& m) {
-  const auto lift = [](Vec3f v) { return Vec3<T>{T(v.x), T(v.y), T(v.z)}; };
-  return {lift(m.gx), lift(m.gy), lift(m.g0), T(m.det)};
-}
-
 // The hit of one splat at one group, composited. Lanes that do not count have weight and depth 0.
 template <class T, class Visitor>
 void visit_group(

@@ -53,7 +53,7 @@ inline constexpr auto kMaps = [] {
       {"rgb", "Image", kColor, "rgb.exr", "rgb.png", "", ""},
       {"depth", "Depth", kDepth, "depth.exr", "", "depth", "depth"},
       {"normal", "Normal", kNormal, "normal.exr", "", "normal", "normal"},
-      {"glass", "Glass", kMask, "", "", "glass", ""},
+      {"glass", "Glass", kMask, "", "", "glass", "glass"},
       {"transparency", "Transparency t", kShare, "transparency.exr", "", "", ""},
       {"specularity", "Specularity k_s", kShare, "specularity.exr", "", "", ""},
       // The first surface that is not glass along the straight ray.
@@ -87,6 +87,8 @@ inline constexpr auto kMaps = [] {
       // Of the material at the first surface; true albedo is linear, priors are as displayed.
       {"albedo", "Albedo", kColor, "", "", "albedo", "diffuse_albedo"},
       {"basecolor", "Base colour", kColor, "", "", "", "basecolor"},
+      // The photo without highlights and mirror images.
+      {"delighted", "De-lighted image", kColor, "", "", "", "delight"},
   });
 }();
 

@@ -31,6 +31,22 @@ struct ObserveRaster {
   }
 };
 
+// What PGSR watches besides: the mean norm of the absolute gradient and the largest radius, both at
+// the published image height (scale: rows over that height).
+struct ObserveFootprint {
+  const std::uint8_t* in_view;  // [N]
+  const float* screen_abs;      // [N][2]
+  const float* radii;           // [N] pixels
+  float scale;
+  float *gradient_sums, *max_radii;  // [N]
+
+  GLINT_HD void operator()(std::size_t i) const {
+    if (in_view[i] == 0) return;
+    gradient_sums[i] += scale * hypotf(screen_abs[2 * i], screen_abs[2 * i + 1]);
+    max_radii[i] = max_of(max_radii[i], radii[i] / scale);
+  }
+};
+
 // |v| without overflow of the squares.
 GLINT_HD float safe_length(Vec3f v) {
   const float x = abs_of(v.x), y = abs_of(v.y), z = abs_of(v.z);
@@ -52,6 +68,14 @@ struct ObserveTrace {
   }
 };
 
-using DensifyKernels = KernelList<ObserveRaster, ObserveTrace>;
+// Whether a view sees a surfel: it owns a pixel there (RasterOutput::owned_pixels).
+struct CountObservations {
+  const float* owned_pixels;  // [N]
+  std::uint32_t* views;       // [N] added to
+
+  GLINT_HD void operator()(std::size_t i) const { views[i] += owned_pixels[i] > 0 ? 1 : 0; }
+};
+
+using DensifyKernels = KernelList<ObserveRaster, ObserveFootprint, ObserveTrace, CountObservations>;
 
 }  // namespace glint

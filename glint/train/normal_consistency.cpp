@@ -10,15 +10,6 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;  // pixels a block
 
-Unprojector unprojector(const Camera& camera, const Image& depth) {
-  return {
-      depth,
-      static_cast<float>(1 / camera.fx),
-      static_cast<float>(1 / camera.fy),
-      static_cast<float>(camera.cx),
-      static_cast<float>(camera.cy)};
-}
-
 }  // namespace
 
 double NormalConsistencyLoss::evaluate(

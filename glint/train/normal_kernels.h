@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Losses on normal maps, pixel by pixel: prior (normal_prior.h), smoothness (normal_smoothness.h),
-// consistency with the depth map (normal_consistency.h).
+// consistency with the depth map (normal_consistency.h, plane_consistency.h).
 #pragma once
 
 #include "glint/core/kernel.h"
 #include "glint/render/depth_normal.h"
+#include "glint/scene/camera.h"
 #include "glint/train/pixel_access.h"
 
 namespace glint {
@@ -78,6 +79,14 @@ struct Unprojector {
   GLINT_HD Vec3f point(int x, int y) const { return depth.at(x, y) * ray(x, y); }
   GLINT_HD bool valid(int x, int y) const { return depth.at(x, y) > 0; }
 };
+inline Unprojector unprojector(const Camera& camera, const Image& depth) {
+  return {
+      depth,
+      static_cast<float>(1 / camera.fx),
+      static_cast<float>(1 / camera.fy),
+      static_cast<float>(camera.cx),
+      static_cast<float>(camera.cy)};
+}
 // Central differences of the points; not valid at the border and beside pixels without depth.
 struct DepthDifferences {
   bool valid;
@@ -116,6 +125,32 @@ struct NormalConsistencyAt {
     return loss;
   }
 };
+// W |A N_D - N|_1 (plane_consistency.h).
+struct PlaneConsistencyAt {
+  Unprojector unproject;
+  ImageView normal, alpha, flatness;
+  float scale;
+  ImageRef dL_dnormal;
+  ImageRef dL_dx, dL_dy;  // [H][W][3], written: gradients of the differences
+
+  GLINT_HD double operator()(int x, int y) const {
+    const DepthDifferences d = differences_at(unproject, x, y);
+    Vec3f g_right_left{}, g_down_up{};
+    float loss = 0;
+    if (d.valid) {
+      const float a = alpha.at(x, y), w = flatness.at(x, y);
+      const Vec3f off =
+          a * normal_from_differences(d.right_left, d.down_up) - load3<float>(normal, x, y);
+      loss = w * l1_norm(off);
+      const Vec3f slope = (scale * w) * Vec3f{sign_of(off.x), sign_of(off.y), sign_of(off.z)};
+      add3(dL_dnormal, x, y, -slope);
+      normal_from_differences_vjp(d.right_left, d.down_up, a * slope, g_right_left, g_down_up);
+    }
+    store3(dL_dx, x, y, g_right_left);
+    store3(dL_dy, x, y, g_down_up);
+    return static_cast<double>(loss);
+  }
+};
 // Each depth takes part in the differences of its four neighbours.
 struct ConsistencyDepthVjp {
   Unprojector unproject;
@@ -139,6 +174,7 @@ using NormalKernels = KernelList<
     CountNormals,
     NormalPriorAt<float>,
     NormalSmoothnessAt<float>,
-    NormalConsistencyAt>;
+    NormalConsistencyAt,
+    PlaneConsistencyAt>;
 
 }  // namespace glint

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/trainable_set.h"
 
+#include <algorithm>
+
 #include "glint/core/error.h"
+#include "glint/core/kernel.h"
 
 namespace glint {
 
@@ -11,6 +14,21 @@ SetTraining with_extra_rates(SetTraining training, const InitialSurfels& initial
   for (const ExtraChannel& extra : initial.extra) training.rates.extra.push_back(extra.rate);
   training.seed = initial.seed;
   return training;
+}
+
+// In how many of the cameras each surfel owns a pixel.
+Array<std::uint32_t> count_observations(
+    const SurfelSet& set, std::span<const Camera> cameras, RasterSettings settings
+) {
+  settings.with_statistics = true;
+  Array<std::uint32_t> views(set.cloud().size(), 0);
+  RasterPass pass;
+  for (const Camera& camera : cameras) {
+    const RasterOutput& output = set.forward(pass, camera, 0, settings);
+    run_kernel(views.size(), 4096, CountObservations{output.owned_pixels.data(), views.data()});
+  }
+  synchronize();
+  return views;
 }
 
 }  // namespace
@@ -67,6 +85,22 @@ void TrainableSet::freeze_geometry() {
   t.frozen_geometry = true;
   t.rates.means = t.rates.means_final = 0;
   t.rates.scale = t.rates.rotation = t.rates.opacity = 0;
+}
+
+std::size_t TrainableSet::trim(std::span<const Camera> cameras, const RasterSettings& settings) {
+  Training& t = training();
+  if (t.frozen_geometry) return 0;
+  const auto wanted = static_cast<std::size_t>(std::max(0, t.settings.densify.min_observations));
+  const std::size_t least = std::min(wanted, cameras.size());
+  const Array<std::uint32_t> views = count_observations(*this, cameras, settings);
+  std::vector<std::uint8_t> keep(views.size());
+  std::transform(views.begin(), views.end(), keep.begin(), [least](std::uint32_t n) {
+    return n >= least ? 1 : 0;
+  });
+  const std::size_t before = cloud_.size();
+  t.densifier.prune(keep, cloud_, t.adam);
+  keep_rows(t.gradient, keep);
+  return before - cloud_.size();
 }
 
 DensifyCounts TrainableSet::update(int step) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "glint/render/surfel_set.h"
 #include "glint/train/adam.h"
@@ -40,8 +41,15 @@ class TrainableSet final : public SurfelSet {
   const Rays& trace_backward(const TraceOutputGradient& dL_doutput);
   // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.
   void freeze_geometry();
+  // Only opacities stay.
+  void freeze_opacity() { training().rates.opacity = 0; }
   // Optimiser step and, when due, densification. `step` counts from 1.
   DensifyCounts update(int step);
+  // Drops surfels that own a pixel (RasterOutput::owned_pixels) in fewer of the cameras than
+  // DensifyConfig::min_observations, or than there are cameras [Chen24, PGSR]; returns how many.
+  // Between update() and the next forward(); methods say when. A set whose geometry is frozen stays
+  // as it is.
+  std::size_t trim(std::span<const Camera> cameras, const RasterSettings& settings = {});
 
   const SurfelCloud& gradient() const { return training().gradient; }
 

@@ -177,6 +177,7 @@ class CellRun {
     record_.not_applicable = not_applicable(record_.metrics, record_.not_measured);
     record_.num_surfels = method_->num_surfels();
     record_.warnings = cost.warnings;
+    record_.notes = cost.notes;
     const Camera& camera = scene_.test.front().camera;
     record_.resolution = fmt::format("{}x{}", camera.width, camera.height);
   }

@@ -34,7 +34,7 @@ void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method)
   Progress progress("render training views", scene.train.size());
   for (const View& view : scene.train) {
     throw_if_interrupted();
-    const MapSet output = method.render(view.camera);
+    const MapSet output = method.render_view(view);
     synchronize();
     const fs::path folder = train_view_folder(spec.folder, view);
     const auto write = [&](MapId id, const Image& map) {

@@ -51,7 +51,7 @@ void render_stage(const RunSpec& spec, const Scene& scene, Method& method) {
   fs::remove_all(spec.folder / "renders", code);
   for (const View& view : scene.test) {
     throw_if_interrupted();
-    const MapSet output = method.render(view.camera);
+    const MapSet output = method.render_view(view);
     const Image& rgb = output["rgb"];
     synchronize();
     GLINT_CHECK(

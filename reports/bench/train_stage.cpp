@@ -33,7 +33,7 @@ std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
   const TrainReport report = train(*method, scene, train_options(spec));
   const double peak_memory = peak_memory_mb();
   method->save(spec.folder.string());
-  write_trained(spec, {report.seconds, peak_memory, method->warnings()});
+  write_trained(spec, {report.seconds, peak_memory, method->warnings(), method->notes()});
   end_stage(spec.folder, Stage::kTrain, spec.train_document);
   return method;
 }

@@ -27,6 +27,7 @@ void visit_fields(R& record, V&& v) {
   v("dataset_hash", record.dataset_hash);
   v("num_surfels", record.num_surfels);
   v("warnings", record.warnings);
+  v("notes", record.notes);
   v("not_measured", record.not_measured);
   v("not_applicable", record.not_applicable);
   v("timings", record.timings);

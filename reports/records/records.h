@@ -48,6 +48,7 @@ struct Record {
   std::string dataset_hash;  // as the loader knows the data
   std::size_t num_surfels = 0;
   std::vector<std::string> warnings;  // of the method: losses off, missing priors
+  std::vector<std::string> notes;     // of the method, for readers of tables: which masks it got
   Json timings = Json::object();      // stage -> seconds
   Json environment = Json::object();  // machine, build, date
 

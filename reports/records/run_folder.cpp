@@ -102,6 +102,7 @@ void write_trained(const RunSpec& spec, const TrainCost& cost) {
   json["train_seconds"] = cost.seconds;
   json["peak_memory_mb"] = cost.peak_memory_mb;
   json["warnings"] = cost.warnings;
+  json["notes"] = cost.notes;
   write_file(spec.folder / "env.json", json.dump(2) + "\n");
 }
 
@@ -112,7 +113,8 @@ std::optional<TrainCost> trained_cost(const RunSpec& spec) {
   return TrainCost{
       json.value("train_seconds", 0.0),
       json.value("peak_memory_mb", 0.0),
-      json.value("warnings", std::vector<std::string>{})};
+      json.value("warnings", std::vector<std::string>{}),
+      json.value("notes", std::vector<std::string>{})};
 }
 
 fs::path view_folder(const fs::path& run, const std::string& view_name) {

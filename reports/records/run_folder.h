@@ -38,7 +38,7 @@ void clear_run_folder(const fs::path& folder);
 // What training cost and had to say, in env.json; nothing: no training has ended there.
 struct TrainCost {
   double seconds = 0, peak_memory_mb = 0;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings, notes;
 };
 void write_trained(const RunSpec& spec, const TrainCost& cost);
 std::optional<TrainCost> trained_cost(const RunSpec& spec);

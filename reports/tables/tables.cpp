@@ -360,6 +360,17 @@ void add_tie_notes(Table& table, const TieTests& tests) {
     ));
 }
 
+// What the methods of the rows have to say, each line once.
+void add_method_notes(Table& table, const std::vector<Record>& records) {
+  std::set<std::string> notes;
+  for (const TableRow& row : table.rows)
+    for (const Record& record : records)
+      if (record.cell.method == row.method)
+        for (const std::string& note : record.notes)
+          notes.insert(fmt::format("{}: {}.", row.title, note));
+  table.notes.insert(table.notes.end(), notes.begin(), notes.end());
+}
+
 void add_notes(
     Table& table, const TableDefinition& definition, const std::vector<Record>& records
 ) {
@@ -380,6 +391,7 @@ void add_notes(
     for (const TableRow& row : table.rows)
       if (!record.ok() && record.cell.method == row.method) failures.insert(failure_note(record));
   table.notes.insert(table.notes.end(), failures.begin(), failures.end());
+  add_method_notes(table, records);
   for (const OrderAgreement& order : table.agreement) table.notes.push_back(agreement_note(order));
 }
 

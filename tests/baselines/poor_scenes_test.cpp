@@ -22,8 +22,9 @@ std::vector<std::string> warnings_of_short_run(const MethodSpec& spec, const Sce
   }
   CHECK_NOTHROW(method->check_finite());
   CHECK(method->num_surfels() > 0);
-  const MapSet out = method->render(scene.test.front().camera);
-  for (const float value : out["rgb"].values()) REQUIRE(std::isfinite(value));
+  const MapSet out = method->render_view(scene.test.front());
+  for (const MapId id : {MapId("rgb"), MapId("depth"), MapId("normal")})
+    for (const float value : out[id].values()) REQUIRE(std::isfinite(value));
   return method->warnings();
 }
 
@@ -99,9 +100,36 @@ TEST_CASE("Without glass every method trains") {
   for_every_method([&](const MethodSpec& spec) { warnings_of_short_run(spec, scene); });
 }
 
-TEST_CASE("One training view is enough for every method") {
+TEST_CASE("With glass everywhere every method trains") {
+  Scene scene = small_room();
+  for (std::vector<View>* views : {&scene.train, &scene.test})
+    for (View& view : *views)
+      view.truth["glass"] = Image(view.camera.width, view.camera.height, 1, 1.0f);
+  for_every_method([&](const MethodSpec& spec) { warnings_of_short_run(spec, scene); });
+}
+
+TEST_CASE("One training view is enough for every method, and losses of two views are off") {
   Scene scene = small_room();
   scene.train.resize(1);
+  set_extent(scene);
+  for_every_method([&](const MethodSpec& spec) {
+    const auto warnings = warnings_of_short_run(spec, scene);
+    const bool wanted = uses(spec, "lambda_geometric");
+    CHECK(any_says(warnings, "1 of 1 training views without a neighbour") == wanted);
+  });
+}
+
+// Close together, 25 degrees apart, each sees 10.
+TEST_CASE("Neighbours that see nothing in common are no trouble to any method") {
+  Scene scene = small_room();
+  scene.train.resize(1);
+  scene.train[0].camera.fx = scene.train[0].camera.fy = 6.0 * scene.train[0].camera.width;
+  scene.train.push_back(scene.train[0]);
+  Camera& other = scene.train[1].camera;
+  const double half = 12.5 * M_PI / 180;
+  const Mat3d turn = rotation_from_quaternion({std::cos(half), 0, std::sin(half), 0});
+  other.rotation_cam_from_world = turn * other.rotation_cam_from_world;
+  other.translation_cam_from_world = turn * other.translation_cam_from_world + Vec3d{0.3, 0, 0};
   set_extent(scene);
   for_every_method([&](const MethodSpec& spec) { warnings_of_short_run(spec, scene); });
 }

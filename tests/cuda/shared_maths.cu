@@ -2,6 +2,7 @@
 // Compile test: the shared maths as device code, in float. One kernel calls every formula and vjp,
 // so that nothing of it can stop compiling for CUDA unnoticed.
 #include "glint/render/depth_normal.h"
+#include "glint/render/first_surface.h"
 #include "glint/render/project.h"
 #include "glint/render/spherical_harmonics.h"
 #include "glint/render/transport.h"
@@ -29,7 +30,10 @@ __device__ float surfel_formulas(
   SurfelGeometry<float> dL_dsurfel{};
   Vec3f dL_dm;
   project_surfel_vjp(surfel, camera, dL_dp, dL_dsurfel, dL_dm);
-  return dL_dopacity + dL_dsurfel.mean.x + dL_dm.z;
+  SurfaceHits hits;
+  hits.add(p.plane_distance, step.weight);
+  return dL_dopacity + dL_dsurfel.mean.x + dL_dm.z + screen_radius(surfel, camera, kMaxRho) +
+         first_surface_depth(hits, {});
 }
 
 __device__ float pixel_formulas(Vec3f direction) {

@@ -50,6 +50,14 @@ class FakeMethod final : public Method {
     output["interface"] = output["rgb"];
     return output;
   }
+  // Views of the dataset show another transparency than cameras.
+  static constexpr float kTransparencyOfViews = 0.5f;
+  MapSet render_view(const View& view) override {
+    MapSet output = render(view.camera);
+    output["transparency"] = Image(view.camera.width, view.camera.height, 1, kTransparencyOfViews);
+    return output;
+  }
+  std::vector<std::string> notes() const override { return {"a fake"}; }
   void save(const std::string& folder) const override {
     write_file(fs::path(folder) / "interface.ply", fmt::format("{}", config_.grey));
   }

@@ -24,11 +24,12 @@ inline bool is_clean(const Cutoffs& c) {
 // Largest differences at clean pixels; depths relative to max(1, depth).
 struct RenderErrors {
   double features = 0, alpha = 0, depth_sum = 0, depth_median = 0, normal = 0, distortion = 0;
+  double plane_distance = 0;
   std::size_t clean = 0, near_cutoff = 0;
   std::size_t flipped = 0;  // near a cut-off, and visibly on its other side
 
   double largest() const {
-    return std::max({features, alpha, depth_sum, depth_median, normal, distortion});
+    return std::max({features, alpha, depth_sum, depth_median, normal, distortion, plane_distance});
   }
 };
 
@@ -37,7 +38,7 @@ inline double relative_difference(double actual, double expected) {
   return std::isnan(difference) ? Cutoffs::kNone : difference;
 }
 
-// Differences at one pixel. `output.distortion` may be empty.
+// Differences at one pixel. Maps that are made only when asked for may be empty.
 inline RenderErrors pixel_errors(
     const RasterOutput& output, const ReferencePixel& expected, int x, int y
 ) {
@@ -58,6 +59,7 @@ inline RenderErrors pixel_errors(
   if (expected.cutoffs.median > kCutoffGuard)
     errors.depth_median = difference(output.depth_median, expected.depth_median);
   errors.distortion = difference(output.distortion, expected.distortion);
+  errors.plane_distance = difference(output.plane_distance, expected.plane_distance);
   return errors;
 }
 
@@ -69,7 +71,8 @@ inline void add_errors(RenderErrors& total, const RenderErrors& other) {
         &RenderErrors::depth_sum,
         &RenderErrors::depth_median,
         &RenderErrors::normal,
-        &RenderErrors::distortion})
+        &RenderErrors::distortion,
+        &RenderErrors::plane_distance})
     total.*member = std::max(total.*member, other.*member);
   total.clean += other.clean;
   total.near_cutoff += other.near_cutoff;

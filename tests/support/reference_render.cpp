@@ -111,6 +111,7 @@ ReferenceSurfel reference_surfel(const ReferenceInput& input, std::size_t i, con
   s.opacity = input.opacities[i];
   find_box(s, camera);
   const bool away = dot(s.normal, s.mean - camera.center()) > 0;
+  s.plane_distance = std::abs(dot(s.normal, s.mean - camera.center()));
   s.normal_in_cam = camera.rotation_cam_from_world * ((away ? -1.0 : 1.0) * s.normal);
   return s;
 }
@@ -158,12 +159,14 @@ ReferenceRenderer::ReferenceRenderer(
 }
 
 bool ReferenceRenderer::contribution(
-    const ReferenceSurfel& s, int x, int y, Contribution& out, Cutoffs& cutoffs
+    const ReferenceSurfel& s, int x, int y, Vec2d shift, Contribution& out, Cutoffs& cutoffs
 ) const {
-  const ReferenceHit hit = reference_hit(s, camera_, {x + 0.5, y + 0.5});
+  const Vec2d point{x + 0.5, y + 0.5};
+  const ReferenceHit there = reference_hit(s, camera_, point);
+  const ReferenceHit hit = reference_hit(s, camera_, point - shift);
   const double rho = std::min(hit.rho3, hit.rho2);
   const double unclamped = s.opacity * std::exp(-rho / 2);
-  const double z = hit.low_pass() ? s.center_depth : hit.t;
+  const double z = there.low_pass() ? s.center_depth : there.t;
   const double limit =
       input_.near_limit.empty() ? -Cutoffs::kNone : static_cast<double>(input_.near_limit.at(x, y));
   const double near = std::max(static_cast<double>(settings_.near_plane), limit);
@@ -181,14 +184,15 @@ bool ReferenceRenderer::contribution(
   return true;
 }
 
-ReferencePixel ReferenceRenderer::pixel(int x, int y) const {
+ReferencePixel ReferenceRenderer::pixel(int x, int y, const FootprintShift& shift) const {
   ReferencePixel result;
   result.features.assign(static_cast<std::size_t>(input_.channels), 0.0);
   std::vector<std::pair<double, double>> weighted_depths;  // (w, m) of the distortion so far
   double transmittance = 1, previous_depth = -Cutoffs::kNone;
   for (const ReferenceSurfel& s : surfels_) {
     Contribution hit;
-    if (!contribution(s, x, y, hit, result.cutoffs)) continue;
+    const Vec2d by = s.index == shift.surfel ? shift.by : Vec2d{0, 0};
+    if (!contribution(s, x, y, by, hit, result.cutoffs)) continue;
     const double after = transmittance * (1 - hit.alpha);
     keep_min(result.cutoffs.transmittance, std::abs(after / kMinTransmittance - 1));
     if (after < kMinTransmittance) break;
@@ -199,7 +203,10 @@ ReferencePixel ReferenceRenderer::pixel(int x, int y) const {
     result.alpha += w;
     result.depth_sum += w * hit.z;
     result.normal += w * s.normal_in_cam;
+    result.plane_distance += w * s.plane_distance;
     result.weights.emplace_back(s.index, w);
+    result.depths.push_back(hit.z);
+    if (transmittance > kMedianTransmittance) result.owners.push_back(s.index);
 
     keep_min(result.cutoffs.median, std::abs(transmittance / kMedianTransmittance - 1));
     if (transmittance > kMedianTransmittance) result.depth_median = hit.z;
@@ -222,32 +229,39 @@ ReferenceOutput reference_render(
     const ReferenceInput& input, const Camera& camera, const RasterSettings& settings
 ) {
   const ReferenceRenderer renderer(input, camera, settings);
-  ReferenceOutput output{camera.width, camera.height, {}, {}};
+  ReferenceOutput output{camera.width, camera.height, {}, {}, {}};
   output.pixels.resize(camera.size().num_pixels());
   output.visibility.assign(input.count, 0.0);
+  output.owned_pixels.assign(input.count, 0.0);
   parallel_for(output.pixels.size(), 64, [&](std::size_t i) {
     const auto width = static_cast<std::size_t>(camera.width);
     output.pixels[i] = renderer.pixel(static_cast<int>(i % width), static_cast<int>(i / width));
   });
-  for (const ReferencePixel& pixel : output.pixels)
+  for (const ReferencePixel& pixel : output.pixels) {
     for (const auto& [surfel, w] : pixel.weights) output.visibility[surfel] += w;
+    for (const std::size_t surfel : pixel.owners) output.owned_pixels[surfel] += 1;
+  }
   return output;
 }
 
-double reference_loss(const ReferenceOutput& output, const RasterOutputGradient& g) {
-  const auto weight = [](const Image& map, std::size_t i) {
-    return map.empty() ? 0.0 : static_cast<double>(map.values()[i]);
+double reference_loss(const ReferencePixel& p, std::size_t i, const RasterOutputGradient& g) {
+  const auto weight = [](const Image& map, std::size_t j) {
+    return map.empty() ? 0.0 : static_cast<double>(map.values()[j]);
   };
   double loss = 0;
-  for (std::size_t i = 0; i < output.pixels.size(); ++i) {
-    const ReferencePixel& p = output.pixels[i];
-    for (std::size_t c = 0; c < p.features.size(); ++c)
-      loss += weight(g.features, i * p.features.size() + c) * p.features[c];
-    for (int k = 0; k < 3; ++k)
-      loss += weight(g.normal, 3 * i + static_cast<std::size_t>(k)) * p.normal[k];
-    loss += weight(g.alpha, i) * p.alpha + weight(g.depth_sum, i) * p.depth_sum +
-            weight(g.depth_median, i) * p.depth_median + weight(g.distortion, i) * p.distortion;
-  }
+  for (std::size_t c = 0; c < p.features.size(); ++c)
+    loss += weight(g.features, i * p.features.size() + c) * p.features[c];
+  for (int k = 0; k < 3; ++k)
+    loss += weight(g.normal, 3 * i + static_cast<std::size_t>(k)) * p.normal[k];
+  return loss + weight(g.alpha, i) * p.alpha + weight(g.depth_sum, i) * p.depth_sum +
+         weight(g.depth_median, i) * p.depth_median + weight(g.distortion, i) * p.distortion +
+         weight(g.plane_distance, i) * p.plane_distance;
+}
+
+double reference_loss(const ReferenceOutput& output, const RasterOutputGradient& g) {
+  double loss = 0;
+  for (std::size_t i = 0; i < output.pixels.size(); ++i)
+    loss += reference_loss(output.pixels[i], i, g);
   return loss;
 }
 

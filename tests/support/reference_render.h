@@ -30,6 +30,7 @@ struct ReferenceSurfel {
   double opacity = 0;
   double center_depth = 0;            // camera z of the mean
   Vec3d normal_in_cam;                // flipped towards the camera
+  double plane_distance = 0;          // of the camera centre from the plane
   bool has_low_pass = false;          // the 3-sigma ellipse lies in front of the camera plane
   Vec2d box_center, box_half_extent;  // of that ellipse on the image, pixels; if has_low_pass
   double camera_plane_margin = 0;     // 1 - (z extent / center depth)^2: sign decides has_low_pass
@@ -66,10 +67,19 @@ struct Cutoffs {
 
 struct ReferencePixel {
   std::vector<double> features;
-  double alpha = 0, depth_sum = 0, depth_median = 0, distortion = 0;
+  double alpha = 0, depth_sum = 0, depth_median = 0, distortion = 0, plane_distance = 0;
   Vec3d normal;
   std::vector<std::pair<std::size_t, double>> weights;  // (surfel, w), front to back
+  std::vector<double> depths;                           // z of each of them
+  std::vector<std::size_t> owners;                      // surfels that count while T > 0.5
   Cutoffs cutoffs;
+};
+
+// A surfel's footprint moved over the screen: its alpha at a pixel is what it was `by` pixels
+// before; depth and normal stay.
+struct FootprintShift {
+  std::size_t surfel = static_cast<std::size_t>(-1);
+  Vec2d by{0, 0};
 };
 
 // The surfels of one input seen by one camera, ready to be asked for pixels.
@@ -78,12 +88,13 @@ class ReferenceRenderer {
   ReferenceRenderer(
       const ReferenceInput& input, const Camera& camera, const RasterSettings& settings
   );
-  ReferencePixel pixel(int x, int y) const;
+  ReferencePixel pixel(int x, int y, const FootprintShift& shift = {}) const;
 
  private:
   struct Contribution;
-  bool contribution(const ReferenceSurfel& surfel, int x, int y, Contribution& out, Cutoffs& c)
-      const;
+  bool contribution(
+      const ReferenceSurfel& surfel, int x, int y, Vec2d shift, Contribution& out, Cutoffs& c
+  ) const;
 
   ReferenceInput input_;
   Camera camera_;
@@ -95,6 +106,7 @@ struct ReferenceOutput {
   int width = 0, height = 0;
   std::vector<ReferencePixel> pixels;  // [H][W]
   std::vector<double> visibility;      // [N]
+  std::vector<double> owned_pixels;    // [N]
   const ReferencePixel& at(int x, int y) const {
     return pixels
         [static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -105,6 +117,8 @@ ReferenceOutput reference_render(
     const ReferenceInput& input, const Camera& camera, const RasterSettings& settings
 );
 
+// sum over maps of dL_doutput . output of pixel i.
+double reference_loss(const ReferencePixel& pixel, std::size_t i, const RasterOutputGradient& g);
 // sum over maps and pixels of dL_doutput . output: the scalar whose gradient backward() returns.
 double reference_loss(const ReferenceOutput& output, const RasterOutputGradient& dL_doutput);
 

@@ -103,6 +103,29 @@ TEST_CASE("A rasterised set is the same on a GPU, forward and backward") {
   });
 }
 
+TEST_CASE("Plane distances, statistics and first surfaces are the same on a GPU") {
+  check_same_as_cpu(kReordered, [] {
+    RasterPass pass;
+    const SurfelSet set(test_cloud());
+    RasterSettings settings;
+    settings.with_plane_distance = settings.with_statistics = true;
+    const Image near(kSize.width, kSize.height, 1, 2.4f);
+    const RasterOutput& out = set.forward(pass, test_camera(), 0, settings, near);
+    RasterOutputGradient g = raster_gradient();
+    g.plane_distance = noise(1, 5, -1, 1);
+    const RasterGradient& gradient = pass.rasterizer.backward(g);
+    Image depth;
+    pass.rasterizer.first_surface(noise(1, 6, 0, 1), {.window = 0.1f}, depth);
+    return Results{
+        {"plane distance", read(out.plane_distance)},
+        {"owned pixels", read(out.owned_pixels)},
+        {"radii", read(out.radii)},
+        {"gradient of means", read(gradient.means)},
+        {"absolute screen gradient", read(gradient.screen_abs)},
+        {"first surface", read(depth)}};
+  });
+}
+
 TEST_CASE("A traced set is the same on a GPU, forward and backward") {
   check_same_as_cpu(kReordered, [] {
     TrainableSet set = test_set();
@@ -139,6 +162,34 @@ TEST_CASE("The optimiser and density control do the same on a GPU") {
     Results results;
     add_arrays("", set.cloud(), results);
     CHECK(set.cloud().size() != test_cloud().size());
+    return results;
+  });
+}
+
+TEST_CASE("What PGSR adds to density control is the same on a GPU") {
+  check_same_as_cpu(kReordered, [] {
+    DensifyConfig densify;
+    densify.from = 1;
+    densify.interval = 2;
+    densify.gradient_threshold = 3e-3f;
+    densify.sample_clones = true;
+    densify.max_abs_splits = 40;
+    densify.abs_gradient = 5e-3f;
+    densify.abs_radius_px = 40;
+    TrainableSet set(test_cloud(), training(densify));
+    const Camera cameras[] = {
+        test_camera(), look_at({1.5, -2.5, 0.5}, {0, 0, 0}, {0, 0, 1}, kSize, 70)};
+    RasterSettings settings;
+    settings.with_statistics = true;
+    for (int step = 1; step <= 3; ++step) {
+      set.forward(test_camera(), 3, settings);
+      set.backward(raster_gradient());
+      const DensifyCounts counts = set.update(step);
+      if (step == 2) CHECK(counts.cloned + counts.split > 0);
+    }
+    CHECK(set.trim(cameras) > 0);
+    Results results;
+    add_arrays("", set.cloud(), results);
     return results;
   });
 }

@@ -16,10 +16,14 @@ namespace {
 RasterOutput room(ImageSize size, int channels, std::size_t surfels) {
   RasterOutput out;
   for_each_map(
-      {channels, true}, [&](const char*, int width, Image& map) { fit(map, size, width); }, out
+      {channels, true, true},
+      [&](const char*, int width, Image& map) { fit(map, size, width); },
+      out
   );
   out.visibility.resize(surfels);
   out.in_view.resize(surfels);
+  out.owned_pixels.resize(surfels);
+  out.radii.resize(surfels);
   return out;
 }
 
@@ -38,14 +42,15 @@ double difference(std::span<const float> a, std::span<const float> b) {
 struct Case {
   ImageSize size;
   int surfels, channels;
-  bool distortion, near_limit;
+  bool distortion, near_limit, plane_distance, statistics;
 };
 const Case kCases[] = {
-    {{1, 1}, 5, 3, false, false},
-    {{16, 16}, 30, 3, true, false},
-    {{17, 33}, 200, 5, true, true},
-    {{50, 31}, 700, 4, false, true},
-    {{70, 40}, 1500, 3, true, false},
+    {{1, 1}, 5, 3, false, false, true, true},
+    {{16, 16}, 30, 3, true, false, false, false},
+    {{17, 33}, 200, 5, true, true, true, false},
+    {{50, 31}, 700, 4, false, true, true, true},
+    {{33, 31}, 300, 7, false, true, true, true},
+    {{70, 40}, 1500, 3, true, false, false, true},
 };
 
 struct Fixture {
@@ -68,6 +73,8 @@ struct Fixture {
       for (float& z : near_limit.values()) z = rng.uniform(0.2f, 4);
     }
     settings.with_distortion = c.distortion;
+    settings.with_plane_distance = c.plane_distance;
+    settings.with_statistics = c.statistics;
     settings.scalar = true;
     input = arrays.view();
     if (c.near_limit) input.near_limit = near_limit;
@@ -99,6 +106,9 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's maps") {
         expected
     );
     CHECK(difference(actual.visibility, expected.visibility) < 1e-5);
+    if (!c.statistics) continue;
+    CHECK(difference(actual.owned_pixels, expected.owned_pixels) == 0);
+    CHECK(difference(actual.radii, expected.radii) == 0);
   }
 }
 
@@ -111,7 +121,7 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
     RasterOutput maps = room(c.size, c.channels, f.arrays.count());
     RasterOutputGradient dL_doutput = maps;
     for_each_map(
-        {c.channels, true},
+        {c.channels, true, true},
         [&](const char*, int, Image& map) {
           for (float& value : map.values()) value = rng.normal();
         },
@@ -122,7 +132,7 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
     const RasterGradient& expected = cpu.backward(dL_doutput);
     RasterGradient actual = expected;
     RasterGradient::for_each_array(
-        0,
+        {},
         [](const char*, std::size_t, FloatArray& values) {
           std::fill(values.begin(), values.end(), -1.0f);
         },
@@ -133,7 +143,7 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
     gpu.forward(device_call(f.call(), maps));
     gpu.backward(device_maps(dL_doutput), device_gradients(actual));
     RasterGradient::for_each_array(
-        0,
+        {},
         [](const char* name, std::size_t, const FloatArray& a, const FloatArray& b) {
           INFO(name);
           CHECK(difference(a, b) < 2e-5);  // sums over pixels in another order
@@ -145,7 +155,7 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
 }
 
 TEST_CASE("The GPU's rasteriser on the host does without surfels") {
-  const Fixture f({{20, 10}, 0, 3, false, false}, 3);
+  const Fixture f({{20, 10}, 0, 3, false, false, false, true}, 3);
   HostExec exec;
   RasterPipeline<HostExec> gpu(exec);
   RasterOutput maps = room({20, 10}, 3, 0);

@@ -228,6 +228,7 @@ TEST_CASE("project_surfel_vjp matches central differences of zeta at a pixel, ce
         push(y, zeta_at(p.map, px - p.x_ref, py - p.y_ref));
         y.insert(y.end(), {p.map.det, p.center_x + p.x_ref, p.center_y + p.y_ref, p.z_center});
         push(y, p.normal);
+        y.push_back(p.plane_distance);
         return y;
       },
       [&](const Vector& x, const Vector& g) {
@@ -242,6 +243,7 @@ TEST_CASE("project_surfel_vjp matches central differences of zeta at a pixel, ce
         dL.center_y = g[5];
         dL.z_center = g[6];
         dL.normal = vec3(g, 7);
+        dL.plane_distance = g[10];
         SurfelGeometry<double> out{};
         Vec3d dL_dm;
         project_surfel_vjp(surfel, camera, dL, out, dL_dm);

@@ -78,6 +78,7 @@ Case random_case(const RandomSurfels& options, const std::string& map, std::uint
   Case c;
   c.camera = random_camera(rng, {24, 18});
   c.settings.with_distortion = map == "distortion" || map == kAll;
+  c.settings.with_plane_distance = map == "plane_distance" || map == kAll;
   c.surfels = random_surfels(options, c.camera, rng);
   weigh_outputs(c, map, rng);
   return c;
@@ -158,7 +159,7 @@ TEST_CASE("Each output map's gradient matches central differences") {
   std::vector<std::string> maps;
   RasterOutput output;
   for_each_map(
-      {3, true}, [&](const char* name, int, Image&) { maps.push_back(name); }, output
+      {3, true, true}, [&](const char* name, int, Image&) { maps.push_back(name); }, output
   );
   const std::string map = GENERATE_COPY(from_range(maps));
   const std::uint64_t seed = GENERATE(1, 2, 3);
@@ -202,7 +203,7 @@ TEST_CASE("Gradients match behind a near limit that differs from pixel to pixel"
   Rng rng(60);
   Case c;
   c.camera = random_camera(rng, {24, 18});
-  c.settings.with_distortion = true;
+  c.settings.with_distortion = c.settings.with_plane_distance = true;
   c.surfels = random_surfels(smooth_surfels(), c.camera, rng);
   c.near_limit = Image(24, 18, 1);
   for (float& limit : c.near_limit.values()) limit = rng.uniform(0, 3);
@@ -290,6 +291,59 @@ TEST_CASE("The screen gradient is that of a shift of the projected centre, in ND
     const double margin = kTolerance * std::hypot(x, y);
     CHECK(static_cast<double>(gradient.screen[2 * i]) == Approx(x).margin(margin));
     CHECK(static_cast<double>(gradient.screen[2 * i + 1]) == Approx(y).margin(margin));
+  }
+}
+
+TEST_CASE("The absolute screen gradient sums what each pixel says of a shift of the footprint") {
+  const std::uint64_t seed = GENERATE(range(80, 84));
+  const std::string kind = GENERATE("smooth", "tiny", "edge on");
+  INFO(kind << ", seed " << seed);
+  RandomSurfels options = smooth_surfels();
+  options.tiny = kind == "tiny" ? 1 : 0;
+  options.edge_on = kind == "edge on" ? 1 : 0;
+  Case c = random_case(options, kAll, seed);
+  c.settings.with_statistics = true;
+  const RasterGradient gradient = backward(c);
+  REQUIRE(gradient.screen_abs.size() == 2 * c.surfels.count());
+
+  const ReferenceRenderer reference(c.reference(), c.camera, c.settings);
+  std::vector<double> expected(2 * c.surfels.count()), shift(2);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const std::size_t axis = i % 2;
+    const double ndc = 0.5 * (axis == 0 ? c.camera.width : c.camera.height);
+    for (std::size_t p = 0; p < c.camera.size().num_pixels(); ++p) {
+      const int x = static_cast<int>(p) % 24, y = static_cast<int>(p) / 24;
+      const auto loss = [&](const std::vector<double>& by) {
+        return reference_loss(reference.pixel(x, y, {i / 2, {by[0], by[1]}}), p, c.dL_doutput);
+      };
+      expected[i] += ndc * std::abs(central_difference(loss, shift, axis, kAbsolute));
+    }
+  }
+  const GradientError error = gradient_error<float>(gradient.screen_abs, expected);
+  INFO("norm " << error.norm << ", worst at " << error.worst_index);
+  REQUIRE(error.norm > 1e-3);
+  CHECK(error.distance < kTolerance * error.norm);
+}
+
+TEST_CASE("The absolute screen gradient of a facing surfel does not cancel") {
+  // dL/ds = sum alpha (p - c) / sigma^2 vanishes by symmetry; its absolute value does not.
+  Case c;
+  c.camera.width = c.camera.height = 21;
+  c.camera.fx = c.camera.fy = 20;
+  c.camera.cx = c.camera.cy = 10.5;
+  c.settings.with_statistics = true;
+  c.surfels.add({0, 0, 2}, {0.3, 0.3}, {1, 0, 0, 0}, 0.8, {1, 1, 1});  // sigma 3 pixels
+  c.dL_doutput.alpha = Image(21, 21, 1, 1.0f);
+  double expected = 0;
+  for (int y = -10; y <= 10; ++y)
+    for (int x = -10; x <= 10; ++x) {
+      const double rho = (x * x + y * y) / 9.0, alpha = 0.8 * std::exp(-rho / 2);
+      if (rho <= 9 && alpha >= 1.0 / 255) expected += 10.5 * alpha * std::abs(x) / 9.0;
+    }
+  const RasterGradient gradient = backward(c);
+  for (int axis = 0; axis < 2; ++axis) {
+    CHECK(static_cast<double>(gradient.screen_abs[axis]) == Approx(expected).epsilon(1e-4));
+    CHECK(std::abs(static_cast<double>(gradient.screen[axis])) < 1e-3 * expected);
   }
 }
 

@@ -15,7 +15,8 @@ using namespace glint::test;
 
 namespace {
 
-constexpr RasterSettings kAllMaps{.with_distortion = true};
+constexpr RasterSettings kAllMaps{
+    .with_distortion = true, .with_plane_distance = true, .with_statistics = true};
 
 // Largest difference at clean pixels. By the estimate at kCutoffGuard rho is off by 1e-4 and alpha
 // by half of that; ten times as much room for slanted surfels and for depth.
@@ -49,6 +50,7 @@ void check_errors(const RenderErrors& errors, double tolerance) {
   CHECK(errors.depth_median < tolerance);
   CHECK(errors.normal < tolerance);
   CHECK(errors.distortion < tolerance);
+  CHECK(errors.plane_distance < tolerance);
   // Rounding that tips over a cut-off is far smaller than the guard: few of those near it do.
   CHECK(static_cast<double>(errors.flipped) <= 1 + 0.02 * static_cast<double>(errors.near_cutoff));
   CHECK(errors.clean > errors.near_cutoff);
@@ -89,6 +91,9 @@ void check_same_bytes(const RasterOutput& a, const RasterOutput& b) {
   CHECK(same_bytes(a.depth_median.values(), b.depth_median.values()));
   CHECK(same_bytes(a.normal.values(), b.normal.values()));
   CHECK(same_bytes(a.distortion.values(), b.distortion.values()));
+  CHECK(same_bytes(a.plane_distance.values(), b.plane_distance.values()));
+  CHECK(same_bytes(a.owned_pixels, b.owned_pixels));
+  CHECK(same_bytes(a.radii, b.radii));
   CHECK(same_bytes(a.visibility, b.visibility));
   CHECK(same_bytes(a.in_view, b.in_view));
 }
@@ -100,6 +105,7 @@ void check_same_bytes(const RasterGradient& a, const RasterGradient& b) {
   CHECK(same_bytes(a.opacities, b.opacities));
   CHECK(same_bytes(a.features, b.features));
   CHECK(same_bytes(a.screen, b.screen));
+  CHECK(same_bytes(a.screen_abs, b.screen_abs));
 }
 
 struct ForwardBackward {
@@ -115,7 +121,7 @@ ForwardBackward forward_backward(
   const Image one(camera.width, camera.height, 1, 1.0f),
       three(camera.width, camera.height, 3, 1.0f);
   const RasterOutputGradient ones{
-      Image(camera.width, camera.height, surfels.channels, 1.0f), one, one, one, three, one};
+      Image(camera.width, camera.height, surfels.channels, 1.0f), one, one, one, three, one, one};
   result.output = rasterizer.forward({surfels.view(), camera, with_scalar(kAllMaps, scalar)});
   result.gradient = rasterizer.backward(ones);
   return result;
@@ -142,6 +148,9 @@ TEST_CASE("Rasterising reproduces the golden example") {
   CHECK(at(output.normal, 1) == Approx(alpha * 0.4421053).epsilon(1e-6));
   CHECK(at(output.normal, 2) == Approx(alpha * -0.7263158).epsilon(1e-6));
   CHECK(at(output.distortion) == 0);  // one hit alone
+  // The plane through (0.2, -0.1, 4) with the normal above.
+  const double distance = std::abs(0.2 * 0.5263158 - 0.1 * 0.4421053 - 4 * 0.7263158);
+  CHECK(at(output.plane_distance) == Approx(alpha * distance).epsilon(1e-6));
 }
 
 TEST_CASE("Random scenes equal the reference at every image size") {
@@ -201,7 +210,8 @@ TEST_CASE("A larger near plane cuts more of each surfel") {
   Rng rng(6);
   const Camera camera = random_camera(rng, {33, 17});
   const SurfelArrays surfels = random_surfels(all_kinds(), camera, rng);
-  const RasterSettings settings{.near_plane = 2, .with_distortion = true, .distortion_far = 20};
+  const RasterSettings settings{
+      .near_plane = 2, .with_distortion = true, .distortion_far = 20, .with_plane_distance = true};
   const ReferenceRenderer reference(reference_input(surfels.view()), camera, settings);
   check_errors(
       compare_render(rasterize(surfels.view(), camera, settings), reference, {33, 17}),
@@ -258,7 +268,8 @@ TEST_CASE("Without surfels the maps are zero and have the image's size") {
         &output.depth_sum,
         &output.depth_median,
         &output.normal,
-        &output.distortion}) {
+        &output.distortion,
+        &output.plane_distance}) {
     CHECK(map->size() == ImageSize{21, 21});
     CHECK(
         std::count(map->values().begin(), map->values().end(), 0.0f) ==
@@ -269,11 +280,98 @@ TEST_CASE("Without surfels the maps are zero and have the image's size") {
   CHECK(output.in_view.empty());
 }
 
-TEST_CASE("The distortion map is made only when asked for") {
+TEST_CASE("Maps and statistics beyond the usual are made only when asked for, and change no other"
+) {
+  const int channels = GENERATE(3, 5, 7);
+  const bool scalar = GENERATE(false, true);
+  Rng rng(13);
+  const Camera camera = random_camera(rng, {33, 17});
+  const SurfelArrays surfels =
+      random_surfels({.channels = channels, .edge_on = 0.1, .tiny = 0.2}, camera, rng);
+  const Image one(33, 17, 1, 1.0f), three(33, 17, 3, 1.0f);
+  const RasterOutputGradient ones{Image(33, 17, channels, 1.0f), one, one, one, three, {}, {}};
+  const auto run = [&](const RasterSettings& settings) {
+    Rasterizer rasterizer;
+    ForwardBackward result;
+    result.output = rasterizer.forward({surfels.view(), camera, with_scalar(settings, scalar)});
+    result.gradient = rasterizer.backward(ones);
+    return result;
+  };
+  ForwardBackward without = run({}), with = run(kAllMaps);
+  CHECK(without.output.distortion.empty());
+  CHECK(without.output.plane_distance.empty());
+  CHECK(without.output.owned_pixels.empty());
+  CHECK(without.output.radii.empty());
+  CHECK(without.gradient.screen_abs.empty());
+  CHECK_FALSE(with.output.distortion.empty());
+  CHECK_FALSE(with.output.plane_distance.empty());
+  CHECK(with.output.owned_pixels.size() == surfels.count());
+  CHECK(with.output.radii.size() == surfels.count());
+  CHECK(with.gradient.screen_abs.size() == 2 * surfels.count());
+  with.output.distortion = with.output.plane_distance = {};
+  with.output.owned_pixels = with.output.radii = with.gradient.screen_abs = {};
+  check_same_bytes(with.output, without.output);
+  check_same_bytes(with.gradient, without.gradient);
+}
+
+TEST_CASE("A surfel owns the pixels where it counts and more than half of the light is left") {
+  Rng rng(14);
+  const Camera camera = random_camera(rng, {33, 17});
+  const SurfelArrays surfels = random_surfels({.min_opacity = 0.1, .edge_on = 0.2}, camera, rng);
+  const RasterOutput output = rasterize(surfels, camera);
+  const ReferenceOutput reference =
+      reference_render(reference_input(surfels.view()), camera, kAllMaps);
+  std::ptrdiff_t unsure = 0;  // pixels where rounding may decide
+  for (const ReferencePixel& pixel : reference.pixels)
+    unsure += pixel.cutoffs.nearest_jump_or_median() <= kCutoffGuard ? 1 : 0;
+  REQUIRE(unsure < 200);  // of 561
+  double differences = 0, sum = 0;
+  for (std::size_t i = 0; i < surfels.count(); ++i) {
+    const auto owned = static_cast<double>(output.owned_pixels[i]);
+    differences += std::abs(owned - reference.owned_pixels[i]);
+    sum += owned;
+  }
+  // Of the pixels near a cut-off few fall on its other side; one that does moves a count or two.
+  CHECK(differences <= 2 + 0.02 * static_cast<double>(unsure));
+  CHECK(sum > 561);
+}
+
+TEST_CASE("What is hidden behind a wall owns no pixel") {
   SurfelArrays surfels;
-  add_facing(surfels, {0, 0, 2}, 1, 0.5, 1);
-  CHECK(rasterize(surfels.view(), small_camera()).distortion.empty());
-  CHECK_FALSE(rasterize(surfels.view(), small_camera(), kAllMaps).distortion.empty());
+  add_facing(surfels, {0, 0, 2}, 5, 0.9, 1);
+  add_facing(surfels, {0, 0, 3}, 0.5, 0.9, 1);
+  add_facing(surfels, {0, 0, 1.5}, 0.1, 0.4, 1);
+  const RasterOutput output = rasterize(surfels, small_camera());
+  CHECK(output.owned_pixels[0] == 441);  // 0.6 is left behind what stands in front
+  CHECK(output.owned_pixels[1] == 0);
+  CHECK(output.owned_pixels[2] > 0);
+}
+
+TEST_CASE("The radius is half the larger side of the three-sigma box on the screen") {
+  Rng rng(15);
+  const Camera camera = random_camera(rng, {33, 17});
+  const SurfelArrays surfels = random_surfels(all_kinds(), camera, rng);
+  const ReferenceInput input = reference_input(surfels.view());
+  const RasterOutput output = rasterize(surfels, camera);
+  int boxes = 0;
+  for (std::size_t i = 0; i < surfels.count(); ++i) {
+    const ReferenceSurfel s = reference_surfel(input, i, camera);
+    const auto radius = static_cast<double>(output.radii[i]);
+    INFO("surfel " << i);
+    if (output.in_view[i] == 0) {
+      CHECK(radius == 0);
+    } else if (s.has_low_pass && s.center_depth > 0) {
+      const double half = std::max(s.box_half_extent.x, s.box_half_extent.y);
+      CHECK(radius == Approx(half).epsilon(1e-3 / std::min(1.0, s.camera_plane_margin)));
+      ++boxes;
+    } else {
+      CHECK(radius > 0);
+    }
+  }
+  CHECK(boxes > 30);
+  SurfelArrays facing;
+  add_facing(facing, {0, 0, 2}, 0.4, 0.02, 1);  // sigma 4 pixels; faint: seen to 1.8 sigma
+  CHECK(rasterize(facing, small_camera()).radii[0] == Approx(12));
 }
 
 TEST_CASE("The distortion of thin layers and its gradients keep their digits") {
@@ -447,12 +545,16 @@ TEST_CASE("The scalar instantiation gives what the SIMD one gives, within roundi
   check(simd.output.depth_sum.values(), scalar.output.depth_sum.values(), 1e-6f);
   check(simd.output.normal.values(), scalar.output.normal.values(), 1e-6f);
   check(simd.output.distortion.values(), scalar.output.distortion.values(), 1e-6f);
+  check(simd.output.plane_distance.values(), scalar.output.plane_distance.values(), 1e-6f);
+  check(simd.output.owned_pixels, scalar.output.owned_pixels, 0);
+  check(simd.output.radii, scalar.output.radii, 0);
   // Gradients sum over pixels in another order.
   check(simd.gradient.means, scalar.gradient.means, 1e-5f);
   check(simd.gradient.scales, scalar.gradient.scales, 1e-5f);
   check(simd.gradient.rotations, scalar.gradient.rotations, 1e-5f);
   check(simd.gradient.opacities, scalar.gradient.opacities, 1e-5f);
   check(simd.gradient.features, scalar.gradient.features, 1e-5f);
+  check(simd.gradient.screen_abs, scalar.gradient.screen_abs, 1e-5f);
 }
 
 TEST_CASE("Bytes do not depend on the number of threads or on repetition") {

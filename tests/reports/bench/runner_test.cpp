@@ -81,6 +81,7 @@ TEST_CASE("every cell of a profile is trained, rendered, scored and recorded") {
   CHECK(records[0].metrics.at("num-surfels") == 7);
   CHECK(records[0].metrics.at("fps") > 0);
   CHECK(records[0].resolution == "16x12");
+  CHECK(records[0].notes == std::vector<std::string>{"a fake"});
   const auto& absent = records[0].not_applicable;
   CHECK(std::count(absent.begin(), absent.end(), "transparency-iou") == 1);
   CHECK(std::count(absent.begin(), absent.end(), "psnr") == 0);
@@ -108,6 +109,8 @@ TEST_CASE("a run folder holds the files of the contract") {
     INFO(file);
     CHECK(fs::exists(run / file));
   }
+  // Rendered as views of the dataset, not as mere cameras.
+  CHECK(read_image(run / "renders/0002/transparency.exr", 1).at(3, 3) == Approx(0.5f));
   const Json metrics = Json::parse(read_file(run / "metrics.json"));
   CHECK(metrics["views"][0]["name"] == "0002");
   CHECK(metrics["views"][0]["metrics"].contains("psnr"));

@@ -61,6 +61,20 @@ TEST_CASE("three seeds have a sample standard deviation") {
   CHECK(cell_of(table, "2dgs", "psnr").spread == Approx(std::sqrt(7.0 / 3)).epsilon(1e-14));
 }
 
+TEST_CASE("what methods have to say of their runs stands once below tables with their row") {
+  std::vector<Record> records;
+  for (const std::uint64_t seed : {0, 1}) {
+    Record record;
+    record.dataset = "glassroom";
+    record.cell = {"room_1", "2dgs", seed};
+    record.metrics["psnr"] = 30;
+    record.notes = {"seen without masks"};
+    records.push_back(record);
+  }
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  CHECK(std::count(table.notes.begin(), table.notes.end(), "2DGS: seen without masks.") == 1);
+}
+
 TEST_CASE("methods that were not run are missing, in every format a word") {
   const Table table = golden_table("table1_photometric");
   CHECK(cell_of(table, "pgsr", "psnr").status == CellStatus::kMissing);

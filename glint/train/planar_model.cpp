@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/planar_model.h"
+
+#include <algorithm>
+
+#include "glint/render/map_ops.h"
+#include "glint/scene/ply.h"
+#include "glint/train/initial_points.h"
+
+namespace glint {
+
+namespace {
+
+constexpr const char* kFile = "interface.ply";
+
+}  // namespace
+
+PlanarConfig::PlanarConfig() {
+  densify.clone_scale = 0.001f;
+  densify.sample_clones = true;
+  densify.abs_gradient = 8e-4f;
+  densify.abs_radius_px = 20;
+  densify.max_abs_splits = 0;
+  densify.min_opacity = 0.05f;
+  densify.min_observations = 2;
+}
+
+void PlanarConfig::scale_to(int iterations) {
+  const auto scaled = [&](int published, int at_least = 1) {
+    return scaled_step(published, iterations, at_least);
+  };
+  for (int* window :
+       {&sh_interval, &planes.from, &exposure.from, &trim_until, &densify.from, &densify.until})
+    *window = scaled(*window);
+  trim_interval = scaled(trim_interval, 100);
+  // As the other methods here.
+  densify.interval = scaled(densify.interval, 50);
+  densify.reset_interval = scaled(densify.reset_interval, 300);
+  rates = rates.for_shorter_run(30000.0 / iterations);
+}
+
+std::vector<std::string> PlanarModel::set_up(
+    const PlanarConfig& published,
+    const Scene& scene,
+    const RunOptions& options,
+    const std::string& method,
+    const std::vector<ExtraChannel>& extra
+) {
+  scene_ = &scene;
+  windows_ = published;
+  windows_.scale_to(options.iterations);
+  std::vector<std::string> warnings = planes_.set_up(windows_.planes, scene, options.seed, method);
+  warn_without_points(scene, method, warnings);
+  photometric_ = ExposureLoss(windows_.exposure, scene.train.size());
+  InitialSurfels initial;
+  initial.opacity = windows_.initial_opacity;
+  initial.seed = options.seed;
+  initial.extra = extra;
+  const PointCloud points = initial_points(scene, windows_.random_points, options.seed);
+  set_ = TrainableSet(points, initial, {windows_.rates, windows_.densify, scene.spatial_scale});
+  views_ = ViewSampler(scene.train.size(), options.seed);
+  return warnings;
+}
+
+const View& PlanarModel::forward(int iteration, StepStats& stats) {
+  stats.iteration = iteration;
+  view_ = views_.next();
+  const View& view = scene_->train[view_];
+  sh_degree_ = std::min(3, iteration / windows_.sh_interval);
+  RasterSettings settings;
+  settings.with_plane_distance = iteration >= windows_.planes.from;
+  settings.with_statistics = windows_.densify.max_abs_splits > 0;
+  output_ = &set_.forward(view.camera, sh_degree_, settings);
+  clear_gradient(view.camera.size(), output_->features.channels(), gradient_);
+  if (settings.with_plane_distance) clear_image(gradient_.plane_distance, view.camera.size(), 1);
+  return view;
+}
+
+void PlanarModel::add_losses(const Image& target, StepStats& stats) {
+  const PhotometricWeights weights{1 - windows_.lambda_ssim, windows_.lambda_ssim};
+  const PhotometricTerms terms = photometric_.evaluate(
+      view_, stats.iteration, output_->features, target, weights, gradient_.features
+  );
+  stats.terms["photometric"] = terms.weighted(weights);
+  stats.psnr = terms.psnr();
+  planes_.add(view_, stats.iteration, set_, *output_, gradient_, stats);
+}
+
+void PlanarModel::backward(StepStats& stats) {
+  for (const auto& [name, value] : stats.terms) stats.loss += value;
+  set_.backward(gradient_);
+  set_.update(stats.iteration + 1);
+  trim(stats.iteration + 1);
+  stats.num_surfels = set_.cloud().size();
+}
+
+void PlanarModel::trim(int step) {
+  if (step >= windows_.trim_until || step % windows_.trim_interval != 0) return;
+  std::vector<Camera> cameras;
+  for (const View& view : scene_->train) cameras.push_back(view.camera);
+  set_.trim(cameras);
+}
+
+MapSet PlanarModel::render(const Camera& camera) {
+  const RasterOutput& out = draw(camera);
+  MapSet maps;
+  plane_depth_map(camera, out.plane_distance, out.normal, maps["depth"]);
+  maps["normal"] = unit_normals(out.normal);
+  copy_color(out.features, maps["rgb"]);
+  return maps;
+}
+
+const RasterOutput& PlanarModel::draw(const Camera& camera) {
+  RasterSettings settings;
+  settings.with_plane_distance = true;
+  output_ = &set_.forward(camera, sh_degree_, settings);
+  return *output_;
+}
+
+void PlanarModel::save(const std::string& folder) const {
+  write_surfel_ply(fs::path(folder) / kFile, set_.cloud());
+}
+
+void PlanarModel::load(const std::string& folder) {
+  set_.load(read_surfel_ply(fs::path(folder) / kFile));
+  sh_degree_ = 3;
+}
+
+}  // namespace glint

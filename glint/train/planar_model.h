@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// Training of planar surfels [Chen24]: one set, the photometric loss, the losses of planes, density
+// control with its trim. What methods that build on it differ in, they add between its calls.
+#pragma once
+
+#include "glint/train/exposure.h"
+#include "glint/train/planar_losses.h"
+#include "glint/train/trainer.h"
+
+namespace glint {
+
+struct PlanarConfig {
+  float lambda_ssim = 0.2f;  // (1 - lambda) L1 + lambda (1 - SSIM)
+  int sh_interval = 1000;    // one degree more each
+  int random_points = 30000;
+  float initial_opacity = 0.1f;
+  int trim_interval = 1000, trim_until = 15000;
+  PlanarLossConfig planes;
+  ExposureConfig exposure;
+  DensifyConfig densify;
+  SurfelRates rates;
+
+  PlanarConfig();
+  template <class V>
+  void visit(V&& v) {
+    v("lambda_ssim", lambda_ssim, "weight of 1 - SSIM against L1");
+    v("sh_interval", sh_interval, "iterations per SH degree (of 30,000)");
+    v("random_points", random_points, "initial surfels of scenes without points");
+    v("initial_opacity", initial_opacity, "of the initial surfels");
+    v("trim_interval", trim_interval, "steps between trims of what too few views see");
+    v("trim_until", trim_until, "last step of trims, exclusive");
+    planes.visit(v);
+    exposure.visit(v);
+    densify.visit(v);
+    rates.visit(v);
+  }
+  // Windows of this run.
+  void scale_to(int iterations);
+};
+
+class PlanarModel {
+ public:
+  // `published` with windows of 30,000 iterations, which are scaled to the run's. Returns warnings.
+  std::vector<std::string> set_up(
+      const PlanarConfig& published,
+      const Scene& scene,
+      const RunOptions& options,
+      const std::string& method,
+      const std::vector<ExtraChannel>& extra = {}
+  );
+
+  // A step: forward() renders the next training view, losses are added to gradient() by add_losses
+  // and by the method, backward() makes the step of the optimiser and of density control.
+  const View& forward(int iteration, StepStats& stats);
+  // target: the picture that the render is compared with, [H][W][3].
+  void add_losses(const Image& target, StepStats& stats);
+  void backward(StepStats& stats);
+
+  const RasterOutput& output() const { return *output_; }  // of the last forward() or draw()
+  RasterOutputGradient& gradient() { return gradient_; }
+  const PlanarConfig& windows() const { return windows_; }
+  // Metres that a published scene unit stands for.
+  float scene_unit() const { return windows_.planes.neighbors.unit * scene_->spatial_scale; }
+
+  // "rgb", "depth" (of planes), "normal". The output stays valid until the next call.
+  MapSet render(const Camera& camera);
+  const RasterOutput& draw(const Camera& camera);
+
+  // The set as one file in the folder; what was loaded has all SH degrees.
+  void save(const std::string& folder) const;
+  void load(const std::string& folder);
+  TrainableSet& set() { return set_; }
+  const TrainableSet& set() const { return set_; }
+
+ private:
+  void trim(int step);
+
+  PlanarConfig windows_;
+  const Scene* scene_ = nullptr;
+  TrainableSet set_;
+  ViewSampler views_;
+  std::size_t view_ = 0;  // of this step
+  int sh_degree_ = 3;
+  PlanarLosses planes_;
+  ExposureLoss photometric_;
+  const RasterOutput* output_ = nullptr;
+  RasterOutputGradient gradient_;
+};
+
+}  // namespace glint
