@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
@@ -220,29 +219,22 @@ void Mlp::backward_on_gpu(std::span<const float> dL_doutputs, std::span<float> d
 
 std::vector<TensorToWrite> Mlp::tensors(const std::string& name) const {
   std::vector<TensorToWrite> tensors;
-  const auto add = [&](const char* what, std::size_t l, std::vector<std::size_t> shape, auto at) {
-    TensorToWrite& tensor = tensors.emplace_back();
-    tensor.name = tensor_name(name, l, what);
-    tensor.info = {TensorType::kF32, std::move(shape)};
-    const float* from = parameters_.values.data() + at;
-    tensor.fill = [from, bytes = tensor.info.num_bytes()](std::byte* to) {
-      std::memcpy(to, from, bytes);
-    };
-  };
+  const float* p = parameters_.values.data();
   for (std::size_t l = 0; l < layers_.size(); ++l) {
-    add("weight", l, {layers_[l].in, layers_[l].out}, layers_[l].weights);
-    add("bias", l, {layers_[l].out}, layers_[l].biases);
+    const auto [in, out, weights, biases] = layers_[l];
+    tensors.push_back(
+        float_tensor(tensor_name(name, l, "weight"), {in, out}, {p + weights, in * out})
+    );
+    tensors.push_back(float_tensor(tensor_name(name, l, "bias"), {out}, {p + biases, out}));
   }
   return tensors;
 }
 
 void Mlp::read(SafetensorsFile& file, const std::string& name) {
   for (std::size_t l = 0; l < layers_.size(); ++l) {
-    const std::vector<float> w =
-        file.read<float>(tensor_name(name, l, "weight"), {layers_[l].in, layers_[l].out});
-    const std::vector<float> b = file.read<float>(tensor_name(name, l, "bias"), {layers_[l].out});
-    std::copy(w.begin(), w.end(), weights(l).begin());
-    std::copy(b.begin(), b.end(), biases(l).begin());
+    const std::size_t in = layers_[l].in, out = layers_[l].out;
+    read_floats(file, tensor_name(name, l, "weight"), {in, out}, weights(l));
+    read_floats(file, tensor_name(name, l, "bias"), {out}, biases(l));
   }
 }
 

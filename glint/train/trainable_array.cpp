@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
@@ -39,6 +40,34 @@ void TrainableArray::check_finite(const std::string& name) const {
         values.size(),
         values[i]
     );
+}
+
+TensorToWrite float_tensor(
+    std::string name, std::vector<std::size_t> shape, std::span<const float> values
+) {
+  TensorToWrite tensor;
+  tensor.name = std::move(name);
+  tensor.info = {TensorType::kF32, std::move(shape)};
+  tensor.fill = [values](std::byte* to) { std::memcpy(to, values.data(), values.size_bytes()); };
+  return tensor;
+}
+
+void read_floats(
+    SafetensorsFile& file,
+    const std::string& name,
+    const std::vector<std::size_t>& shape,
+    std::span<float> values
+) {
+  const std::vector<float> read = file.read<float>(name, shape);
+  GLINT_CHECK(
+      read.size() == values.size(),
+      kUsage,
+      "{}: {} values for an array of {}",
+      name,
+      read.size(),
+      values.size()
+  );
+  std::copy(read.begin(), read.end(), values.begin());
 }
 
 float log_linear_rate(float begin, float end, int step, int steps) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "glint/core/arrays.h"
+#include "glint/scene/safetensors.h"
 
 namespace glint {
 
@@ -27,6 +28,18 @@ class TrainableArray {
   FloatArray first_, second_;
   int steps_ = 0;
 };
+
+// A tensor of a file that borrows these values; and its values back into an array of that size.
+// Errors of the latter (kBadReference): SafetensorsFile::read()'s.
+TensorToWrite float_tensor(
+    std::string name, std::vector<std::size_t> shape, std::span<const float> values
+);
+void read_floats(
+    SafetensorsFile& file,
+    const std::string& name,
+    const std::vector<std::size_t>& shape,
+    std::span<float> values
+);
 
 // The rate of a step of `steps`: log-linear from `begin` to `end`, both positive; `end` behind.
 float log_linear_rate(float begin, float end, int step, int steps);
