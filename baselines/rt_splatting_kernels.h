@@ -23,7 +23,7 @@ struct RtPixel {
 
 template <class T>
 GLINT_HD Vec3<T> rt_specular(Vec3<T> x) {
-  const T scale(0.5 * kExpCap);  // capped_exp has 1/5 of e^x
+  const T scale(0.5f * kExpCap);  // capped_exp has 1/5 of e^x
   return {scale * capped_exp(x.x), scale * capped_exp(x.y), scale * capped_exp(x.z)};
 }
 template <class T>
