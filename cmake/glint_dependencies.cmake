@@ -8,6 +8,7 @@ find_package(CLI11 REQUIRED CONFIG)
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 find_package(tomlplusplus 3.3 REQUIRED CONFIG)
 find_package(fmt 9 REQUIRED CONFIG)
+find_package(Eigen3 3.4 REQUIRED CONFIG)  # products of matrices (glint/train/mlp.cpp)
 if(GLINT_TESTS)
   find_package(Catch2 2.13 REQUIRED CONFIG)
 endif()
@@ -104,8 +105,7 @@ add_library(pangocairo INTERFACE)  # not its flags: a precompiled header has to 
 target_include_directories(pangocairo SYSTEM INTERFACE ${PANGOCAIRO_INCLUDE_DIRS})
 target_link_libraries(pangocairo INTERFACE ${PANGOCAIRO_LINK_LIBRARIES})
 
-# Meshes; its config forgets to look for Eigen where another package has.
-find_package(Eigen3 3.4 QUIET CONFIG)
+# Meshes; its config forgets to look for Eigen, which is found above.
 find_package(Open3D QUIET CONFIG)
 
 set(GLINT_FMT fmt::fmt)

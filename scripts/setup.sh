@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build ccache git ca-certificates pkg-config
-  libembree-dev libopenexr-dev libnanoflann-dev libcli11-dev catch2 libtbb-dev
+  libembree-dev libopenexr-dev libnanoflann-dev libeigen3-dev libcli11-dev catch2 libtbb-dev
   nlohmann-json3-dev libtomlplusplus-dev libfmt-dev libbullet-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libturbojpeg0-dev libdeflate-dev
   libcairo2-dev libpango1.0-dev fonts-inter

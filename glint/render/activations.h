@@ -3,6 +3,7 @@
 #pragma once
 
 #include "glint/core/vec.h"
+#include "glint/scene/surfels.h"
 
 namespace glint {
 
@@ -19,6 +20,40 @@ GLINT_HD float logit(float probability) { return logf(probability / (1.0f - prob
 template <class T>
 GLINT_HD T exp_vjp(T value, T dL_dvalue) {
   return dL_dvalue * value;
+}
+
+// tanh x = 2 sigmoid(2 x) - 1.
+template <class T>
+GLINT_HD T tanh_of(T x) {
+  return T(2) * sigmoid(T(2) * x) - T(1);
+}
+template <class T>
+GLINT_HD T tanh_vjp(T value, T dL_dvalue) {
+  return dL_dvalue * (T(1) - value * value);
+}
+
+// e^min(x, 5) / 5; no gradient where it is capped.
+inline constexpr float kExpCap = 5;
+template <class T>
+GLINT_HD T capped_exp(T x) {
+  return T(1 / kExpCap) * exp_fast(min_of(x, T(kExpCap)));
+}
+template <class T>
+GLINT_HD T capped_exp_vjp(T x, T value, T dL_dvalue) {
+  return keep(x < T(kExpCap), exp_vjp(value, dL_dvalue));
+}
+
+// An extra channel of a set, from its raw value x.
+template <class T>
+GLINT_HD T activated(Activation activation, T x) {
+  if (activation == Activation::kTanh) return tanh_of(x);
+  return activation == Activation::kCappedExp ? capped_exp(x) : sigmoid(x);
+}
+template <class T>
+GLINT_HD T activated_vjp(Activation activation, T x, T value, T dL_dvalue) {
+  if (activation == Activation::kTanh) return tanh_vjp(value, dL_dvalue);
+  return activation == Activation::kCappedExp ? capped_exp_vjp(x, value, dL_dvalue)
+                                              : sigmoid_vjp(value, dL_dvalue);
 }
 
 template <class T>

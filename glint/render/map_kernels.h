@@ -62,6 +62,16 @@ struct CopyColor {
   }
 };
 
+struct AddColor {
+  const float* color;
+  int channels;
+  float* features;  // added to
+  GLINT_HD void operator()(std::size_t i) const {
+    for (std::size_t c = 0; c < 3; ++c)
+      features[i * static_cast<std::size_t>(channels) + c] += color[3 * i + c];
+  }
+};
+
 // Unit normals; zero where the composited one has no direction.
 struct UnitNormals {
   const float* composited;
@@ -105,6 +115,7 @@ using MapKernels = KernelList<
     PlaneDepth,
     PlaneDepthVjp,
     CopyColor,
+    AddColor,
     UnitNormals,
     ShiftDepth,
     SumPixels,

@@ -96,4 +96,10 @@ void copy_color(const Image& features, Image& color) {
   );
 }
 
+void add_color(const Image& color, Image& features) {
+  run_kernel(
+      color.num_pixels(), kPixelGrain, AddColor{color.data(), features.channels(), features.data()}
+  );
+}
+
 }  // namespace glint

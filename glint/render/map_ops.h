@@ -35,6 +35,8 @@ void plane_depth_map_vjp(
 Image unit_normals(const Image& normal);
 // The first three of some feature channels.
 void copy_color(const Image& features, Image& color);
+// Adds to the first three.
+void add_color(const Image& color, Image& features);
 
 // Zeros of a shape.
 void clear_image(Image& image, ImageSize size, int channels);

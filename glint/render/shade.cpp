@@ -2,6 +2,9 @@
 #include "glint/render/shade.h"
 #include "glint/render/trace.h"
 
+#include <algorithm>
+
+#include "glint/core/error.h"
 #include "glint/core/kernel.h"
 #include "glint/core/simd.h"
 #include "glint/render/shade_kernels.h"
@@ -12,8 +15,11 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;  // surfels a block
 
-CloudPointers pointers(const SurfelCloud& c) {
-  return {
+// cloud: const for CloudPointers.
+template <class F, class Cloud>
+CloudArrays<F> arrays_of(Cloud& c, const ActivationOptions& options) {
+  const int num_extra = static_cast<int>(c.num_extra());
+  CloudArrays<F> arrays{
       c.means.data(),
       c.log_scales.data(),
       c.rotations.data(),
@@ -21,19 +27,29 @@ CloudPointers pointers(const SurfelCloud& c) {
       c.sh_dc.data(),
       c.sh_rest.data(),
       c.extra_logits.data(),
-      static_cast<int>(c.num_extra())};
+      num_extra,
+      options.color_only ? 0 : num_extra,
+      options.opacity_factor,
+      {}};
+  std::copy(c.extra_activations.begin(), c.extra_activations.end(), arrays.kinds);
+  return arrays;
 }
-CloudGradientPointers pointers(SurfelCloud& c) {
-  return {
-      c.means.data(),
-      c.log_scales.data(),
-      c.rotations.data(),
-      c.opacity_logits.data(),
-      c.sh_dc.data(),
-      c.sh_rest.data(),
-      c.extra_logits.data(),
-      static_cast<int>(c.num_extra())};
+CloudPointers pointers(const SurfelCloud& c, const ActivationOptions& options) {
+  const std::size_t kinds = c.extra_activations.size();
+  GLINT_CHECK(
+      (kinds == 0 || kinds == c.num_extra()) && kinds <= kMaxExtra &&
+          options.opacity_factor < static_cast<int>(c.num_extra()),
+      kUsage,
+      "activation: {} kinds of activation and opacity factor {} for {} extra channels, expected "
+      "none or one each, at most {}",
+      kinds,
+      options.opacity_factor,
+      c.num_extra(),
+      kMaxExtra
+  );
+  return arrays_of<const float>(c, options);
 }
+CloudGradientPointers pointers(SurfelCloud& gradient) { return arrays_of<float>(gradient, {}); }
 
 // On the CPU eight surfels at once.
 template <class Kernel>
@@ -53,16 +69,19 @@ void activate_geometry(const SurfelCloud& cloud, ActivatedSurfels& activated) {
   activated.opacities.resize(cloud.size());
   run_lanes(
       cloud.size(),
-      ActivateGeometry{pointers(cloud), activated.scales.data(), activated.opacities.data()}
+      ActivateGeometry{
+          pointers(cloud, activated.options), activated.scales.data(), activated.opacities.data()}
   );
 }
 
 void activate(const SurfelCloud& cloud, Vec3f eye, int sh_degree, ActivatedSurfels& activated) {
-  activated.channels = 3 + static_cast<int>(cloud.num_extra());
+  activated.channels = 3 + (activated.options.color_only ? 0 : static_cast<int>(cloud.num_extra()));
   activated.features.resize(cloud.size() * activated.channels);
   activate_geometry(cloud, activated);
   run_lanes(
-      cloud.size(), ActivateFeatures{pointers(cloud), eye, sh_degree, activated.features.data()}
+      cloud.size(),
+      ActivateFeatures{
+          pointers(cloud, activated.options), eye, sh_degree, activated.features.data()}
   );
 }
 
@@ -89,7 +108,7 @@ void activate_vjp(
   run_lanes(
       cloud.size(),
       ActivateVjp{
-          pointers(cloud),
+          pointers(cloud, a.options),
           eye,
           sh_degree,
           a.scales.data(),

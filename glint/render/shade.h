@@ -10,11 +10,19 @@
 
 namespace glint {
 
+// What of a cloud a pass rasterises.
+struct ActivationOptions {
+  static constexpr int kNone = -1;
+  int opacity_factor = kNone;  // index of an extra channel that opacities are multiplied by
+  bool color_only = false;     // without extra channels among the features
+};
+
 struct ActivatedSurfels {
-  int channels = 3;      // 3 + number of extra channels
-  FloatArray scales;     // [N][2] metres
-  FloatArray opacities;  // [N]
-  FloatArray features;   // [N][channels]: colour, then extra channels
+  ActivationOptions options;  // of activate(), not of what is traced
+  int channels = 3;           // 3 + number of extra channels, or 3
+  FloatArray scales;          // [N][2] metres
+  FloatArray opacities;       // [N]
+  FloatArray features;        // [N][channels]: colour, then extra channels
 };
 
 // eye: camera centre, metres. sh_degree: 0..3 (coefficients above are ignored).

@@ -9,11 +9,16 @@
 
 namespace glint {
 
+inline constexpr int kMaxExtra = 16;
+
 // Parameter arrays of a cloud (SurfelCloud), or of its gradient with F = float.
 template <class F>
 struct CloudArrays {
   F *means, *log_scales, *rotations, *opacity_logits, *sh_dc, *sh_rest, *extra_logits;
   int num_extra;
+  int shown_extra;     // of those, among the features: all or none
+  int opacity_factor;  // extra channel that opacities are multiplied by; negative: none
+  Activation kinds[kMaxExtra];
 };
 using CloudPointers = CloudArrays<const float>;
 using CloudGradientPointers = CloudArrays<float>;
@@ -49,6 +54,18 @@ GLINT_HD T sh_sum(const CloudPointers& cloud, std::size_t i, int count, const T 
   return sum;
 }
 
+// Raw value of an extra channel.
+template <class T>
+GLINT_HD T raw_extra(const CloudPointers& cloud, std::size_t i, int e) {
+  return load_strided<T>(
+      cloud.extra_logits + i * static_cast<std::size_t>(cloud.num_extra) + e, cloud.num_extra
+  );
+}
+template <class T>
+GLINT_HD T extra_value(const CloudPointers& cloud, std::size_t i, int e) {
+  return activated(cloud.kinds[e], raw_extra<T>(cloud, i, e));
+}
+
 struct ActivateGeometry {
   CloudPointers cloud;
   float *scales, *opacities;
@@ -57,7 +74,10 @@ struct ActivateGeometry {
   GLINT_HD void lanes(std::size_t i) const {
     for (std::size_t at = 2 * i; at < 2 * i + 2; ++at)
       store_strided(scales + at, 2, exp_fast(load_strided<T>(cloud.log_scales + at, 2)));
-    store_strided(opacities + i, 1, sigmoid(load_strided<T>(cloud.opacity_logits + i, 1)));
+    T opacity = sigmoid(load_strided<T>(cloud.opacity_logits + i, 1));
+    if (cloud.opacity_factor >= 0)
+      opacity = opacity * extra_value<T>(cloud, i, cloud.opacity_factor);
+    store_strided(opacities + i, 1, opacity);
   }
   GLINT_HD void operator()(std::size_t i) const { lanes<float>(i); }
 };
@@ -66,21 +86,20 @@ struct ActivateFeatures {
   CloudPointers cloud;
   Vec3f eye;
   int degree;
-  float* features;  // [N][3 + num_extra]
+  float* features;  // [N][3 + shown_extra]
 
   template <class T>
   GLINT_HD void lanes(std::size_t i) const {
     T basis[16];
     sh_basis(degree, view_direction<T>(cloud, eye, i).unit, basis);
-    const int channels = 3 + cloud.num_extra;
+    const int channels = 3 + cloud.shown_extra;
     float* to = features + i * static_cast<std::size_t>(channels);
     for (int c = 0; c < 3; ++c)
       store_strided(
           to + c, channels, sh_color(sh_sum(cloud, i, sh_coefficients(degree), basis, c))
       );
-    const float* logits = cloud.extra_logits + i * static_cast<std::size_t>(cloud.num_extra);
-    for (int e = 0; e < cloud.num_extra; ++e)
-      store_strided(to + 3 + e, channels, sigmoid(load_strided<T>(logits + e, cloud.num_extra)));
+    for (int e = 0; e < cloud.shown_extra; ++e)
+      store_strided(to + 3 + e, channels, extra_value<T>(cloud, i, e));
   }
   GLINT_HD void operator()(std::size_t i) const { lanes<float>(i); }
 };
@@ -109,16 +128,35 @@ struct ActivateVjp {
       );
     for (std::size_t at = 4 * i; at < 4 * i + 4; ++at)
       add_strided(out.rotations + at, 4, load_strided<T>(g.rotations + at, 4));
-    const T opacity = load_strided<T>(opacities + i, 1);
-    add_strided(
-        out.opacity_logits + i, 1, sigmoid_vjp(opacity, load_strided<T>(g.opacities + i, 1))
-    );
+    opacity<T>(i);
     extra<T>(i);
   }
   GLINT_HD void operator()(std::size_t i) const { lanes<float>(i); }
 
  private:
-  GLINT_HD int channels() const { return 3 + cloud.num_extra; }
+  GLINT_HD int channels() const { return 3 + cloud.shown_extra; }
+  template <class T>
+  GLINT_HD void opacity(std::size_t i) const {
+    const T dL_dopacity = load_strided<T>(g.opacities + i, 1);
+    if (cloud.opacity_factor < 0) {
+      const T value = load_strided<T>(opacities + i, 1);
+      return add_strided(out.opacity_logits + i, 1, sigmoid_vjp(value, dL_dopacity));
+    }
+    const T own = sigmoid(load_strided<T>(cloud.opacity_logits + i, 1));
+    const T factor = extra_value<T>(cloud, i, cloud.opacity_factor);
+    add_strided(out.opacity_logits + i, 1, sigmoid_vjp(own, dL_dopacity * factor));
+    add_extra(i, cloud.opacity_factor, factor, dL_dopacity * own);
+  }
+  // Adds to the raw value of an extra channel.
+  template <class T>
+  GLINT_HD void add_extra(std::size_t i, int e, T value, T dL_dvalue) const {
+    const T raw = raw_extra<T>(cloud, i, e);
+    add_strided(
+        out.extra_logits + i * static_cast<std::size_t>(cloud.num_extra) + e,
+        cloud.num_extra,
+        activated_vjp(cloud.kinds[e], raw, value, dL_dvalue)
+    );
+  }
   template <class T>
   GLINT_HD void colors(std::size_t i) const {
     const ViewDirection<T> view = view_direction<T>(cloud, eye, i);
@@ -147,16 +185,14 @@ struct ActivateVjp {
   }
   template <class T>
   GLINT_HD void extra(std::size_t i) const {
-    const int n = cloud.num_extra;
     const std::size_t row = i * static_cast<std::size_t>(channels()) + 3;
-    for (int e = 0; e < n; ++e) {
-      const T value = load_strided<T>(features + row + e, channels());
-      add_strided(
-          out.extra_logits + i * static_cast<std::size_t>(n) + e,
-          n,
-          sigmoid_vjp(value, load_strided<T>(g.features + row + e, channels()))
+    for (int e = 0; e < cloud.shown_extra; ++e)
+      add_extra(
+          i,
+          e,
+          load_strided<T>(features + row + e, channels()),
+          load_strided<T>(g.features + row + e, channels())
       );
-    }
   }
 };
 

@@ -17,6 +17,11 @@ constexpr float kSh0 = 0.28209479177387814f;  // 1 / (2 sqrt(pi)): the constant 
 
 float logit(float probability) { return std::log(probability / (1 - probability)); }
 
+float raw_of(Activation activation, float activated) {
+  if (activation == Activation::kTanh) return std::atanh(activated);
+  return activation == Activation::kCappedExp ? std::log(5 * activated) : logit(activated);
+}
+
 // Uniform on the rotations: a normal 4-vector has no preferred direction.
 void random_rotation(Rng& rng, float* wxyz) {
   float norm2 = 0;
@@ -63,25 +68,59 @@ std::vector<float> neighbor_distances(std::span<const Vec3f> points) {
   return distances;
 }
 
+namespace {
+
+void set_extra(const InitialSurfels& options, SurfelCloud& cloud) {
+  Rng rng(options.seed, hash_name("extra channels"));
+  for (std::size_t i = 0; i < cloud.extra_logits.size(); ++i) {
+    const ExtraChannel& extra = options.extra[i % cloud.num_extra()];
+    cloud.extra_logits[i] = raw_of(extra.activation, extra.initial);
+    if (extra.spread > 0) cloud.extra_logits[i] += extra.spread * rng.normal();
+  }
+}
+
+}  // namespace
+
 SurfelCloud surfels_from_points(const PointCloud& points, const InitialSurfels& options) {
   const std::vector<float> spacing = neighbor_distances(points.positions);
   SurfelCloud cloud;
-  for (const ExtraChannel& extra : options.extra) cloud.extra_names.push_back(extra.name);
+  for (const ExtraChannel& extra : options.extra) {
+    cloud.extra_names.push_back(extra.name);
+    cloud.extra_activations.push_back(extra.activation);
+  }
   cloud.resize(points.positions.size());
   std::fill(cloud.opacity_logits.begin(), cloud.opacity_logits.end(), logit(options.opacity));
   Rng rng(options.seed, hash_name("surfel rotations"));
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     random_rotation(rng, &cloud.rotations[4 * i]);
-    cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(spacing[i]);
+    cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(options.scale * spacing[i]);
     for (int c = 0; c < 3; ++c) {
       const std::size_t at = 3 * i + static_cast<std::size_t>(c);
       cloud.means[at] = points.positions[i][c];
       cloud.sh_dc[at] = (points.colors[i][c] - 0.5f) / kSh0;
     }
-    for (std::size_t e = 0; e < cloud.num_extra(); ++e)
-      cloud.extra_logits[i * cloud.num_extra() + e] = logit(options.extra[e].initial);
   }
+  set_extra(options, cloud);
   return cloud;
+}
+
+void set_activations(
+    const std::vector<ExtraChannel>& extra, const std::string& file, SurfelCloud& cloud
+) {
+  std::vector<std::string> expected;
+  cloud.extra_activations.clear();
+  for (const ExtraChannel& channel : extra) {
+    expected.push_back(channel.name);
+    cloud.extra_activations.push_back(channel.activation);
+  }
+  GLINT_CHECK(
+      cloud.extra_names == expected,
+      kBadPrediction,
+      "{}: extra fields [{}], expected [{}]; was it trained by another method?",
+      file,
+      fmt::join(cloud.extra_names, ", "),
+      fmt::join(expected, ", ")
+  );
 }
 
 }  // namespace glint

@@ -5,6 +5,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
+#include "glint/train/opacity_penalty_kernels.h"
 
 namespace glint {
 
@@ -64,13 +65,28 @@ TrainableSet::Training& TrainableSet::training() const {
 }
 
 void TrainableSet::backward(const RasterOutputGradient& dL_doutput) {
-  Training& t = training();
-  const RasterGradient& gradient = raster_backward(cloud_, pass_, dL_doutput, t.gradient);
-  t.densifier.observe(pass_.rasterizer.output(), gradient);
+  backward(dL_doutput, pass_, true);
 }
 
-void TrainableSet::backward(const RasterOutputGradient& dL_doutput, RasterPass& pass) {
-  raster_backward(cloud_, pass, dL_doutput, training().gradient);
+void TrainableSet::backward(
+    const RasterOutputGradient& dL_doutput, RasterPass& pass, bool observe
+) {
+  Training& t = training();
+  const RasterGradient& gradient = raster_backward(cloud_, pass, dL_doutput, t.gradient);
+  if (observe) t.densifier.observe(pass.rasterizer.output(), gradient);
+}
+
+double TrainableSet::penalise_opacity(float weight) {
+  constexpr int kRow = 256;  // surfels that are summed one after the other
+  const auto count = static_cast<double>(std::max<std::size_t>(cloud_.size(), 1));
+  const OpacityPenalty penalty{
+      cloud_.opacity_logits.data(),
+      cloud_.size(),
+      kRow,
+      weight / static_cast<float>(count),
+      training().gradient.opacity_logits.data()};
+  const int rows = static_cast<int>((cloud_.size() + kRow - 1) / kRow);
+  return sum_kernel({kRow, rows}, penalty) / count;
 }
 
 const Rays& TrainableSet::trace_backward(const TraceOutputGradient& dL_doutput) {

@@ -35,8 +35,10 @@ class TrainableSet final : public SurfelSet {
   // Back through the last forward(): adds to the gradient of the parameters, and to the statistics
   // of density control. These and all below throw (kUsage) where the set is only to be rendered.
   void backward(const RasterOutputGradient& dL_doutput);
-  // Back through a further rasterisation, whose statistics do not count.
-  void backward(const RasterOutputGradient& dL_doutput, RasterPass& pass);
+  // Back through a further rasterisation, whose statistics count only if asked for.
+  void backward(const RasterOutputGradient& dL_doutput, RasterPass& pass, bool observe = false);
+  // Adds the gradient of weight * (mean opacity) and returns the mean.
+  double penalise_opacity(float weight);
   // The same for the last trace(); returns the rays' gradient, valid until the next call.
   const Rays& trace_backward(const TraceOutputGradient& dL_doutput);
   // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.

@@ -23,8 +23,23 @@ SurfelCloud random_cloud(std::size_t count) {
   return cloud;
 }
 
-// The activated values of one surfel in double, from the shared formulas.
-std::vector<double> activate_one(const SurfelCloud& cloud, std::size_t i, Vec3d eye, int degree) {
+double extra_in_double(const SurfelCloud& cloud, std::size_t i, std::size_t e) {
+  const auto x = static_cast<double>(cloud.extra_logits[2 * i + e]);
+  const Activation kind =
+      cloud.extra_activations.empty() ? Activation::kSigmoid : cloud.extra_activations[e];
+  if (kind == Activation::kTanh) return std::tanh(x);
+  return kind == Activation::kCappedExp ? std::exp(std::min(x, 5.0)) / 5 : 1 / (1 + std::exp(-x));
+}
+
+// The activated values of one surfel in double, from the shared formulas. Extra channels that are
+// not shown count as 0.
+std::vector<double> activate_one(
+    const SurfelCloud& cloud,
+    std::size_t i,
+    Vec3d eye,
+    int degree,
+    const ActivationOptions& options = {}
+) {
   const Vec3d mean{cloud.means[3 * i], cloud.means[3 * i + 1], cloud.means[3 * i + 2]};
   double basis[16];
   sh_basis(degree, normalize(mean - eye), basis);
@@ -35,9 +50,11 @@ std::vector<double> activate_one(const SurfelCloud& cloud, std::size_t i, Vec3d 
       sum += basis[k] * static_cast<double>(cloud.sh_rest[45 * i + 3 * (k - 1) + c]);
     values.push_back(sh_color(sum));
   }
-  for (int e = 0; e < 2; ++e)
-    values.push_back(sigmoid(static_cast<double>(cloud.extra_logits[2 * i + e])));
+  for (std::size_t e = 0; e < 2; ++e)
+    values.push_back(options.color_only ? 0.0 : extra_in_double(cloud, i, e));
   values.push_back(sigmoid(static_cast<double>(cloud.opacity_logits[i])));
+  if (options.opacity_factor >= 0)
+    values.back() *= extra_in_double(cloud, i, static_cast<std::size_t>(options.opacity_factor));
   for (int a = 0; a < 2; ++a)
     values.push_back(std::exp(static_cast<double>(cloud.log_scales[2 * i + a])));
   return values;
@@ -62,19 +79,23 @@ TEST_CASE("Activated clouds equal the formulas in double at every degree and lan
   }
 }
 
-TEST_CASE("activate_vjp matches central differences of the formulas in double") {
-  SurfelCloud cloud = random_cloud(11);
+namespace {
+
+void check_activate_vjp(SurfelCloud cloud, const ActivationOptions& options) {
   const Vec3d eye{0.1f, 0.2f, -3};
   ActivatedSurfels a;
+  a.options = options;
   activate(cloud, cast<float>(eye), 3, a);
   RasterGradient g;
+  const int channels = options.color_only ? 3 : 5;
+  REQUIRE(a.channels == channels);
   Rng rng(5);
   const auto fill = [&](FloatArray& array, std::size_t size) {
     array.resize(size);
     for (float& value : array) value = rng.uniform(-1, 1);
   };
   fill(g.means, 33), fill(g.scales, 22), fill(g.rotations, 44), fill(g.opacities, 11),
-      fill(g.features, 55);
+      fill(g.features, 11 * static_cast<std::size_t>(channels));
   SurfelCloud gradient;
   gradient.extra_names = cloud.extra_names;
   gradient.resize(cloud.size());
@@ -82,9 +103,10 @@ TEST_CASE("activate_vjp matches central differences of the formulas in double") 
 
   for (std::size_t i : {std::size_t{0}, std::size_t{7}, std::size_t{10}}) {
     const auto loss = [&] {
-      const std::vector<double> v = activate_one(cloud, i, eye, 3);
+      const std::vector<double> v = activate_one(cloud, i, eye, 3, options);
       double sum = 0;
-      for (int c = 0; c < 5; ++c) sum += v[c] * static_cast<double>(g.features[5 * i + c]);
+      for (int c = 0; c < channels; ++c)
+        sum += v[c] * static_cast<double>(g.features[i * static_cast<std::size_t>(channels) + c]);
       sum += v[5] * static_cast<double>(g.opacities[i]);
       for (int k = 0; k < 2; ++k) sum += v[6 + k] * static_cast<double>(g.scales[2 * i + k]);
       for (int k = 0; k < 3; ++k)
@@ -120,4 +142,55 @@ TEST_CASE("activate_vjp matches central differences of the formulas in double") 
         );
       }
   }
+}
+
+}  // namespace
+
+TEST_CASE("activate_vjp matches central differences of the formulas in double") {
+  check_activate_vjp(random_cloud(11), {});
+}
+
+TEST_CASE("Other activations and passes have their gradients, too") {
+  SurfelCloud cloud = random_cloud(11);
+  cloud.extra_activations = {Activation::kTanh, Activation::kCappedExp};
+  for (float& x : cloud.extra_logits) x *= 2;
+  check_activate_vjp(cloud, {});
+  check_activate_vjp(cloud, {.opacity_factor = 1});
+  cloud.extra_logits[1] = 7;  // capped
+  check_activate_vjp(cloud, {});
+  cloud.extra_activations = {Activation::kTanh, Activation::kSigmoid};
+  check_activate_vjp(cloud, {.opacity_factor = 1, .color_only = true});
+  check_activate_vjp(cloud, {.color_only = true});
+}
+
+TEST_CASE("Activated clouds have other activations, opacity factors and channels in all lanes") {
+  SurfelCloud cloud = random_cloud(21);
+  cloud.extra_activations = {Activation::kTanh, Activation::kCappedExp};
+  for (float& x : cloud.extra_logits) x *= 6;  // beyond the cap
+  for (const ActivationOptions& options :
+       {ActivationOptions{.opacity_factor = 1}, ActivationOptions{.color_only = true}}) {
+    ActivatedSurfels a;
+    a.options = options;
+    activate(cloud, {0.1f, 0.2f, -3}, 2, a);
+    REQUIRE(a.channels == (options.color_only ? 3 : 5));
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const std::vector<double> expected = activate_one(cloud, i, {0.1f, 0.2f, -3}, 2, options);
+      for (int c = 0; c < a.channels; ++c)
+        CHECK(
+            static_cast<double>(a.features[i * static_cast<std::size_t>(a.channels) + c]) ==
+            Approx(expected[c]).epsilon(1e-5).margin(2e-6)
+        );
+      CHECK(static_cast<double>(a.opacities[i]) == Approx(expected[5]).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("Activations that are not one a channel are refused") {
+  SurfelCloud cloud = random_cloud(3);
+  ActivatedSurfels a;
+  cloud.extra_activations = {Activation::kTanh};
+  CHECK_THROWS_WITH(activate(cloud, {}, 0, a), Catch::Contains("1 kinds of activation"));
+  cloud.extra_activations.clear();
+  a.options.opacity_factor = 2;
+  CHECK_THROWS_WITH(activate(cloud, {}, 0, a), Catch::Contains("opacity factor 2"));
 }

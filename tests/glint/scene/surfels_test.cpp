@@ -113,3 +113,46 @@ TEST_CASE("resizing keeps rows and adds zero ones") {
   CHECK(std::equal(before.begin(), before.end(), cloud.rotations.begin()));
   CHECK(cloud.rotations[27] == 0);
 }
+
+TEST_CASE("extra channels start at their values, through their activations, with their spread") {
+  InitialSurfels options;
+  options.scale = 0.5f;
+  options.extra = {
+      {"t", 0.25f, 0},
+      {"albedo", 0.4f, 0, Activation::kCappedExp},
+      {"feature", 0.5f, 0, Activation::kTanh},
+      {"noise", 0, 0, Activation::kTanh, 0.1f}};
+  const PointCloud points = random_points(4000);
+  const SurfelCloud cloud = surfels_from_points(points, options);
+  CHECK(cloud.extra_logits[0] == Approx(std::log(0.25 / 0.75)));
+  CHECK(cloud.extra_logits[1] == Approx(std::log(5 * 0.4)));
+  CHECK(cloud.extra_logits[2] == Approx(std::atanh(0.5)));
+  double mean = 0, square = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto x = static_cast<double>(cloud.extra_logits[4 * i + 3]);
+    mean += x / 4000;
+    square += x * x / 4000;
+  }
+  CHECK(std::abs(mean) < 0.01);  // six standard errors
+  CHECK(square == Approx(0.01).epsilon(0.12));
+  const SurfelCloud whole = surfels_from_points(points, {});
+  CHECK(cloud.log_scales[7] == Approx(whole.log_scales[7] + std::log(0.5f)));
+  CHECK(cloud.rotations == whole.rotations);
+}
+
+TEST_CASE("a cloud of a file gets its activations, and other channels are refused") {
+  const std::vector<ExtraChannel> extra = {
+      {"albedo", 1, 0, Activation::kCappedExp}, {"t", 0.5f, 0}};
+  SurfelCloud cloud;
+  cloud.extra_names = {"albedo", "t"};
+  set_activations(extra, "a.ply", cloud);
+  CHECK(
+      cloud.extra_activations ==
+      std::vector<Activation>{Activation::kCappedExp, Activation::kSigmoid}
+  );
+  cloud.extra_names = {"specular"};
+  CHECK_THROWS_WITH(
+      set_activations(extra, "a.ply", cloud),
+      Catch::Contains("a.ply") && Catch::Contains("[specular], expected [albedo, t]")
+  );
+}

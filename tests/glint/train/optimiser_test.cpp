@@ -6,6 +6,7 @@
 
 #include "glint/render/activations.h"
 #include "glint/train/densify.h"
+#include "glint/train/trainable_set.h"
 
 using namespace glint;
 
@@ -204,5 +205,25 @@ TEST_CASE("Each extra channel has its own rate") {
   for (std::size_t i = 0; i < 3; ++i) {
     CHECK(cloud.extra_logits[2 * i] == Approx(-0.05f));
     CHECK(cloud.extra_logits[2 * i + 1] == Approx(-0.01f));
+  }
+}
+
+TEST_CASE("A penalty of opacities is their mean and has its gradient, in any number of rows") {
+  for (const std::size_t count : {1u, 256u, 700u}) {
+    SurfelCloud cloud = cloud_of(count);
+    for (std::size_t i = 0; i < count; ++i)
+      cloud.opacity_logits[i] = 0.01f * static_cast<float>(i) - 2;
+    TrainableSet set(cloud, SetTraining{});
+    double mean = 0;
+    for (const float x : cloud.opacity_logits)
+      mean += 1 / (1 + std::exp(-static_cast<double>(x))) / static_cast<double>(count);
+    CHECK(set.penalise_opacity(3) == Approx(mean));
+    for (std::size_t i = 0; i < count; ++i) {
+      const double opacity = 1 / (1 + std::exp(-static_cast<double>(cloud.opacity_logits[i])));
+      CHECK(
+          static_cast<double>(set.gradient().opacity_logits[i]) ==
+          Approx(3 * opacity * (1 - opacity) / static_cast<double>(count))
+      );
+    }
   }
 }

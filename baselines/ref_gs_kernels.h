@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// Deferred shading of Ref-GS, pixel by pixel.
+#pragma once
+
+#include "glint/core/kernel.h"
+#include "glint/render/activations.h"
+#include "glint/render/tone.h"
+
+namespace glint {
+
+// alpha displayed(albedo + specular), specular = e^min(x, 5) of the network's outputs x. alpha is a
+// constant.
+template <class T>
+GLINT_HD Vec3<T> specular_radiance(Vec3<T> x) {
+  const T cap(kExpCap);
+  return {exp_fast(min_of(x.x, cap)), exp_fast(min_of(x.y, cap)), exp_fast(min_of(x.z, cap))};
+}
+template <class T>
+GLINT_HD Vec3<T> specular_radiance_vjp(Vec3<T> x, Vec3<T> value, Vec3<T> g) {
+  const T cap(kExpCap);
+  return {
+      keep(x.x < cap, value.x * g.x),
+      keep(x.y < cap, value.y * g.y),
+      keep(x.z < cap, value.z * g.z)};
+}
+template <class T>
+GLINT_HD Vec3<T> deferred_color(T alpha, Vec3<T> albedo, Vec3<T> x) {
+  return alpha * displayed(albedo + specular_radiance(x));
+}
+template <class T>
+GLINT_HD void deferred_color_vjp(
+    T alpha, Vec3<T> albedo, Vec3<T> x, Vec3<T> dL_dcolor, Vec3<T>& dL_dalbedo, Vec3<T>& dL_dx
+) {
+  const Vec3<T> specular = specular_radiance(x);
+  const Vec3<T> g = displayed_vjp(albedo + specular, alpha * dL_dcolor);
+  dL_dalbedo += g;
+  dL_dx += specular_radiance_vjp(x, specular, g);
+}
+
+// What a pixel is made of. directions: zero where it is not shaded, and then black.
+struct DeferredPixels {
+  int channels, albedo;  // of the features; where albedo begins
+  const float *features, *alpha, *directions;
+  const float* outputs;  // of the network, [pixels][3]
+
+  GLINT_HD bool shaded(std::size_t i) const { return length2(get3(directions, i)) > 0; }
+  GLINT_HD std::size_t albedo_at(std::size_t i) const {
+    return i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(albedo);
+  }
+  GLINT_HD Vec3f albedo_of(std::size_t i) const { return get3(features + albedo_at(i), 0); }
+};
+
+struct ShadeDeferred {
+  DeferredPixels pixels;
+  float* image;
+  GLINT_HD void operator()(std::size_t i) const {
+    const Vec3f color =
+        deferred_color(pixels.alpha[i], pixels.albedo_of(i), get3(pixels.outputs, i));
+    put3(image, i, pixels.shaded(i) ? color : Vec3f{});
+  }
+};
+struct ShadeDeferredVjp {
+  DeferredPixels pixels;
+  const float* dL_dimage;
+  float* dL_dfeatures;  // added to
+  float* dL_doutputs;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    Vec3f dL_dalbedo{}, dL_dx{};
+    if (pixels.shaded(i))
+      deferred_color_vjp(
+          pixels.alpha[i],
+          pixels.albedo_of(i),
+          get3(pixels.outputs, i),
+          get3(dL_dimage, i),
+          dL_dalbedo,
+          dL_dx
+      );
+    float* g = dL_dfeatures + pixels.albedo_at(i);
+    put3(g, 0, get3(g, 0) + dL_dalbedo);
+    put3(dL_doutputs, i, dL_dx);
+  }
+};
+
+// Diffuse and specular part, each as if it were alone.
+struct DeferredParts {
+  DeferredPixels pixels;
+  float *diffuse, *specular;
+  GLINT_HD void operator()(std::size_t i) const {
+    const bool shaded = pixels.shaded(i);
+    const Vec3f light = specular_radiance(get3(pixels.outputs, i));
+    put3(diffuse, i, shaded ? displayed(pixels.albedo_of(i)) : Vec3f{});
+    put3(specular, i, shaded ? displayed(light) : Vec3f{});
+  }
+};
+
+using RefGsKernels = KernelList<ShadeDeferred, ShadeDeferredVjp, DeferredParts>;
+
+}  // namespace glint

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "glint/render/spherical_lookup.h"
+
+#include <algorithm>
+
+#include "glint/core/error.h"
+#include "glint/core/kernel.h"
+
+namespace glint {
+
+namespace {
+
+constexpr std::size_t kGrain = 256;         // pixels or texels a block
+constexpr std::size_t kValueGrain = 16384;  // values a block
+
+}  // namespace
+
+SphericalLookup::SphericalLookup(int height, int channels)
+    : shape_{height, channels, MapShape::levels_of(height)} {
+  GLINT_CHECK(
+      height >= 2 && channels >= 1,
+      kUsage,
+      "a map over directions has {} rows of {} channels, expected at least 2 and 1",
+      height,
+      channels
+  );
+  texels_.resize(shape_.first_texel(shape_.levels) * static_cast<std::size_t>(channels));
+}
+
+std::size_t SphericalLookup::num_values() const {
+  return shape_.num_texels(0) * static_cast<std::size_t>(shape_.channels);
+}
+
+void SphericalLookup::set_texels(std::span<const float> level0) {
+  GLINT_CHECK(
+      level0.size() == num_values(),
+      kUsage,
+      "a map of {} values, expected {}",
+      level0.size(),
+      num_values()
+  );
+  run_kernel(level0.size(), kValueGrain, CopyValues{level0.data(), texels_.data()});
+  const auto channels = static_cast<std::size_t>(shape_.channels);
+  for (int level = 1; level < shape_.levels; ++level)
+    run_kernel(
+        shape_.num_texels(level) * channels,
+        kValueGrain,
+        BuildMapLevel{shape_, level, texels_.data()}
+    );
+}
+
+const Image& SphericalLookup::look_up(const Image& directions, const Image& roughness) {
+  directions_ = &directions;
+  roughness_ = &roughness;
+  fit(values_, directions.size(), shape_.channels);
+  run_kernel(
+      values_.num_pixels(),
+      kGrain,
+      LookUpMap{shape_, texels_.data(), directions.data(), roughness.data(), values_.data()}
+  );
+  return values_;
+}
+
+void SphericalLookup::look_up_vjp(
+    const Image& dL_dvalues,
+    Image& dL_ddirections,
+    Image& dL_droughness,
+    std::span<float> dL_dlevel0
+) {
+  GLINT_CHECK(directions_ != nullptr, kUsage, "a map over directions: nothing was looked up");
+  fit(dL_ddirections, values_.size(), 3);
+  fit(dL_droughness, values_.size(), 1);
+  run_kernel(
+      values_.num_pixels(),
+      kGrain,
+      LookUpMapVjp{
+          shape_,
+          texels_.data(),
+          directions_->data(),
+          roughness_->data(),
+          dL_dvalues.data(),
+          dL_ddirections.data(),
+          dL_droughness.data()}
+  );
+  texels_vjp(dL_dvalues, dL_dlevel0);
+}
+
+// Counting sort, on the host: in the order of the pixels within a key.
+void SphericalLookup::sort_taps() {
+  synchronize();
+  begins_.assign(shape_.first_texel(shape_.levels) + 1, 0);
+  for (const std::uint32_t key : keys_)
+    if (key != kNoTexel) ++begins_[key + 1];
+  for (std::size_t k = 1; k < begins_.size(); ++k) begins_[k] += begins_[k - 1];
+  taps_.resize(keys_.size());
+  std::vector<std::uint32_t> next(begins_.begin(), begins_.end());
+  for (std::size_t i = 0; i < keys_.size(); ++i)
+    if (keys_[i] != kNoTexel) taps_[next[keys_[i]]++] = static_cast<std::uint32_t>(i);
+}
+
+void SphericalLookup::texels_vjp(const Image& dL_dvalues, std::span<float> dL_dlevel0) {
+  const std::size_t pixels = values_.num_pixels();
+  keys_.resize(2 * pixels);
+  weights_.resize(2 * pixels);
+  run_kernel(
+      pixels,
+      kGrain,
+      MapTaps{shape_, directions_->data(), roughness_->data(), keys_.data(), weights_.data()}
+  );
+  sort_taps();
+  dL_dtexels_.resize(texels_.size());
+  fill(dL_dtexels_.data(), dL_dtexels_.size(), 0.0f);
+  const auto channels = static_cast<std::size_t>(shape_.channels);
+  run_kernel(
+      shape_.first_texel(shape_.levels),
+      kGrain,
+      GatherMapTexels{
+          shape_,
+          dL_dvalues.data(),
+          weights_.data(),
+          begins_.data(),
+          taps_.data(),
+          dL_dtexels_.data()}
+  );
+  for (int level = shape_.levels - 1; level > 0; --level)
+    run_kernel(
+        shape_.num_texels(level - 1) * channels,
+        kValueGrain,
+        BuildMapLevelVjp{shape_, level, dL_dtexels_.data()}
+    );
+  run_kernel(num_values(), kValueGrain, AddValues{dL_dtexels_.data(), dL_dlevel0.data()});
+}
+
+}  // namespace glint

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// A map over all directions (spherical_map.h) with its mip levels, looked up for the pixels of an
+// image, and the way back to texels, directions and roughness.
+#pragma once
+
+#include <span>
+
+#include "glint/core/image.h"
+#include "glint/render/spherical_map_kernels.h"
+
+namespace glint {
+
+class SphericalLookup {
+ public:
+  SphericalLookup() = default;
+  // height rows, 2 height columns. Errors (kUsage): height < 2, channels < 1.
+  SphericalLookup(int height, int channels);
+
+  const MapShape& shape() const { return shape_; }
+  std::size_t num_values() const;  // of level 0, [height][2 height][channels]
+
+  // Makes the levels of these values of level 0; once after they have changed. Errors (kUsage):
+  // not num_values().
+  void set_texels(std::span<const float> level0);
+  // directions: [H][W][3] unit, world; zero: the value is zero. roughness: [H][W][1]; below 0 and
+  // above 1 as those. Both must stay as they are until look_up_vjp(). Returns [H][W][channels],
+  // valid until the next call.
+  const Image& look_up(const Image& directions, const Image& roughness);
+  // Back through the last look_up(): fills dL_ddirections [H][W][3] and dL_droughness [H][W][1],
+  // adds to dL_dlevel0. On the CPU the same bytes for any number of threads. On a GPU it waits for
+  // the device: look-ups are sorted by texel on the host.
+  void look_up_vjp(
+      const Image& dL_dvalues,
+      Image& dL_ddirections,
+      Image& dL_droughness,
+      std::span<float> dL_dlevel0
+  );
+
+ private:
+  void sort_taps();
+  void texels_vjp(const Image& dL_dvalues, std::span<float> dL_dlevel0);
+
+  MapShape shape_;
+  FloatArray texels_, dL_dtexels_;  // all levels
+  const Image *directions_ = nullptr, *roughness_ = nullptr;
+  Image values_;
+  Array<std::uint32_t> keys_, begins_, taps_;  // taps by key (counting sort)
+  Array<TexelWeights> weights_;
+};
+
+}  // namespace glint

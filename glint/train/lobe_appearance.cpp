@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/lobe_appearance.h"
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "glint/core/error.h"
+#include "glint/core/kernel.h"
+
+namespace glint {
+
+namespace {
+
+constexpr std::size_t kGrain = 256;  // surfels a block
+
+// i-th of `count` numbers from 0 to `end`, both among them.
+double evenly(double end, int i, int count) { return count < 2 ? 0 : end * i / (count - 1); }
+
+}  // namespace
+
+LobeAppearanceConfig LobeAppearanceConfig::real() {
+  LobeAppearanceConfig config;
+  config.lobe_feature = 12;
+  config.lobes_theta = 2;
+  config.lobes_phi = 4;
+  config.lobe_hidden = 32;
+  config.lobe_reflection = false;
+  return config;
+}
+
+void world_normals(const SurfelCloud& cloud, FloatArray& normals) {
+  normals.resize(3 * cloud.size());
+  run_kernel(cloud.size(), 4 * kGrain, WorldNormals{cloud.rotations.data(), normals.data()});
+}
+
+LobeAppearance::LobeAppearance(
+    const LobeAppearanceConfig& config, std::size_t count, std::uint64_t seed
+)
+    : config_(config), count_(count) {
+  for (const int size :
+       {config.lobe_feature, config.lobes_theta, config.lobes_phi, config.lobe_hidden})
+    GLINT_CHECK(size > 0, kUsage, "lobe appearance: a size is {}, expected positive ones", size);
+  // The last axis around is the first again, and all are one at each pole: as published.
+  for (int t = 0; t < config.lobes_theta; ++t)
+    for (int p = 0; p < config.lobes_phi; ++p) {
+      const double theta = evenly(std::numbers::pi, t, config.lobes_theta);
+      const double phi = evenly(2 * std::numbers::pi, p, config.lobes_phi);
+      const LobeFrame<double> f =
+          lobe_frame(std::sin(theta), std::cos(theta), std::sin(phi), std::cos(phi));
+      frames_.push_back(
+          {cast<float>(f.axis), cast<float>(f.tangent_theta), cast<float>(f.tangent_phi)}
+      );
+    }
+  features_ = TrainableArray(count * static_cast<std::size_t>(config.lobe_feature));
+  to_lobes_ = Mlp({config.lobe_feature, kLobeNumbers * config.num_lobes()}, seed);
+  to_color_ = Mlp({config.input_width(), config.lobe_hidden, config.lobe_hidden, 3}, seed + 1);
+}
+
+// On the host: how many there are decides the sizes of what follows.
+void LobeAppearance::find_visible(std::span<const std::uint8_t> visible) {
+  synchronize();
+  surfels_.clear();
+  for (std::size_t i = 0; i < visible.size(); ++i)
+    if (visible[i] != 0) surfels_.push_back(static_cast<std::uint32_t>(i));
+}
+
+const FloatArray& LobeAppearance::forward(
+    std::span<const float> means,
+    std::span<const float> normals,
+    Vec3f eye,
+    std::span<const std::uint8_t> visible
+) {
+  GLINT_CHECK(
+      means.size() == 3 * count_ && normals.size() == 3 * count_ && visible.size() == count_,
+      kUsage,
+      "lobe appearance: made for {} surfels, found {} means, {} normals, {} visibilities",
+      count_,
+      means.size() / 3,
+      normals.size() / 3,
+      visible.size()
+  );
+  find_visible(visible);
+  view_ = {means.data(), normals.data(), eye, config_.lobe_reflection};
+  const std::size_t m = surfels_.size(), width = static_cast<std::size_t>(config_.lobe_feature);
+  seen_features_.resize(m * width);
+  run_kernel(
+      m * width,
+      kGrain * width,
+      GatherRows{features_.values.data(), surfels_.data(), width, seen_features_.data()}
+  );
+  numbers_ = &to_lobes_.forward(seen_features_);
+  const auto input = static_cast<std::size_t>(config_.input_width());
+  inputs_.resize(m * input);
+  run_kernel(
+      m,
+      kGrain,
+      LobeInputs{
+          surfels_.data(),
+          view_,
+          frames_.data(),
+          frames_.size(),
+          input,
+          numbers_->data(),
+          inputs_.data()}
+  );
+  const FloatArray& colors = to_color_.forward(inputs_);
+  offsets_.resize(3 * count_);
+  fill(offsets_.data(), offsets_.size(), 0.0f);
+  run_kernel(3 * m, kGrain, AddToRows{colors.data(), surfels_.data(), 3, offsets_.data()});
+  return offsets_;
+}
+
+void LobeAppearance::backward(std::span<const float> dL_doffsets) {
+  GLINT_CHECK(
+      numbers_ != nullptr && dL_doffsets.size() == offsets_.size(),
+      kUsage,
+      "lobe appearance: gradients of {} values, the last forward() gave {}",
+      dL_doffsets.size(),
+      offsets_.size()
+  );
+  const std::size_t m = surfels_.size(), width = static_cast<std::size_t>(config_.lobe_feature);
+  dL_dcolors_.resize(3 * m);
+  run_kernel(3 * m, kGrain, GatherRows{dL_doffsets.data(), surfels_.data(), 3, dL_dcolors_.data()});
+  dL_dinputs_.resize(inputs_.size());
+  to_color_.backward(dL_dcolors_, dL_dinputs_);
+  dL_dnumbers_.resize(numbers_->size());
+  run_kernel(
+      m,
+      kGrain,
+      LobeInputsVjp{
+          surfels_.data(),
+          view_,
+          frames_.data(),
+          frames_.size(),
+          static_cast<std::size_t>(config_.input_width()),
+          numbers_->data(),
+          dL_dinputs_.data(),
+          dL_dnumbers_.data()}
+  );
+  dL_dfeatures_.resize(seen_features_.size());
+  to_lobes_.backward(dL_dnumbers_, dL_dfeatures_);
+  run_kernel(
+      m * width,
+      kGrain * width,
+      AddToRows{dL_dfeatures_.data(), surfels_.data(), width, features_.gradient.data()}
+  );
+}
+
+void LobeAppearance::step(int step, int steps) {
+  const float rate = log_linear_rate(config_.rate_lobe, config_.rate_lobe_final, step, steps);
+  features_.step(config_.rate_lobe_feature);
+  to_lobes_.parameters().step(rate);
+  to_color_.parameters().step(rate);
+}
+
+std::vector<TensorToWrite> LobeAppearance::tensors(const std::string& name) const {
+  std::vector<TensorToWrite> tensors = to_lobes_.tensors(name + ".to_lobes");
+  for (TensorToWrite& tensor : to_color_.tensors(name + ".to_color"))
+    tensors.push_back(std::move(tensor));
+  tensors.push_back(float_tensor(
+      name + ".features", {count_, static_cast<std::size_t>(config_.lobe_feature)}, features_.values
+  ));
+  return tensors;
+}
+
+void LobeAppearance::read(SafetensorsFile& file, const std::string& name) {
+  to_lobes_.read(file, name + ".to_lobes");
+  to_color_.read(file, name + ".to_color");
+  read_floats(
+      file,
+      name + ".features",
+      {count_, static_cast<std::size_t>(config_.lobe_feature)},
+      features_.values
+  );
+}
+
+void LobeAppearance::check_finite(const std::string& name) const {
+  features_.check_finite(name + " features");
+  to_lobes_.parameters().check_finite(name + " to_lobes");
+  to_color_.parameters().check_finite(name + " to_color");
+}
+
+}  // namespace glint

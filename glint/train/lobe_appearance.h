@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// View-dependent colour that a network adds to surfels' spherical harmonics [TSGS, after
+// Spec-Gaussian]: a feature per surfel becomes the numbers of anisotropic spherical Gaussians about
+// fixed axes, which are asked for the mirrored viewing direction and, with that direction's
+// encoding, become RGB.
+#pragma once
+
+#include <vector>
+
+#include "glint/render/surfel_set.h"
+#include "glint/train/lobe_appearance_kernels.h"
+#include "glint/train/mlp.h"
+
+namespace glint {
+
+struct LobeAppearanceConfig {
+  int lobe_feature = 24, lobes_theta = 4, lobes_phi = 8, lobe_hidden = 128;
+  bool lobe_reflection = true;
+  float rate_lobe_feature = 2.5e-3f, rate_lobe = 2.5e-3f, rate_lobe_final = 1.25e-4f;
+
+  // The smaller network of captures without strong mirrors: lobes see the viewing direction itself,
+  // and the normal is not used.
+  static LobeAppearanceConfig real();
+  int num_lobes() const { return lobes_theta * lobes_phi; }
+  // Two values a lobe, n.v with reflection, the viewing direction and its encoding.
+  int input_width() const {
+    return 2 * num_lobes() + (lobe_reflection ? 1 : 0) + 3 + kEncodedDirection;
+  }
+
+  template <class V>
+  void visit(V&& v) {
+    v("lobe_feature", lobe_feature, "numbers of a surfel's feature");
+    v("lobes_theta", lobes_theta, "axes of lobes between the poles");
+    v("lobes_phi", lobes_phi, "axes of lobes around them");
+    v("lobe_hidden", lobe_hidden, "width of the network's two hidden layers");
+    v("lobe_reflection", lobe_reflection, "lobes see the mirrored direction");
+    v("rate_lobe_feature", rate_lobe_feature, "learning rate of features");
+    v("rate_lobe", rate_lobe, "learning rate of the networks");
+    v("rate_lobe_final", rate_lobe_final, "the same at the end");
+  }
+};
+
+// Unit normals of a cloud in the world, [N][3]: third columns of its rotations.
+void world_normals(const SurfelCloud& cloud, FloatArray& normals);
+
+class LobeAppearance {
+ public:
+  LobeAppearance() = default;
+  // Features of `count` surfels start at zero. The surfels must stay the same ones in the same
+  // order: make it after density control has ended (in TSGS at half of the run).
+  LobeAppearance(const LobeAppearanceConfig& config, std::size_t count, std::uint64_t seed);
+
+  // What to add to the colours of the surfels with visible[i] != 0, [N][3]; zero for all others.
+  // means: [N][3] metres, world; normals: [N][3] unit, world, of either side; eye: camera centre.
+  // All must stay as they are until backward(). The result is valid until the next call. Errors
+  // (kUsage): arrays of another number of surfels.
+  const FloatArray& forward(
+      std::span<const float> means,
+      std::span<const float> normals,
+      Vec3f eye,
+      std::span<const std::uint8_t> visible
+  );
+  // Adds dL/d(features and weights) of the last forward(). Positions and normals are constants.
+  void backward(std::span<const float> dL_doffsets);
+  // An optimiser step, the networks' rate at step `step` of `steps`.
+  void step(int step, int steps);
+
+  const LobeAppearanceConfig& config() const { return config_; }
+  std::size_t num_surfels() const { return count_; }
+  std::size_t num_visible() const { return surfels_.size(); }
+  TrainableArray& features() { return features_; }  // [N][lobe_feature]
+  Mlp& to_lobes() { return to_lobes_; }
+  Mlp& to_color() { return to_color_; }
+
+  std::vector<TensorToWrite> tensors(const std::string& name) const;
+  void read(SafetensorsFile& file, const std::string& name);
+  void check_finite(const std::string& name) const;
+
+ private:
+  void find_visible(std::span<const std::uint8_t> visible);
+
+  LobeAppearanceConfig config_;
+  std::size_t count_ = 0;
+  Array<LobeFrame<float>> frames_;
+  TrainableArray features_;
+  Mlp to_lobes_, to_color_;
+  // Of the last forward(); M visible surfels.
+  LobeView view_{};
+  Array<std::uint32_t> surfels_;         // [M]
+  FloatArray seen_features_, inputs_;    // [M][feature], [M][input_width]
+  FloatArray offsets_;                   // [N][3]
+  const FloatArray* numbers_ = nullptr;  // [M][lobes][4]
+  FloatArray dL_dcolors_, dL_dinputs_, dL_dnumbers_, dL_dfeatures_;
+};
+
+}  // namespace glint

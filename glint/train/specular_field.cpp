@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/specular_field.h"
+
+#include "glint/core/error.h"
+#include "glint/core/kernel.h"
+#include "glint/render/glass_transport.h"
+
+namespace glint {
+
+namespace {
+constexpr std::size_t kGrain = 512;  // pixels a block
+}
+
+SpecularField::SpecularField(
+    const SpecularFieldConfig& config, const std::vector<float>& biases, std::uint64_t seed
+)
+    : config_(config), lookup_(config.map_height, config.map_channels) {
+  map_ = TrainableArray(lookup_.num_values());
+  const int outputs = static_cast<int>(biases.size()), hidden = config.hidden;
+  network_ = Mlp({config.map_channels * (kSpecularFeature + 1), hidden, hidden, outputs}, seed);
+  std::copy(biases.begin(), biases.end(), network_.biases(2).begin());
+  map_changed();
+}
+
+const FloatArray& SpecularField::forward(
+    const Camera& camera, const RasterOutput& surface, const SpecularChannels& channels
+) {
+  camera_ = camera;
+  surface_ = &surface;
+  channels_ = channels;
+  const ImageSize size = camera.size();
+  const int feature_channels = surface.features.channels();
+  fit(directions_, size, 3);
+  fit(roughness_, size, 1);
+  run_kernel(
+      size.num_pixels(),
+      kGrain,
+      SpecularDirections{
+          pixel_rays(camera),
+          config_.min_alpha,
+          feature_channels,
+          channels.roughness,
+          surface.features.data(),
+          surface.alpha.data(),
+          surface.normal.data(),
+          directions_.data(),
+          roughness_.data()}
+  );
+  code_ = &lookup_.look_up(directions_, roughness_);
+  inputs_.resize(size.num_pixels() * static_cast<std::size_t>(network_.widths().front()));
+  run_kernel(
+      size.num_pixels(),
+      kGrain,
+      SpecularInputs{
+          config_.map_channels,
+          feature_channels,
+          channels.feature,
+          code_->data(),
+          surface.features.data(),
+          inputs_.data()}
+  );
+  return network_.forward(inputs_);
+}
+
+void SpecularField::backward(
+    std::span<const float> dL_doutputs, RasterOutputGradient& dL_dsurface
+) {
+  GLINT_CHECK(surface_ != nullptr, kUsage, "specular field: backward() without a forward()");
+  dL_dinputs_.resize(inputs_.size());
+  network_.backward(dL_doutputs, dL_dinputs_);
+  const std::size_t pixels = directions_.num_pixels();
+  const int feature_channels = surface_->features.channels();
+  fit(dL_dcode_, directions_.size(), config_.map_channels);
+  run_kernel(
+      pixels,
+      kGrain,
+      SpecularInputsVjp{
+          config_.map_channels,
+          feature_channels,
+          channels_.feature,
+          code_->data(),
+          surface_->features.data(),
+          dL_dinputs_.data(),
+          dL_dcode_.data(),
+          dL_dsurface.features.data()}
+  );
+  lookup_.look_up_vjp(dL_dcode_, dL_ddirections_, dL_droughness_, map_.gradient);
+  run_kernel(
+      pixels,
+      kGrain,
+      SpecularDirectionsVjp{
+          pixel_rays(camera_),
+          feature_channels,
+          channels_.roughness,
+          directions_.data(),
+          surface_->normal.data(),
+          dL_ddirections_.data(),
+          dL_droughness_.data(),
+          dL_dsurface.features.data(),
+          dL_dsurface.normal.data()}
+  );
+}
+
+void SpecularField::step(float faster) {
+  map_.step(faster * config_.rate_map);
+  network_.parameters().step(faster * config_.rate_network);
+  map_changed();
+}
+
+std::vector<std::size_t> SpecularField::map_shape() const {
+  const auto height = static_cast<std::size_t>(config_.map_height);
+  return {height, 2 * height, static_cast<std::size_t>(config_.map_channels)};
+}
+
+std::vector<TensorToWrite> SpecularField::tensors(const std::string& name) const {
+  std::vector<TensorToWrite> tensors = network_.tensors(name + ".network");
+  tensors.push_back(float_tensor(name + ".map", map_shape(), map_.values));
+  return tensors;
+}
+
+void SpecularField::read(SafetensorsFile& file, const std::string& name) {
+  network_.read(file, name + ".network");
+  read_floats(file, name + ".map", map_shape(), map_.values);
+  map_changed();
+}
+
+void SpecularField::check_finite(const std::string& name) const {
+  map_.check_finite(name + " map");
+  network_.parameters().check_finite(name + " network");
+}
+
+}  // namespace glint

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/trainable_array.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "glint/core/error.h"
+#include "glint/core/kernel.h"
+#include "glint/train/adam_kernels.h"
+
+namespace glint {
+
+namespace {
+constexpr std::size_t kGrain = 1u << 15;  // values a block
+}
+
+void TrainableArray::step(float rate) {
+  if (first_.size() != values.size()) {
+    first_.assign(values.size(), 0.0f);
+    second_.assign(values.size(), 0.0f);
+    steps_ = 0;
+  }
+  ++steps_;
+  using Kernel = AdamKernel<true>;
+  Kernel kernel{values.data(), gradient.data(), first_.data(), second_.data(), {}, 1, 0};
+  kernel.rates[0] = rate / (1 - std::pow(Kernel::kBeta1, static_cast<float>(steps_)));
+  kernel.scale_v = 1 / (1 - std::pow(Kernel::kBeta2, static_cast<float>(steps_)));
+  run_kernel(values.size(), kGrain, kernel);
+}
+
+void TrainableArray::check_finite(const std::string& name) const {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    GLINT_CHECK(
+        std::isfinite(values[i]),
+        kBadPrediction,
+        "{}: value {} of {} is {}; lower its learning rate",
+        name,
+        i,
+        values.size(),
+        values[i]
+    );
+}
+
+TensorToWrite float_tensor(
+    std::string name, std::vector<std::size_t> shape, std::span<const float> values
+) {
+  TensorToWrite tensor;
+  tensor.name = std::move(name);
+  tensor.info = {TensorType::kF32, std::move(shape)};
+  tensor.fill = [values](std::byte* to) { std::memcpy(to, values.data(), values.size_bytes()); };
+  return tensor;
+}
+
+void read_floats(
+    SafetensorsFile& file,
+    const std::string& name,
+    const std::vector<std::size_t>& shape,
+    std::span<float> values
+) {
+  const std::vector<float> read = file.read<float>(name, shape);
+  GLINT_CHECK(
+      read.size() == values.size(),
+      kUsage,
+      "{}: {} values for an array of {}",
+      name,
+      read.size(),
+      values.size()
+  );
+  std::copy(read.begin(), read.end(), values.begin());
+}
+
+float log_linear_rate(float begin, float end, int step, int steps) {
+  const float t =
+      std::clamp(static_cast<float>(step) / static_cast<float>(std::max(steps, 1)), 0.0f, 1.0f);
+  return std::exp((1 - t) * std::log(begin) + t * std::log(end));
+}
+
+}  // namespace glint

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// What a pixel is in Ref-GS and RT-Splatting: closed forms, central differences in double.
+#include "baselines/ref_gs_kernels.h"
+#include "baselines/rt_splatting_kernels.h"
+#include "tests/support/check_loss.h"
+#include "tests/support/check_vjp.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+RtPixel<double> pixel_of(const Vector& x) {
+  return {vec3(x, 0), vec3(x, 3), x[6], x[7], vec3(x, 8), x[11]};
+}
+Vector values_of(const RtPixel<double>& p) {
+  Vector x;
+  push(x, p.transmission);
+  push(x, p.scattered);
+  x.insert(x.end(), {p.transmissivity, p.reflectance});
+  push(x, p.specular);
+  x.push_back(p.attenuation);
+  return x;
+}
+
+Image surface_of(ImageSize size) { return random_map<float>(size, kRtChannels, 0.1f, 0.9f, 3); }
+
+}  // namespace
+
+TEST_CASE("Ref-GS's colour is sRGB of albedo and specular, times alpha") {
+  const Vec3d color = deferred_color(0.5, {0.1, 0.2, 0.0}, {std::log(0.4), -50.0, 3.0});
+  CHECK(color.x == Approx(0.5 * displayed(0.5)));
+  CHECK(color.y == Approx(0.5 * displayed(0.2)));
+  CHECK(color.z == Approx(0.5));  // clamped
+}
+
+TEST_CASE("The gradient of Ref-GS's colour matches central differences") {
+  const double alpha = 0.8;
+  check_vjp(
+      {0.1, 0.3, 0.02, -1.5, -2.0, -0.7},
+      [&](const Vector& x) {
+        Vector y;
+        push(y, deferred_color(alpha, vec3(x, 0), vec3(x, 3)));
+        return y;
+      },
+      [&](const Vector& x, const Vector& g) {
+        Vec3d dL_dalbedo{}, dL_dx{};
+        deferred_color_vjp(alpha, vec3(x, 0), vec3(x, 3), vec3(g, 0), dL_dalbedo, dL_dx);
+        Vector result;
+        push(result, dL_dalbedo);
+        push(result, dL_dx);
+        return result;
+      }
+  );
+  Vec3d dL_dalbedo{}, dL_dx{};  // clamped colours have none
+  deferred_color_vjp(alpha, {2, 2, 2}, Vec3d{6, 0, 0}, {1, 1, 1}, dL_dalbedo, dL_dx);
+  CHECK(length(dL_dalbedo) + length(dL_dx) == 0);
+}
+
+TEST_CASE("RT-Splatting's colour by stages") {
+  RtPixel<double> p;
+  p.transmission = {0.2, 0.4, 0.6};
+  p.scattered = {1, 0, 0.5};
+  p.transmissivity = 0.75;
+  p.reflectance = 0.5;
+  p.specular = {0, std::log(2), -40};
+  p.attenuation = 0;  // sigmoid: a half
+  CHECK(rt_color(p, RtStage::kTransmission).y == 0.4);
+  CHECK(rt_color(p, RtStage::kNoSpecular).x == Approx(0.75 * 0.2 + 0.25));
+  const double a = 1 - 0.5 * 0.75;
+  CHECK(rt_color(p, RtStage::kAll).x == Approx(a * 0.4 + 0.5 * 0.5));
+  CHECK(rt_color(p, RtStage::kAll).y == Approx(a * 0.3 + 0.5 * 1.0));
+  CHECK(rt_color(p, RtStage::kAll).z == Approx(a * 0.575).margin(1e-6));
+}
+
+TEST_CASE("The gradient of RT-Splatting's colour matches central differences, t of a constant") {
+  const Vector x = {0.2, 0.5, 0.7, 0.9, 0.1, 0.4, 0.3, 0.6, -0.5, 0.2, -1.1, 0.4};
+  for (const RtStage stage : {RtStage::kTransmission, RtStage::kNoSpecular, RtStage::kAll})
+    check_vjp(
+        x,
+        [&](const Vector& at) {
+          RtPixel<double> p = pixel_of(at);
+          Vec3d color = rt_color(p, stage);
+          if (stage == RtStage::kAll) {
+            RtPixel<double> still = p;
+            still.transmissivity = x[6];
+            color = color + (rt_attenuation(still) - rt_attenuation(p)) * rt_base(p);
+          }
+          Vector y;
+          push(y, color);
+          return y;
+        },
+        [&](const Vector& at, const Vector& g) {
+          return values_of(rt_color_vjp(pixel_of(at), stage, vec3(g, 0)));
+        }
+    );
+}
+
+TEST_CASE("Tran keeps its whole gradient where spec is even, and e^(-4 std) of it elsewhere") {
+  Image map(9, 7, 1, 0.3f);
+  Image kept(9, 7, 1);
+  const RtKeptShare kernel{map, kept.data()};
+  for (std::size_t i = 0; i < map.num_pixels(); ++i) kernel(i);
+  for (const float k : kept.values()) CHECK(k == 1);
+  map = random_map<float>({9, 7}, 1, 0, 2, 4);
+  const RtKeptShare noisy{map, kept.data()};
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 9; ++x) {
+      noisy(static_cast<std::size_t>(9 * y + x));
+      Vector window;
+      for (int v = std::max(y - 3, 0); v <= std::min(y + 3, 6); ++v)
+        for (int u = std::max(x - 3, 0); u <= std::min(x + 3, 8); ++u)
+          window.push_back(static_cast<double>(map.at(u, v)));
+      double mean = 0, variance = 0;
+      for (const double w : window) mean += w / static_cast<double>(window.size());
+      for (const double w : window)
+        variance += (w - mean) * (w - mean) / static_cast<double>(window.size());
+      CHECK(kept.at(x, y) == Approx(std::exp(-4 * std::sqrt(variance))).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("Mask losses are what they say, with their gradients") {
+  const ImageSize size{5, 4};
+  Image surface = surface_of(size), mask(5, 4, 1);
+  for (std::size_t i = 0; i < 9; ++i) mask.data()[2 * i] = 1;
+  const float opacity_weight = 0.5f, outside_weight = 0.25f, variance_weight = 2;
+  const auto total = [&] {
+    double loss = 0, count = 0, mean[4] = {}, variance = 0;
+    const int channels[4] = {0, 1, 2, kRtTransmissivity};
+    for (int pass = 0; pass < 2; ++pass)
+      for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 5; ++x) {
+          const bool inside = mask.at(x, y) > 0;
+          for (int k = 0; k < 4; ++k) {
+            const auto value = static_cast<double>(surface.at(x, y, channels[k]));
+            if (inside && pass == 0) mean[k] += value / 9;
+            if (inside && pass == 1) variance += std::pow(value - mean[k], 2) / 9;
+          }
+          if (pass == 0) continue;
+          count += inside;
+          const auto o = static_cast<double>(surface.at(x, y, kRtOpacity));
+          const auto t = static_cast<double>(surface.at(x, y, kRtTransmissivity));
+          loss -= 0.5 * (inside ? std::log(1 - o) : std::log(o));
+          if (!inside) loss -= 0.25 * std::log(1 - t);
+        }
+    CHECK(count == 9);
+    return std::pair(loss, variance);
+  };
+  const RtMoments moments = sum_kernel(size, RtMaskMoments{surface, mask});
+  CHECK(moments.count == 9);
+  CHECK(moments.variance() == Approx(total().second));
+  Image gradient(5, 4, kRtChannels);
+  RtMaskLoss kernel{
+      surface, mask, {}, opacity_weight, outside_weight, variance_weight / 9, gradient.ref()};
+  for (int k = 0; k < 4; ++k) kernel.mean[k] = static_cast<float>(moments.mean(k));
+  CHECK(sum_kernel(size, kernel) == Approx(total().first).epsilon(1e-5));
+  for (std::size_t i = 0; i < surface.values().size(); ++i) {
+    const float at = surface.data()[i], h = 1.0f / 1024;
+    const auto loss = [&] {
+      const auto [bce, variance] = total();
+      return bce + 2 * variance;
+    };
+    surface.data()[i] = at + h;
+    const double above = loss();
+    surface.data()[i] = at - h;
+    const double slope = (above - loss()) / (2 * static_cast<double>(h));
+    surface.data()[i] = at;
+    CHECK(static_cast<double>(gradient.data()[i]) == Approx(slope).epsilon(2e-3).margin(1e-4));
+  }
+}
