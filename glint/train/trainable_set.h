@@ -15,8 +15,9 @@ namespace glint {
 struct SetTraining {
   SurfelRates rates;
   DensifyConfig densify;
-  float extent = 1;        // of the scene, metres
-  std::uint64_t seed = 0;  // of density control
+  float extent = 1;                // of the scene, metres
+  std::uint64_t seed = 0;          // of density control
+  std::size_t training_views = 0;  // of the scene, for the holiday of pruning; 0: not known
 };
 
 class TrainableSet final : public SurfelSet {
@@ -40,8 +41,14 @@ class TrainableSet final : public SurfelSet {
   const Rays& trace_backward(const TraceOutputGradient& dL_doutput);
   // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.
   void freeze_geometry();
+  // Opacities stay until this step.
+  void pause_opacity(int until_step);
   // Optimiser step and, when due, densification. `step` counts from 1.
   DensifyCounts update(int step);
+  // Whether opacities are reset at most `margin` steps before or after this one.
+  bool resets_within(int step, int margin) const;
+  // For changes of the cloud between steps. Its moments have the cloud's rows after an update().
+  SurfelAdam& optimiser() { return training().adam; }
 
   const SurfelCloud& gradient() const { return training().gradient; }
 
@@ -51,6 +58,7 @@ class TrainableSet final : public SurfelSet {
     SurfelCloud gradient;
     SurfelRates rates;  // now
     bool frozen_geometry;
+    int opacity_paused_until;
     SurfelAdam adam;
     Densifier densifier;
   };
