@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+// Density control beyond clone, split and prune: the holiday after resets, the slow window, what is
+// decided by visibility, resets of channels.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numeric>
+
+#include "glint/core/error.h"
+#include "glint/render/activations.h"
+#include "glint/train/densify.h"
+
+using namespace glint;
+
+namespace {
+
+constexpr float kSmall = 0.001f, kLarge = 0.5f;
+
+// Opaque surfels in the plane z = 0, facing z, that nothing asks to clone or to prune.
+SurfelCloud cloud_of(std::size_t count) {
+  SurfelCloud cloud;
+  cloud.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    cloud.rotations[4 * i] = 1;
+    cloud.means[3 * i] = static_cast<float>(i);
+    cloud.opacity_logits[i] = 1;
+    cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(kSmall);
+  }
+  return cloud;
+}
+// An optimiser that knows the cloud, and has not moved it.
+SurfelAdam adam_of(SurfelCloud& cloud) {
+  SurfelCloud gradient;
+  gradient.resize(cloud.size());
+  SurfelAdam adam;
+  adam.step(cloud, gradient, {}, 1);
+  return adam;
+}
+void enlarge(SurfelCloud& cloud, std::size_t i) {
+  cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(kLarge);
+}
+
+// One view; a surfel of weight 0 is not in it.
+void observe(
+    Densifier& densifier, const std::vector<float>& weights, const std::vector<float>& gradients
+) {
+  RasterOutput output;
+  RasterGradient gradient;
+  output.alpha = Image(960, 540, 1);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    output.in_view.push_back(weights[i] > 0);
+    output.visibility.push_back(weights[i]);
+    gradient.screen.insert(gradient.screen.end(), {gradients[i], 0});
+  }
+  densifier.observe(output, gradient);
+}
+void observe(Densifier& densifier, const std::vector<float>& weights) {
+  observe(densifier, weights, std::vector<float>(weights.size(), 0.0f));
+}
+
+DensifyConfig every_step() {
+  DensifyConfig config;
+  config.from = 0;
+  config.interval = 1;
+  config.until = 1000;
+  config.reset_interval = 10;
+  config.prune_holiday = 0;
+  return config;
+}
+
+// The step in which surfels that stay as a reset leaves them are pruned.
+int pruned_in_step(int holiday) {
+  DensifyConfig config = every_step();
+  config.prune_holiday = holiday;
+  SurfelCloud cloud = cloud_of(2);
+  SurfelAdam adam = adam_of(cloud);
+  Densifier densifier(config, 1, 0);
+  for (int step = 1; step <= 30; ++step) {
+    observe(densifier, {1, 1});
+    if (densifier.update(step, cloud, adam).pruned > 0) return step;
+    if (step == config.reset_interval) cloud.opacity_logits[1] = 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("After an opacity reset none is pruned for its opacity until the holiday is over") {
+  CHECK(pruned_in_step(0) == 11);
+  CHECK(pruned_in_step(1) == 11);
+  CHECK(pruned_in_step(4) == 14);
+  CHECK(pruned_in_step(9) == 19);
+  CHECK(pruned_in_step(10) == 20);  // in the step of the next reset, before it
+  CHECK(pruned_in_step(11) == 0);   // for_views() keeps resets further apart than that
+}
+
+TEST_CASE("Before the first reset, and without any, there is no holiday") {
+  for (const bool resets : {true, false}) {
+    DensifyConfig config = every_step();
+    config.prune_holiday = 1000;
+    config.resets = resets;
+    SurfelCloud cloud = cloud_of(1);
+    cloud.opacity_logits[0] = logit(0.01f);
+    SurfelAdam adam = adam_of(cloud);
+    Densifier densifier(config, 1, 0);
+    observe(densifier, {1});
+    CHECK(densifier.update(resets ? 5 : 15, cloud, adam).pruned == 1);
+  }
+}
+
+TEST_CASE(
+    "The holiday is 200 steps or two epochs, and resets leave a third of their time to pruning"
+) {
+  DensifyConfig config;
+  CHECK(config.for_views(0).prune_holiday == 200);
+  CHECK(config.for_views(100).prune_holiday == 200);
+  CHECK(config.for_views(280).prune_holiday == 560);
+  CHECK(config.for_views(280).reset_interval == 3000);
+  config.reset_interval = 300;  // the shortest of short runs
+  CHECK(config.for_views(48).reset_interval == 300);
+  CHECK(config.for_views(280).reset_interval == 840);
+  config.resets = false;
+  CHECK(config.for_views(280).reset_interval == 300);
+  config = {};
+  config.reset_interval = 300;
+  config.prune_holiday = 0;
+  CHECK(config.for_views(280).prune_holiday == 0);
+  CHECK(config.for_views(280).reset_interval == 300);
+  config.prune_holiday = 500;
+  CHECK(config.for_views(10).prune_holiday == 500);
+  CHECK(config.for_views(10).reset_interval == 750);
+}
+
+TEST_CASE("Within the slow window densifications are further apart") {
+  DensifyConfig config;
+  CHECK(config.interval_at(10000) == 100);
+  config.slow_interval = 500;
+  for (const auto& [step, interval] :
+       {std::pair{3000, 100}, {3001, 500}, {18000, 500}, {18001, 100}})
+    CHECK(config.interval_at(step) == interval);
+  config.scale([](int published, int at_least) { return std::max(published / 10, at_least); });
+  CHECK(config.interval_at(300) == 50);
+  CHECK(config.interval_at(301) == 50);  // 500 / 10
+  CHECK(config.reset_interval == 300);
+  CHECK(config.slow_until == 1800);
+}
+
+TEST_CASE("A large surfel becomes five in its plane, unless it is among the least seen") {
+  for (const float weight : {5.0f, 0.5f}) {
+    DensifyConfig config = every_step();
+    config.split_large = true;
+    SurfelCloud cloud = cloud_of(12);
+    enlarge(cloud, 0);
+    SurfelAdam adam = adam_of(cloud);
+    Densifier densifier(config, 1, 0);
+    std::vector<float> weights(12, 1.0f);
+    weights[0] = weight;
+    observe(densifier, weights);
+    const DensifyCounts counts = densifier.update(1, cloud, adam);
+    const bool split = weight > 1;
+    CHECK(counts.split == (split ? 1 : 0));
+    CHECK(counts.pruned == (split ? 0 : 1));
+    REQUIRE(cloud.size() == (split ? 16 : 11));
+    CHECK(adam.first().size() == cloud.size());
+    CHECK(cloud.means[0] == 1.0f);  // the parent is gone
+    for (std::size_t child = 11; child < cloud.size(); ++child) {
+      CHECK(std::exp(cloud.log_scales[2 * child]) == Approx(kLarge / 2.5f));
+      CHECK(cloud.means[3 * child + 2] == 0.0f);
+      CHECK(cloud.means[3 * child] != 0.0f);
+      CHECK(std::abs(cloud.means[3 * child]) < 5 * kLarge);
+    }
+  }
+}
+
+TEST_CASE("Weights are means over the views that saw a surfel") {
+  // Two large surfels: the first is seen often and faintly, the second once and well.
+  DensifyConfig config = every_step();
+  config.split_large = true;
+  SurfelCloud cloud = cloud_of(12);
+  enlarge(cloud, 0);
+  enlarge(cloud, 1);
+  SurfelAdam adam = adam_of(cloud);
+  Densifier densifier(config, 1, 0);
+  std::vector<float> weights(12, 3.0f);
+  weights[0] = 2;
+  weights[1] = 4;
+  observe(densifier, weights);
+  weights[1] = 0;
+  observe(densifier, weights);
+  observe(densifier, weights);  // sums: 6 and 4
+  const DensifyCounts counts = densifier.update(1, cloud, adam);
+  CHECK(counts.pruned == 1);
+  CHECK(counts.split == 1);
+  CHECK(cloud.means[0] == 2.0f);
+}
+
+TEST_CASE("Rows of the least weight go, new ones last") {
+  constexpr float kUnseen = DensifyRows::kUnseen;
+  DensifyRows rows{{1, 1, 0, 1, 1, 1}, {3, 1, 0, 2, kUnseen, 1}};
+  DensifyCounts counts;
+  drop_lightest(5, rows, counts);
+  CHECK(counts.pruned == 0);
+  drop_lightest(3, rows, counts);
+  CHECK(rows.keep == std::vector<std::uint8_t>{1, 0, 0, 1, 1, 0});
+  CHECK(counts.pruned == 2);
+  drop_lightest(1, rows, counts);
+  CHECK(rows.keep == std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0});
+  CHECK(counts.pruned == 4);
+}
+
+TEST_CASE("A cap by visibility lets surfels grow, and takes those least seen down to 0.9 of it") {
+  DensifyConfig config = every_step();
+  config.cap_by_visibility = true;
+  config.max_surfels = 10;
+  SurfelCloud cloud = cloud_of(10);
+  SurfelAdam adam = adam_of(cloud);
+  Densifier densifier(config, 1, 0);
+  std::vector<float> weights(10), gradients(10, 0.0f);
+  std::iota(weights.begin(), weights.end(), 1.0f);
+  gradients[0] = gradients[9] = 1;
+  observe(densifier, weights, gradients);
+  const DensifyCounts counts = densifier.update(1, cloud, adam);
+  CHECK(counts.cloned == 2);
+  CHECK(counts.pruned == 3);
+  REQUIRE(cloud.size() == 9);
+  CHECK(cloud.means[0] == 3.0f);  // 0, 1 and 2 went, the clone of 0 did not
+  CHECK(cloud.means[3 * 7] == 0.0f);
+  CHECK(cloud.means[3 * 8] == 9.0f);
+}
+
+TEST_CASE("An opacity reset lowers the channels that it names, from their step on") {
+  DensifyConfig config = every_step();
+  config.channel_resets = {{"transparency", 0.01f}, {"specular", 0.001f, 15}};
+  SurfelCloud cloud, gradient;
+  for (SurfelCloud* c : {&cloud, &gradient}) {
+    c->extra_names = {"transparency", "specular"};
+    c->resize(2);
+    std::fill(c->log_scales.begin(), c->log_scales.end(), std::log(kSmall));
+  }
+  cloud.opacity_logits = {1, 1};
+  gradient.extra_logits = {1, 1, 1, 1};
+  SurfelRates rates;
+  rates.extra = {0, 0};
+  SurfelAdam adam;
+  adam.step(cloud, gradient, rates, 1);
+  cloud.extra_logits = {2, 2, logit(1e-4f), logit(1e-4f)};
+  Densifier densifier(config, 1, 0);
+  densifier.update(10, cloud, adam);
+  CHECK(sigmoid(cloud.extra_logits[0]) == Approx(0.01f));
+  CHECK(cloud.extra_logits[1] == 2.0f);
+  CHECK(cloud.extra_logits[2] == logit(1e-4f));  // below already
+  CHECK(adam.first().extra_logits[0] == 0.0f);
+  CHECK(adam.first().extra_logits[1] > 0);
+  cloud.opacity_logits = {1, 1};
+  densifier.update(20, cloud, adam);
+  CHECK(sigmoid(cloud.extra_logits[1]) == Approx(0.001f));
+  CHECK(adam.second().extra_logits[1] == 0.0f);
+  config.channel_resets = {{"roughness", 0.1f}};
+  Densifier of_another(config, 1, 0);
+  CHECK_THROWS_WITH(of_another.update(10, cloud, adam), Catch::Contains("roughness"));
+}
+
+TEST_CASE("A densifier knows how near a step is to a reset") {
+  DensifyConfig config = every_step();
+  config.until = 25;
+  const Densifier densifier(config, 1, 0);
+  for (const int step : {8, 9, 10, 11, 12, 18, 22}) CHECK(densifier.resets_within(step, 2));
+  for (const int step : {1, 2, 7, 13, 17, 23, 28, 30})
+    CHECK_FALSE(densifier.resets_within(step, 2));
+  config.resets = false;
+  CHECK_FALSE(Densifier(config, 1, 0).resets_within(10, 2));
+}
