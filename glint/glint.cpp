@@ -10,8 +10,10 @@
 // is off without. What the paper leaves open (weights, initial t and s, windows) is in GlintConfig.
 //
 // `glint/release` follows the official code instead where both differ. Not in it: the second
-// reflection at the transmission set, multi-view consistency, the variance of depth patches, colour
-// sabotage and normal propagation, caps on the number of surfels.
+// reflection at the transmission set, multi-view consistency, the variance of depth patches, the
+// weights of guidance by explained error. In it and not in the newest code: the transmission set
+// from a clone of the interface. Deviation: its loss on the opacity of the transmission set has the
+// gradient that the first release forgot.
 #include <algorithm>
 #include <cmath>
 
@@ -27,6 +29,13 @@ namespace glint {
 
 namespace {
 
+// The surfels with their colour alone.
+SurfelCloud without_extra(SurfelCloud cloud) {
+  cloud.extra_names.clear();
+  cloud.extra_logits.clear();
+  return cloud;
+}
+
 class Glint final : public Method {
  public:
   explicit Glint(const Json& overrides) {
@@ -41,19 +50,18 @@ class Glint final : public Method {
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
     InitialSurfels initial;
     initial.seed = options.seed + 1;
-    DensifyConfig densify = secondary_densify();
-    densify.gradient_threshold = config_.transmission_gradient;
-    model_.transmission = new_set(points, initial, densify);
-    densify.gradient_threshold = config_.reflection_gradient;
+    model_.transmission = new_set(points, initial, windows_.transmission_densify());
     initial.seed = options.seed + 2;
     initial.opacity = config_.reflection_opacity;
-    model_.reflection = new_set(config_.grid.points(scene, options.seed), initial, densify);
+    model_.reflection =
+        new_set(config_.grid.points(scene, options.seed), initial, windows_.reflection_densify());
     initial = {};
     initial.seed = options.seed;
     initial.extra = {
         {kTransparency, config_.initial_transparency, config_.rate_transparency},
         {kSpecular, config_.initial_specular, config_.rate_specular}};
-    model_.interface = new_set(points, initial, windows_.densify);
+    model_.interface = new_set(points, initial, windows_.interface_densify());
+    bootstrap_ = ReflectionBootstrap(windows_.bootstrap, options.seed);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
 
@@ -72,8 +80,11 @@ class Glint final : public Method {
         perceptual_.get(), windows_.perceptual, iteration, image, view.rgb, dL_dimage_, stats
     );
     add_map_losses(view, iteration, weights, stats);
+    float dL_dalpha = 0;
+    if (phase_.transmission)
+      dL_dalpha = transmission_losses_.add_opacity(iteration, model_.transmission_alpha(), stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
-    model_.backward(config_, dL_dimage_, dL_dtransparency_, !frozen_, dL_dinterface_);
+    model_.backward(config_, dL_dimage_, dL_dtransparency_, dL_dalpha, !frozen_, dL_dinterface_);
     update(iteration);
     stats.num_surfels = num_surfels();
     return stats;
@@ -122,14 +133,14 @@ class Glint final : public Method {
   TrainableSet new_set(
       const PointCloud& points, const InitialSurfels& initial, const DensifyConfig& densify
   ) const {
-    return TrainableSet(points, initial, {windows_.rates, densify, scene_->spatial_scale});
-  }
-  DensifyConfig secondary_densify() const {
-    DensifyConfig densify = windows_.densify;
-    densify.interval = windows_.secondary_densify_interval;
-    densify.reset_interval = windows_.secondary_reset_interval;
-    densify.resets = config_.reset_secondary;
-    return densify;
+    return TrainableSet(
+        points,
+        initial,
+        {.rates = windows_.rates,
+         .densify = densify,
+         .extent = scene_->spatial_scale,
+         .training_views = scene_->train.size()}
+    );
   }
   void set_up_losses() {
     warnings_.clear();
@@ -139,6 +150,7 @@ class Glint final : public Method {
          {geometry_.set_up(windows_.geometry, *scene_, "glint"),
           transmission_losses_.set_up(windows_.transmission_losses, *scene_, "glint")})
       warnings_.insert(warnings_.end(), of_losses.begin(), of_losses.end());
+    transmission_losses_.use_perceptual(perceptual_.get(), windows_.perceptual);
   }
 
   void set_phase(int iteration) {
@@ -150,6 +162,8 @@ class Glint final : public Method {
     phase_.interface_degree = degree(0);
     phase_.transmission_degree = degree(windows_.transmission_from);
     phase_.reflection_degree = degree(windows_.reflection_from);
+    if (config_.clone_interface && phase_.transmission && iteration == windows_.transmission_from)
+      model_.transmission.load(without_extra(model_.interface.cloud()));
     const bool late = iteration >= windows_.freeze_from;
     frozen_ = late && config_.freeze == "all";
     if (late && config_.freeze == "geometry") model_.interface.freeze_geometry();
@@ -181,7 +195,10 @@ class Glint final : public Method {
   }
   // The secondary sets count steps from where they start.
   void update(int iteration) {
-    if (!frozen_) model_.interface.update(iteration + 1);
+    if (!frozen_) {
+      model_.interface.update(iteration + 1);
+      bootstrap_.update(iteration + 1, model_.interface);
+    }
     if (phase_.transmission) model_.transmission.update(iteration - windows_.transmission_from + 1);
     if (phase_.reflection) model_.reflection.update(iteration - windows_.reflection_from + 1);
   }
@@ -191,6 +208,7 @@ class Glint final : public Method {
   std::vector<std::string> warnings_;
   ViewSampler views_;
   GlintModel model_;
+  ReflectionBootstrap bootstrap_;
   GlintPhase phase_;
   bool frozen_ = false;
   PhotometricLoss photometric_;

@@ -13,8 +13,8 @@ GlintConfig::GlintConfig() {
   geometry.gate_from = PriorLosses::kGateFrom;
   geometry.lambda_consistency = 0.05f;
   geometry.consistency_from = 14000;  // the share of the run that [Huang24] leaves it off
-  geometry.lambda_smooth = 0.01f;
-  geometry.smooth_from = 5000;
+  geometry.lambda_smooth = PriorLosses::kLambdaSmooth;
+  geometry.smooth_from = PriorLosses::kSmoothFrom;
   densify.until = 30000;
   rates.means_steps = kPublishedIterations;
 }
@@ -25,12 +25,7 @@ GlintConfig GlintConfig::scaled_to(int iterations) const {
     return scaled_step(published, iterations, at_least, kPublishedIterations);
   };
   for (int* window :
-       {&run.transmission_from,
-        &run.reflection_from,
-        &run.sh_interval,
-        &run.perceptual.lpips_from,
-        &run.densify.from,
-        &run.densify.until})
+       {&run.transmission_from, &run.reflection_from, &run.sh_interval, &run.perceptual.lpips_from})
     *window = scaled(*window);
   // Deviation: in short runs the interface has not converged by two thirds of them, and freezing it
   // there costs quality; it trains for as many steps as it takes, or to the end.
@@ -38,12 +33,43 @@ GlintConfig GlintConfig::scaled_to(int iterations) const {
   run.rates = rates.for_shorter_run(static_cast<double>(kPublishedIterations) / iterations);
   run.geometry.scale(scaled);
   run.transmission_losses.scale(scaled);
-  run.densify.interval = scaled(densify.interval, 50);
+  run.densify.scale(scaled);
+  run.bootstrap.scale(scaled);
   run.secondary_densify_interval = scaled(secondary_densify_interval, 50);
-  run.densify.reset_interval = scaled(densify.reset_interval, 300);
   run.secondary_reset_interval = scaled(secondary_reset_interval, 300);
   if (!with_transmission) run.transmission_losses.lambda_transparency = 0;
   return run;
+}
+
+DensifyConfig GlintConfig::interface_densify() const {
+  DensifyConfig config = densify;
+  if (reset_channels)
+    config.channel_resets = {
+        {kTransparency, initial_transparency}, {kSpecular, initial_specular, reflection_from + 1}};
+  return config;
+}
+
+DensifyConfig GlintConfig::secondary_densify() const {
+  DensifyConfig config = densify;
+  config.interval = secondary_densify_interval;
+  config.slow_interval = 0;
+  config.reset_interval = secondary_reset_interval;
+  config.resets = reset_secondary;
+  if (secondary_max_surfels > 0) config.max_surfels = secondary_max_surfels;
+  return config;
+}
+
+DensifyConfig GlintConfig::transmission_densify() const {
+  DensifyConfig config = secondary_densify();
+  config.gradient_threshold = transmission_gradient;
+  if (transmission_min_opacity >= 0) config.min_opacity = transmission_min_opacity;
+  return config;
+}
+
+DensifyConfig GlintConfig::reflection_densify() const {
+  DensifyConfig config = secondary_densify();
+  config.gradient_threshold = reflection_gradient;
+  return config;
 }
 
 void GlintConfig::check() const {
@@ -64,6 +90,8 @@ void GlintConfig::check() const {
 Json glint_release_overrides() {
   return Json{
       {"detach_origins", true},
+      {"secondary_near", 0.06},
+      {"mirror_near", 0.06},
       {"initial_transparency", 0.01},
       {"transmission_from", 1000},
       {"reflection_from", 3000},
@@ -80,21 +108,38 @@ Json glint_release_overrides() {
       {"min_cosine", 0.5},
       {"lambda_consistency", 0.1},
       {"consistency_from", 0},
+      {"near_consistency", true},
       {"lambda_smooth", 0.05},
       {"guidance", "release"},
       {"lambda_transparency", 0.01},
       {"transparency_from", 5000},
       {"depth_threshold", 0.005},
       {"lambda_direct", 1.0},
+      {"direct_lpips", true},
+      {"lambda_direct_consistency", 0.1},
+      {"direct_near_consistency", true},
+      {"lambda_direct_smooth", 0.005},
+      {"lambda_opacity", 0.01},
       {"lambda_plausible", 0.05},
       {"lambda_transparency_prior", 0.01},
       {"densify_until", 21000},
+      {"densify_slow_interval", 500},
+      {"split_large", true},
+      {"cap_by_visibility", true},
+      {"max_surfels", 2000000},
+      {"secondary_max_surfels", 500000},
       {"position_steps", 30000},
       {"min_opacity", 0.08},
+      {"transmission_min_opacity", 0.05},
       {"reflection_gradient", 2e-4},
       {"secondary_densify_interval", 500},
       {"secondary_reset_interval", 6000},
       {"reset_secondary", true},
+      {"reset_channels", true},
+      {"clone_interface", true},
+      {"color_sabotage", true},
+      {"normal_propagation", true},
+      {"sabotage_below", 0.5},
   };
 }
 

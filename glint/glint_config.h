@@ -11,6 +11,7 @@
 #include "glint/train/initial_points.h"
 #include "glint/train/mirror_cutoffs.h"
 #include "glint/train/perceptual.h"
+#include "glint/train/reflection_bootstrap.h"
 #include "glint/train/transmission_losses.h"
 
 namespace glint {
@@ -44,6 +45,13 @@ struct GlintConfig {
   // Opacity resets of the secondary sets. Off: their gradient is weighted by t and k_s, so most of
   // their surfels would not recover before the next pruning.
   bool reset_secondary = false;
+  // As the official code does: t and s back to what they start with in the interface's opacity
+  // resets (s not before reflection takes part), the transmission set from a copy of the interface,
+  // and what helps s and t along.
+  bool reset_channels = false, clone_interface = false;
+  float transmission_min_opacity = -1;
+  int secondary_max_surfels = 0;
+  BootstrapConfig bootstrap;
   SurfelRates rates;
   float rate_transparency = 0.05f;  // as the official code has them
   float rate_specular = 0.01f;
@@ -84,13 +92,29 @@ struct GlintConfig {
     v("secondary_densify_interval", secondary_densify_interval, "steps, of secondary sets");
     v("secondary_reset_interval", secondary_reset_interval, "steps, of secondary sets");
     v("reset_secondary", reset_secondary, "opacity resets of transmission and reflection too");
+    v("reset_channels", reset_channels, "opacity resets of the interface reset t and s, too");
+    v("clone_interface", clone_interface, "transmission starts as a copy of the interface");
+    v("transmission_min_opacity",
+      transmission_min_opacity,
+      "min_opacity of the transmission set; below 0: min_opacity");
+    v("secondary_max_surfels",
+      secondary_max_surfels,
+      "max_surfels of each of the secondary sets; 0: max_surfels");
+    bootstrap.visit(v);
   }
 
   static constexpr int kPublishedIterations = 60000;
   // With the windows of a run of so many iterations.
   GlintConfig scaled_to(int iterations) const;
+  // Of the three sets, in a run's windows; the secondary sets count steps from where they start.
+  DensifyConfig interface_densify() const;
+  DensifyConfig transmission_densify() const;
+  DensifyConfig reflection_densify() const;
   // Errors (kUsage): a word that is none of the known ones.
   void check() const;
+
+ private:
+  DensifyConfig secondary_densify() const;
 };
 
 // What the official code does beyond or instead of the paper, without its mistakes.

@@ -20,6 +20,16 @@ Image scaled_by_pixel(const Image& color, const Image& factor) {
   return result;
 }
 
+// One value everywhere; 0 is an empty image, which counts as zero.
+void fill_or_empty(ImageSize size, float value, Image& image) {
+  if (value == 0) {
+    image = {};
+    return;
+  }
+  fit(image, size, 1);
+  fill(image.data(), image.num_pixels(), value);
+}
+
 }  // namespace
 
 const Image& GlintModel::forward(
@@ -59,23 +69,27 @@ void GlintModel::render_transmission(const Camera& camera, const GlintConfig& co
         kGrain,
         MoveAlongRays{through_.directions.data(), near_limit_.data(), through_.origins.data()}
     );
-    copy_color(
-        transmission.trace(through_, phase_.transmission_degree, {}).color, layers_.transmission
-    );
+    const TraceOutput& out = transmission.trace(through_, phase_.transmission_degree, {});
+    copy_color(out.color, layers_.transmission);
+    transmission_alpha_ = &out.alpha;
   } else {
-    copy_color(
-        transmission.forward(camera, phase_.transmission_degree, {}, near_limit_).features,
-        layers_.transmission
-    );
+    const RasterOutput& out =
+        transmission.forward(camera, phase_.transmission_degree, {}, near_limit_);
+    copy_color(out.features, layers_.transmission);
+    transmission_alpha_ = &out.alpha;
   }
 }
 
-void GlintModel::transmission_vjp(const GlintConfig& config, const Image& dL_dradiance) {
+void GlintModel::transmission_vjp(
+    const GlintConfig& config, const Image& dL_dradiance, float dL_dalpha
+) {
   if (config.transmission == "trace") {
-    copy_color(dL_dradiance, dL_dtrace_.color);
-    transmission.trace_backward(dL_dtrace_);
+    copy_color(dL_dradiance, dL_dthrough_.color);
+    fill_or_empty(dL_dradiance.size(), dL_dalpha, dL_dthrough_.alpha);
+    transmission.trace_backward(dL_dthrough_);
   } else {
     copy_color(dL_dradiance, dL_dtransmission_.features);
+    fill_or_empty(dL_dradiance.size(), dL_dalpha, dL_dtransmission_.alpha);
     transmission.backward(dL_dtransmission_);
   }
 }
@@ -84,6 +98,7 @@ void GlintModel::backward(
     const GlintConfig& config,
     const Image& dL_dimage,
     const Image& dL_dtransparency,
+    float dL_dalpha,
     bool interface_too,
     RasterOutputGradient& dL_dinterface
 ) {
@@ -93,7 +108,7 @@ void GlintModel::backward(
     copy_color(dL_dlayers.reflection, dL_dtrace_.color);
     dL_drays = &reflection.trace_backward(dL_dtrace_);
   }
-  if (phase_.transmission) transmission_vjp(config, dL_dlayers.transmission);
+  if (phase_.transmission) transmission_vjp(config, dL_dlayers.transmission, dL_dalpha);
   if (!interface_too) return;
   transport_.interface_vjp(camera_, *interface_output_, dL_drays, dL_dtransparency, dL_dinterface);
   interface.backward(dL_dinterface);

@@ -25,24 +25,28 @@ class GlintModel {
   const Image& forward(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
   // Back through the last forward call, to all sets that took part. dL_dinterface holds, and is
   // added to, the gradient of losses on the interface's maps; dL_dtransparency that of t (may be
-  // empty). `interface_too` off: the interface stays as it is.
+  // empty), dL_dalpha that of the transmission set's alpha, the same at every pixel.
+  // `interface_too` off: the interface stays as it is.
   void backward(
       const GlintConfig& config,
       const Image& dL_dimage,
       const Image& dL_dtransparency,
+      float dL_dalpha,
       bool interface_too,
       RasterOutputGradient& dL_dinterface
   );
   const RasterOutput& interface_output() const { return *interface_output_; }
   const GlassBuffer& buffer() const { return transport_.buffer(); }
   const GlassLayers& layers() const { return layers_; }
+  // [H][W][1] of the transmission set behind the interface, where it took part.
+  const Image& transmission_alpha() const { return *transmission_alpha_; }
 
   // All maps of a view (docs/RECORDS.md).
   MapSet render(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
 
  private:
   void render_transmission(const Camera& camera, const GlintConfig& config);
-  void transmission_vjp(const GlintConfig& config, const Image& dL_dradiance);
+  void transmission_vjp(const GlintConfig& config, const Image& dL_dradiance, float dL_dalpha);
   void add_behind_depth(const Camera& camera, MapSet& out);
   void add_components(MapSet& out) const;
 
@@ -50,12 +54,13 @@ class GlintModel {
   GlintPhase phase_;
   GlassTransport transport_;
   const RasterOutput* interface_output_ = nullptr;
+  const Image* transmission_alpha_ = nullptr;
   GlassLayers layers_;
   Image near_limit_;
   Rays through_;
   RasterPass behind_pass_;
   RasterOutputGradient dL_dtransmission_;
-  TraceOutputGradient dL_dtrace_;
+  TraceOutputGradient dL_dtrace_, dL_dthrough_;  // of reflection; of transmission
 };
 
 }  // namespace glint

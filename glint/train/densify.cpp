@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
@@ -13,14 +14,66 @@ namespace glint {
 namespace {
 
 constexpr std::size_t kGrain = 4096;  // surfels a block
-constexpr int kChildren = 2;
-constexpr float kChildShrink = 1.6f;  // children's scale = parent's / 1.6
+constexpr float kLightest = 0.1f;     // share of surfels that are pruned rather than split in five
+constexpr float kUnderCap = 0.9f;     // share of the cap that is left by it
 
 float max_scale_of(const SurfelCloud& cloud, std::size_t i) {
   return std::exp(std::max(cloud.log_scales[2 * i], cloud.log_scales[2 * i + 1]));
 }
 
+// The weight below which `share` of those lie that are kept and not new.
+float light_quantile(const DensifyRows& rows, float share) {
+  std::vector<float> weights;
+  for (std::size_t i = 0; i < rows.keep.size(); ++i)
+    if (rows.keep[i] != 0 && rows.weights[i] < DensifyRows::kUnseen)
+      weights.push_back(rows.weights[i]);
+  if (weights.empty()) return 0;
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<float>(weights.size()));
+  std::nth_element(weights.begin(), weights.begin() + rank, weights.end());
+  return weights[static_cast<std::size_t>(rank)];
+}
+
+// Column and number of columns of an extra channel.
+std::pair<std::size_t, std::size_t> column_of(const SurfelCloud& cloud, const std::string& name) {
+  const auto& names = cloud.extra_names;
+  const auto found = std::find(names.begin(), names.end(), name);
+  GLINT_CHECK(
+      found != names.end(), kUsage, "density control: the set has no channel '{}' to reset", name
+  );
+  return {static_cast<std::size_t>(found - names.begin()), names.size()};
+}
+
+void forget(std::size_t column, std::size_t width, FloatArray& moments) {
+  for (std::size_t i = column; i < moments.size(); i += width) moments[i] = 0;
+}
+
 }  // namespace
+
+DensifyConfig DensifyConfig::for_views(std::size_t training_views) const {
+  DensifyConfig config = *this;
+  if (prune_holiday < 0)
+    config.prune_holiday = std::max(kShortestHoliday, 2 * static_cast<int>(training_views));
+  if (resets) config.reset_interval = std::max(reset_interval, (3 * config.prune_holiday + 1) / 2);
+  return config;
+}
+
+void drop_lightest(std::size_t limit, DensifyRows& rows, DensifyCounts& counts) {
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < rows.keep.size(); ++i)
+    if (rows.keep[i] != 0) kept.push_back(i);
+  if (kept.size() <= limit) return;
+  std::stable_sort(kept.begin(), kept.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return rows.weights[a] < rows.weights[b];
+  });
+  kept.resize(kept.size() - limit);
+  for (const std::uint32_t i : kept) rows.drop(i, counts);
+}
+
+void lower_logits(float ceiling, std::size_t column, std::size_t width, FloatArray& logits) {
+  const float highest = logit(ceiling);
+  for (std::size_t i = column; i < logits.size(); i += width)
+    logits[i] = std::min(logits[i], highest);
+}
 
 void append_rows(SurfelCloud& cloud, const std::vector<std::uint32_t>& rows) {
   cloud.for_each_array([&](const char*, FloatArray& array, std::size_t width) {
@@ -63,8 +116,9 @@ Densifier::Densifier(DensifyConfig config, float extent, std::uint64_t seed)
 
 DensifyStatistics Densifier::statistics(std::size_t count) {
   gradient_sum_.resize(count, 0.0f);
+  weight_sum_.resize(count, 0.0f);
   views_.resize(count, 0);
-  return {gradient_sum_.data(), views_.data()};
+  return {gradient_sum_.data(), weight_sum_.data(), views_.data()};
 }
 
 float Densifier::scale_of(int rows) const {
@@ -74,10 +128,12 @@ float Densifier::scale_of(int rows) const {
 void Densifier::observe(const RasterOutput& output, const RasterGradient& gradient) {
   const std::size_t count = output.in_view.size();
   const float scale = scale_of(output.alpha.height());
+  const float* visibility = output.visibility.size() == count ? output.visibility.data() : nullptr;
   run_kernel(
       count,
       kGrain,
-      ObserveRaster{statistics(count), output.in_view.data(), gradient.screen.data(), scale}
+      ObserveRaster{
+          statistics(count), output.in_view.data(), gradient.screen.data(), visibility, scale}
   );
   const bool has_footprints = !gradient.screen_abs.empty() && !output.radii.empty();
   GLINT_CHECK(
@@ -129,13 +185,15 @@ void Densifier::move_in_plane(SurfelCloud& cloud, std::size_t i) {
 }
 
 // Children are drawn from the parent's Gaussian in its plane.
-void Densifier::append_splits(SurfelCloud& cloud, const std::vector<std::uint32_t>& parents) {
-  for (int child = 0; child < kChildren; ++child) {
+void Densifier::append_splits(
+    SurfelCloud& cloud, const std::vector<std::uint32_t>& parents, Shape shape
+) {
+  for (int child = 0; child < shape.children; ++child) {
     const std::size_t first = cloud.size();
     append_rows(cloud, parents);
     for (std::size_t i = first; i < cloud.size(); ++i) {
       move_in_plane(cloud, i);
-      for (int axis = 0; axis < 2; ++axis) cloud.log_scales[2 * i + axis] -= std::log(kChildShrink);
+      for (int axis = 0; axis < 2; ++axis) cloud.log_scales[2 * i + axis] -= std::log(shape.shrink);
     }
   }
 }
@@ -159,14 +217,24 @@ std::vector<std::uint32_t> Densifier::abs_splits(
   return result;
 }
 
-DensifyCounts Densifier::densify(SurfelCloud& cloud, SurfelAdam& adam, bool prune_large) {
+std::vector<float> Densifier::mean_weights() const {
+  std::vector<float> weights(views_.size(), 0.0f);
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (views_[i] > 0) weights[i] = weight_sum_[i] / static_cast<float>(views_[i]);
+  return weights;
+}
+
+// Clones and splits where the mean gradient asks for more surfels.
+DensifyRows Densifier::grow(SurfelCloud& cloud, DensifyCounts& counts) {
+  constexpr Shape kSplit{2, 1.6f};
   const std::size_t count = cloud.size();
+  statistics(count);
+  const auto most = static_cast<std::size_t>(config_.max_surfels);
   std::vector<std::uint32_t> clones, splits;
   std::vector<std::uint8_t> taken(count, 0);
   for (std::uint32_t i = 0; i < count; ++i) {
     const float mean = views_[i] > 0 ? gradient_sum_[i] / static_cast<float>(views_[i]) : 0.0f;
-    const bool room =
-        count + clones.size() + splits.size() < static_cast<std::size_t>(config_.max_surfels);
+    const bool room = config_.cap_by_visibility || count + clones.size() + splits.size() < most;
     if (mean < config_.gradient_threshold || !room) continue;
     (max_scale_of(cloud, i) > config_.clone_scale * extent_ ? splits : clones).push_back(i);
     taken[i] = 1;
@@ -177,20 +245,65 @@ DensifyCounts Densifier::densify(SurfelCloud& cloud, SurfelAdam& adam, bool prun
   append_rows(cloud, clones);
   for (std::size_t i = count; config_.sample_clones && i < cloud.size(); ++i)
     move_in_plane(cloud, i);
-  append_splits(cloud, splits);
+  append_splits(cloud, splits, kSplit);
+  DensifyRows rows{std::vector<std::uint8_t>(count, 1), mean_weights()};
+  rows.add(cloud.size() - count);
+  for (const std::uint32_t parent : splits) rows.keep[parent] = 0;
+  counts.cloned = clones.size();
+  counts.split = splits.size();
+  return rows;
+}
 
-  std::vector<std::uint8_t> keep(cloud.size(), 1);
-  for (const std::uint32_t parent : splits) keep[parent] = 0;
+void Densifier::prune_faint(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts)
+    const {
   const float min_logit = logit(config_.min_opacity);
-  DensifyCounts counts{clones.size(), splits.size(), 0};
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const bool faint = cloud.opacity_logits[i] < min_logit;
-    const bool large = prune_large && max_scale_of(cloud, i) > config_.max_scale * extent_;
-    if (keep[i] == 0 || !(faint || large)) continue;
-    keep[i] = 0;
-    ++counts.pruned;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.opacity_logits[i] < min_logit) rows.drop(i, counts);
+}
+
+bool Densifier::is_large(const SurfelCloud& cloud, std::size_t i) const {
+  return max_scale_of(cloud, i) > config_.max_scale * extent_;
+}
+
+void Densifier::prune_large(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts)
+    const {
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (is_large(cloud, i)) rows.drop(i, counts);
+}
+
+// A large surfel goes where it is among those of the least weight; others become five of 1/2.5 of
+// its size [Xie25]: 1 / (ratio 0.5 x 5).
+void Densifier::split_large(SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) {
+  constexpr Shape kFive{5, 2.5f};
+  const float light = light_quantile(rows, kLightest);
+  std::vector<std::uint32_t> parents;
+  for (std::uint32_t i = 0; i < rows.keep.size(); ++i) {
+    if (rows.keep[i] == 0 || !is_large(cloud, i)) continue;
+    if (rows.weights[i] < light) {
+      rows.drop(i, counts);
+    } else {
+      parents.push_back(i);
+      rows.keep[i] = 0;
+    }
   }
-  keep_surfels(keep, cloud, adam);
+  counts.split += parents.size();
+  append_splits(cloud, parents, kFive);
+  rows.add(cloud.size() - rows.keep.size());
+}
+
+DensifyCounts Densifier::densify(SurfelCloud& cloud, SurfelAdam& adam, int step) {
+  DensifyCounts counts;
+  DensifyRows rows = grow(cloud, counts);
+  if (!in_holiday(step)) prune_faint(cloud, rows, counts);
+  if (config_.split_large)
+    split_large(cloud, rows, counts);
+  else if (step > config_.reset_interval)
+    prune_large(cloud, rows, counts);
+  if (config_.cap_by_visibility) {
+    const float limit = kUnderCap * static_cast<float>(config_.max_surfels);
+    drop_lightest(static_cast<std::size_t>(limit), rows, counts);
+  }
+  keep_surfels(rows.keep, cloud, adam);
   return counts;
 }
 
@@ -203,28 +316,54 @@ void Densifier::prune(const std::vector<std::uint8_t>& keep, SurfelCloud& cloud,
     keep_rows(values, 1, keep);
   };
   keep_observed(gradient_sum_);
+  keep_observed(weight_sum_);
   keep_observed(views_);
   keep_observed(abs_sum_);
   keep_observed(max_radius_);
 }
 
+// Steps count from the last reset, which a step that resets densifies before.
+bool Densifier::in_holiday(int step) const {
+  if (!config_.resets || step <= config_.reset_interval) return false;
+  return (step - 1) % config_.reset_interval + 1 < config_.prune_holiday;
+}
+
+bool Densifier::resets_within(int step, int margin) const {
+  if (!config_.resets) return false;
+  const int since = step % config_.reset_interval;
+  const int last = step - since, next = last + config_.reset_interval;
+  const bool after = last > 0 && last < config_.until && since <= margin;
+  return after || (next < config_.until && next - step <= margin);
+}
+
+void Densifier::reset(int step, SurfelCloud& cloud, SurfelAdam& adam) const {
+  lower_logits(config_.reset_opacity, 0, 1, cloud.opacity_logits);
+  forget(0, 1, adam.first().opacity_logits);
+  forget(0, 1, adam.second().opacity_logits);
+  for (const ChannelReset& channel : config_.channel_resets) {
+    if (step < channel.from) continue;
+    const auto [column, width] = column_of(cloud, channel.channel);
+    lower_logits(channel.ceiling, column, width, cloud.extra_logits);
+    forget(column, width, adam.first().extra_logits);
+    forget(column, width, adam.second().extra_logits);
+  }
+}
+
 DensifyCounts Densifier::update(int step, SurfelCloud& cloud, SurfelAdam& adam) {
   DensifyCounts counts;
   if (step >= config_.until) return counts;
-  if (step > config_.from && step % config_.interval == 0) {
+  if (step > config_.from && step % config_.interval_at(step) == 0) {
     synchronize();
-    counts = densify(cloud, adam, step > config_.reset_interval);
+    counts = densify(cloud, adam, step);
     gradient_sum_.assign(cloud.size(), 0.0f);
+    weight_sum_.assign(cloud.size(), 0.0f);
     views_.assign(cloud.size(), 0);
     if (!abs_sum_.empty()) abs_sum_.assign(cloud.size(), 0.0f);
     if (!max_radius_.empty()) max_radius_.assign(cloud.size(), 0.0f);
   }
   if (config_.resets && step % config_.reset_interval == 0) {
     synchronize();
-    const float ceiling = logit(config_.reset_opacity);
-    for (float& value : cloud.opacity_logits) value = std::min(value, ceiling);
-    std::fill(adam.first().opacity_logits.begin(), adam.first().opacity_logits.end(), 0.0f);
-    std::fill(adam.second().opacity_logits.begin(), adam.second().opacity_logits.end(), 0.0f);
+    reset(step, cloud, adam);
   }
   return counts;
 }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Adaptive density control [Kerbl23 Sec. 5.2] for surfels [Huang24]: clone, split, prune, opacity
-// reset, driven by the mean screen-space gradient. What PGSR [Chen24] adds is off unless asked for:
-// clones at sampled places, splits of large surfels by the gradient's absolute value, trimming of
-// surfels that few views see (TrainableSet::trim).
+// reset, driven by the mean screen-space gradient. Off unless asked for: what PGSR [Chen24] adds
+// (clones at sampled places, splits of large surfels by the gradient's absolute value, trimming of
+// surfels that few views see, TrainableSet::trim), and what EnvGS [Xie25] does by the weights that
+// surfels have in pixels.
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "glint/core/rng.h"
@@ -16,6 +19,13 @@
 #include "glint/train/densify_kernels.h"
 
 namespace glint {
+
+// What an opacity reset does to a channel beside the colour: min(value, ceiling), from a step on.
+struct ChannelReset {
+  std::string channel;
+  float ceiling;
+  int from = 0;
+};
 
 struct DensifyConfig {
   int from = 500, until = 15000, interval = 100;  // steps; `until` is exclusive
@@ -33,6 +43,16 @@ struct DensifyConfig {
   float abs_gradient = 8e-4f;  // mean norm of RasterGradient::screen_abs, at reference_rows
   float abs_radius_px = 20;    // and the largest radius since the last, at reference_rows
   int min_observations = 2;    // views a surfel owns a pixel in, or trim() drops it
+  // Deviation: after a reset to 0.01 a surfel has to climb above min_opacity before the next
+  // pruning, 100 steps later as published. In a short run that is 50, in which many are not seen
+  // once. So none is pruned for its opacity before every view came twice, and not within 200 steps.
+  int prune_holiday = kHolidayRule;
+  // [Xie25] waits longer between densifications in the middle of a run.
+  int slow_interval = 0, slow_from = 3000, slow_until = 18000;
+  bool split_large = false, cap_by_visibility = false;
+  std::vector<ChannelReset> channel_resets;  // of the set's own channels; its method's to say
+
+  static constexpr int kHolidayRule = -1, kShortestHoliday = 200;
 
   template <class V>
   void visit(V&& v) {
@@ -52,11 +72,58 @@ struct DensifyConfig {
     v("abs_gradient", abs_gradient, "mean absolute NDC gradient that splits large surfels");
     v("abs_radius_px", abs_radius_px, "radius that counts as large, pixels at the reference rows");
     v("min_observations", min_observations, "views that must see a surfel, where sets are trimmed");
+    v("prune_holiday",
+      prune_holiday,
+      "steps after an opacity reset in which none is pruned for its opacity; -1: max(200, 2 x "
+      "training views)");
+    v("densify_slow_interval", slow_interval, "steps between densifications in the slow window");
+    v("densify_slow_from", slow_from, "first step of the slow window, if it has an interval");
+    v("densify_slow_until", slow_until, "last step of the slow window");
+    v("split_large",
+      split_large,
+      "large surfels are split in five, unless hardly any pixel sees "
+      "them");
+    v("cap_by_visibility", cap_by_visibility, "above 0.9 x max_surfels those least seen go");
+  }
+  // Published windows to this run's steps; scaled(published, at least).
+  template <class F>
+  void scale(F&& scaled) {
+    for (int* window : {&from, &until, &slow_from, &slow_until}) *window = scaled(*window, 1);
+    // Fewer views than this would make the gradient statistic too noisy to grow by.
+    interval = scaled(interval, 50);
+    if (slow_interval > 0) slow_interval = scaled(slow_interval, 50);
+    reset_interval = scaled(reset_interval, 300);
+  }
+  // With the rule's holiday for so many training views, and resets as far apart that at least a
+  // third of the time between two is open to pruning.
+  DensifyConfig for_views(std::size_t training_views) const;
+  // Steps between densifications at this step.
+  int interval_at(int step) const {
+    const bool slow = slow_interval > 0 && step > slow_from && step <= slow_until;
+    return slow ? slow_interval : interval;
   }
 };
 
 struct DensifyCounts {
   std::size_t cloned = 0, split = 0, pruned = 0;
+};
+
+// What a densification says of every surfel, those that it adds included.
+struct DensifyRows {
+  static constexpr float kUnseen = std::numeric_limits<float>::infinity();  // by any view yet
+
+  std::vector<std::uint8_t> keep;
+  std::vector<float> weights;  // mean over the views that saw the surfel, of its weight in all
+                               // pixels or rays; 0: seen by none
+
+  void drop(std::size_t i, DensifyCounts& counts) {
+    counts.pruned += keep[i];
+    keep[i] = 0;
+  }
+  void add(std::size_t count) {  // surfels that are new
+    keep.resize(keep.size() + count, 1);
+    weights.resize(keep.size(), kUnseen);
+  }
 };
 
 class Densifier {
@@ -74,12 +141,27 @@ class Densifier {
   // surfels that some ray saw. The same scaling by image height.
   void observe(const TraceGradient& gradient, int rows);
   // Densifies and resets when this step is due. `step` counts from 1, after the optimiser's step.
+  // Errors (kUsage): a reset of a channel that the cloud does not have.
   DensifyCounts update(int step, SurfelCloud& cloud, SurfelAdam& adam);
   // Drops the surfels with keep[i] == 0, their moments and what was observed of them.
   void prune(const std::vector<std::uint8_t>& keep, SurfelCloud& cloud, SurfelAdam& adam);
+  // Whether opacities are reset at most `margin` steps before or after this one.
+  bool resets_within(int step, int margin) const;
 
  private:
-  DensifyCounts densify(SurfelCloud& cloud, SurfelAdam& adam, bool prune_large);
+  struct Shape {  // of a split
+    int children;
+    float shrink;  // children's scale = parent's / shrink
+  };
+  DensifyCounts densify(SurfelCloud& cloud, SurfelAdam& adam, int step);
+  DensifyRows grow(SurfelCloud& cloud, DensifyCounts& counts);
+  void prune_faint(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) const;
+  void prune_large(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) const;
+  void split_large(SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts);
+  void reset(int step, SurfelCloud& cloud, SurfelAdam& adam) const;
+  bool in_holiday(int step) const;
+  bool is_large(const SurfelCloud& cloud, std::size_t i) const;
+  std::vector<float> mean_weights() const;
   DensifyStatistics statistics(std::size_t count);
   float scale_of(int rows) const;  // that brings gradients to reference_rows
   void observe_footprints(const RasterOutput& output, const RasterGradient& gradient);
@@ -87,12 +169,12 @@ class Densifier {
   std::vector<std::uint32_t> abs_splits(const std::vector<std::uint8_t>& taken, std::size_t room)
       const;
   void move_in_plane(SurfelCloud& cloud, std::size_t i);
-  void append_splits(SurfelCloud& cloud, const std::vector<std::uint32_t>& parents);
+  void append_splits(SurfelCloud& cloud, const std::vector<std::uint32_t>& parents, Shape shape);
 
   DensifyConfig config_;
   float extent_;
   Rng rng_;
-  FloatArray gradient_sum_;
+  FloatArray gradient_sum_, weight_sum_;
   Array<std::uint32_t> views_;
   FloatArray abs_sum_, max_radius_;  // empty unless observed
 };
@@ -100,5 +182,12 @@ class Densifier {
 // Rows of every array: appended copies, and only the rows with keep[i] != 0 in their order.
 void append_rows(SurfelCloud& cloud, const std::vector<std::uint32_t>& rows);
 void keep_rows(SurfelCloud& cloud, const std::vector<std::uint8_t>& keep);
+
+// Where more than `limit` rows are kept, those of the smallest weights (among equals: the first) go
+// until `limit` are left.
+void drop_lightest(std::size_t limit, DensifyRows& rows, DensifyCounts& counts);
+
+// Lowers the activated values of a column of [N][width] logits to a ceiling.
+void lower_logits(float ceiling, std::size_t column, std::size_t width, FloatArray& logits);
 
 }  // namespace glint

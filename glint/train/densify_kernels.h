@@ -11,10 +11,12 @@ namespace glint {
 
 struct DensifyStatistics {
   float* gradient_sums;  // [N]
+  float* weight_sums;    // [N] of the surfel's weights in pixels or rays
   std::uint32_t* views;  // [N] in which the surfel was seen
 
-  GLINT_HD void add(std::size_t i, float gradient) const {
+  GLINT_HD void add(std::size_t i, float gradient, float weight) const {
     gradient_sums[i] += gradient;
+    weight_sums[i] += weight;
     ++views[i];
   }
 };
@@ -23,11 +25,13 @@ struct ObserveRaster {
   DensifyStatistics statistics;
   const std::uint8_t* in_view;  // [N]
   const float* screen;          // [N][2]
+  const float* visibility;      // [N]; null: not known
   float scale;
 
   GLINT_HD void operator()(std::size_t i) const {
     if (in_view[i] == 0) return;
-    statistics.add(i, scale * hypotf(screen[2 * i], screen[2 * i + 1]));
+    const float weight = visibility != nullptr ? visibility[i] : 0.0f;
+    statistics.add(i, scale * hypotf(screen[2 * i], screen[2 * i + 1]), weight);
   }
 };
 
@@ -64,7 +68,7 @@ struct ObserveTrace {
   GLINT_HD void operator()(std::size_t i) const {
     if (visibility[i] <= 0) return;
     const float* g = half_depths + 3 * i;
-    statistics.add(i, scale * safe_length({g[0], g[1], g[2]}));
+    statistics.add(i, scale * safe_length({g[0], g[1], g[2]}), visibility[i]);
   }
 };
 

@@ -40,6 +40,9 @@ Json prior_control(int published_iterations) {
   overrides["min_cosine"] = PriorLosses::kMinCosine;
   overrides["gate_from"] =
       scaled_step(PriorLosses::kGateFrom, published_iterations, 1, PriorLosses::kIterations);
+  overrides["lambda_smooth"] = PriorLosses::kLambdaSmooth;
+  overrides["smooth_from"] =
+      scaled_step(PriorLosses::kSmoothFrom, published_iterations, 1, PriorLosses::kIterations);
   overrides["normal_l1"] = 0;
   overrides["near_first"] = false;
   return overrides;
@@ -57,19 +60,59 @@ std::vector<std::string> GeometryLosses::set_up(
   return warnings;
 }
 
+void GeometryLosses::add_depth_prior(
+    const View& view, const Image& depth, Image& dL_ddepth, StepStats& stats
+) {
+  const float weight = config_.lambda_depth;
+  if (weight <= 0) return;
+  stats.terms["depth"] = static_cast<double>(weight) *
+                         depth_prior_.evaluate(depth, view.priors["depth"], {}, weight, dL_ddepth);
+}
+
 void GeometryLosses::add_normal_prior(
     const View& view,
+    int iteration,
     const RasterOutput& output,
     const Image& depth,
     Image& dL_dnormal,
     StepStats& stats
 ) {
   const float weight = config_.lambda_normal;
+  if (weight <= 0) return;
+  normal_prior_.min_cosine =
+      iteration >= config_.gate_from ? config_.min_cosine : NormalPriorLoss::kNoGate;
   const Image pixel_weight = config_.near_first ? inverse_depth_weight(depth) : Image{};
   stats.terms["normal"] = static_cast<double>(weight) *
                           normal_prior_.evaluate(
                               output.normal, view.priors["normal"], pixel_weight, weight, dL_dnormal
                           );
+}
+
+void GeometryLosses::add_consistency(
+    const View& view,
+    int iteration,
+    const RasterOutput& output,
+    const Image& depth,
+    Image& dL_dnormal,
+    Image& dL_ddepth,
+    StepStats& stats
+) {
+  const float weight = config_.lambda_consistency;
+  if (weight <= 0 || iteration < config_.consistency_from) return;
+  const Image pixel_weight = config_.near_consistency ? inverse_depth_weight(depth) : Image{};
+  const double loss = consistency_.evaluate(
+      view.camera, output.normal, depth, output.alpha, weight, dL_dnormal, dL_ddepth, pixel_weight
+  );
+  stats.terms["consistency"] = static_cast<double>(weight) * loss;
+}
+
+void GeometryLosses::add_smoothness(
+    const View& view, int iteration, const RasterOutput& output, Image& dL_dnormal, StepStats& stats
+) {
+  const float weight = config_.lambda_smooth;
+  if (weight <= 0 || iteration < config_.smooth_from) return;
+  stats.terms["smooth"] = static_cast<double>(weight) *
+                          smoothness_.evaluate(output.normal, view.rgb, weight, dL_dnormal);
 }
 
 void GeometryLosses::add(
@@ -78,43 +121,17 @@ void GeometryLosses::add(
     const RasterOutput& output,
     const Image& depth,
     RasterOutputGradient& dL_doutput,
-    StepStats& stats
+    StepStats& stats,
+    DepthKind kind
 ) {
-  clear_image(dL_ddepth_, depth.size(), 1);
-  const auto record = [&](const char* name, float weight, double loss) {
-    stats.terms[name] = static_cast<double>(weight) * loss;
-  };
-  const float depth_weight = config_.lambda_depth, consistency = config_.lambda_consistency;
-  if (depth_weight > 0)
-    record(
-        "depth",
-        depth_weight,
-        depth_prior_.evaluate(depth, view.priors["depth"], {}, depth_weight, dL_ddepth_)
-    );
-  normal_prior_.min_cosine =
-      iteration >= config_.gate_from ? config_.min_cosine : NormalPriorLoss::kNoGate;
-  if (config_.lambda_normal > 0) add_normal_prior(view, output, depth, dL_doutput.normal, stats);
-  if (consistency > 0 && iteration >= config_.consistency_from)
-    record(
-        "consistency",
-        consistency,
-        consistency_.evaluate(
-            view.camera,
-            output.normal,
-            depth,
-            output.alpha,
-            consistency,
-            dL_doutput.normal,
-            dL_ddepth_
-        )
-    );
-  if (config_.lambda_smooth > 0 && iteration >= config_.smooth_from)
-    record(
-        "smooth",
-        config_.lambda_smooth,
-        smoothness_.evaluate(output.normal, view.rgb, config_.lambda_smooth, dL_doutput.normal)
-    );
-  expected_depth_map_vjp(output, dL_ddepth_, dL_doutput);
+  const bool expected = kind == DepthKind::kExpected;
+  Image& dL_ddepth = expected ? dL_ddepth_ : dL_doutput.depth_median;
+  clear_image(dL_ddepth, depth.size(), 1);
+  add_depth_prior(view, depth, dL_ddepth, stats);
+  add_normal_prior(view, iteration, output, depth, dL_doutput.normal, stats);
+  add_consistency(view, iteration, output, depth, dL_doutput.normal, dL_ddepth, stats);
+  add_smoothness(view, iteration, output, dL_doutput.normal, stats);
+  if (expected) expected_depth_map_vjp(output, dL_ddepth_, dL_doutput);
 }
 
 }  // namespace glint

@@ -21,7 +21,7 @@ struct GeometryLossConfig {
   int consistency_from = 0, gate_from = 10000, smooth_from = 0;
   float min_cosine = 0.3f;
   float normal_l1 = 0;
-  bool near_first = false;
+  bool near_first = false, near_consistency = false;
   int depth_gradient_scales = 0;
 
   template <class V>
@@ -36,6 +36,7 @@ struct GeometryLossConfig {
     v("min_cosine", min_cosine, "tau_n: the gate of the normal prior");
     v("normal_l1", normal_l1, "|n - prior|_1 beside 1 - cosine in the normal prior");
     v("near_first", near_first, "the normal prior weighs near pixels more");
+    v("near_consistency", near_consistency, "normal consistency weighs near pixels more");
     v("depth_gradient_scales", depth_gradient_scales, "scales of the depth prior's gradient term");
   }
   // Published windows to this run's iterations.
@@ -46,12 +47,18 @@ struct GeometryLossConfig {
   }
 };
 
-// Depth and normal priors as [Na26 Sec. 4] uses them, and as prior_control() gives them to others.
-// Weights and starts that the paper does not give: docs/GLINT_NOTES.md.
+// Depth and normal priors and the smoothness of normals as [Na26 Sec. 4] uses them, and as
+// prior_control() gives them to others. Weights and starts that the paper does not give:
+// docs/GLINT_NOTES.md.
 struct PriorLosses {
   static constexpr float kLambdaDepth = 0.1f, kLambdaNormal = 0.1f, kMinCosine = 0.3f;
-  static constexpr int kGateFrom = 10000, kIterations = 60000;
+  static constexpr float kLambdaSmooth = 0.01f;
+  static constexpr int kGateFrom = 10000, kSmoothFrom = 5000, kIterations = 60000;
 };
+
+// Which depth of a rasterised set its losses look at: expected (depth_ratio 0 of [Huang24]) or
+// median (1), where the transmittance falls below one half.
+enum class DepthKind { kExpected, kMedian };
 
 class GeometryLosses {
  public:
@@ -60,22 +67,42 @@ class GeometryLosses {
   std::vector<std::string> set_up(
       const GeometryLossConfig& config, const Scene& scene, const std::string& method
   );
-  // depth: expected_depth_map() of `output`. Adds the gradients of the normal, depth_sum and alpha
-  // images to dL_doutput, and each weighted loss to stats.terms.
+  // depth: expected_depth_map() of `output`, or its depth_median. Adds the gradients of the normal
+  // image and of those that the depth is made of to dL_doutput, and each weighted loss to
+  // stats.terms.
   void add(
       const View& view,
       int iteration,
       const RasterOutput& output,
       const Image& depth,
       RasterOutputGradient& dL_doutput,
-      StepStats& stats
+      StepStats& stats,
+      DepthKind kind = DepthKind::kExpected
   );
 
  private:
+  void add_depth_prior(const View& view, const Image& depth, Image& dL_ddepth, StepStats& stats);
   void add_normal_prior(
       const View& view,
+      int iteration,
       const RasterOutput& output,
       const Image& depth,
+      Image& dL_dnormal,
+      StepStats& stats
+  );
+  void add_consistency(
+      const View& view,
+      int iteration,
+      const RasterOutput& output,
+      const Image& depth,
+      Image& dL_dnormal,
+      Image& dL_ddepth,
+      StepStats& stats
+  );
+  void add_smoothness(
+      const View& view,
+      int iteration,
+      const RasterOutput& output,
       Image& dL_dnormal,
       StepStats& stats
   );
@@ -88,8 +115,8 @@ class GeometryLosses {
   Image dL_ddepth_;
 };
 
-// Overrides that give a baseline of so many published iterations these priors: same losses, weights
-// and gate, at the same share of the run.
+// Overrides that give a baseline of so many published iterations these priors and the smoothness:
+// same losses, weights and gate, at the same share of the run.
 Json prior_control(int published_iterations);
 
 // Warns, and sets `weight` to 0, where it is not 0 and a training view lacks the prior.

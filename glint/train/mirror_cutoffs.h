@@ -12,16 +12,19 @@ namespace glint {
 struct MirrorCutoffs {
   float transmittance = 0.02f;
   int hits = 64;
+  float near = 0;
 
   template <class V>
   void visit(V&& v) {
     v("mirror_transmittance", transmittance, "transmittance at which mirrored rays stop");
     v("mirror_hits", hits, "most surfels a mirrored ray meets");
+    v("mirror_near", near, "metres that a mirrored ray passes before it meets any");
   }
   TraceSettings settings() const {
     TraceSettings settings;
     settings.min_transmittance = transmittance;
     settings.max_hits = hits;
+    settings.near = near;
     return settings;
   }
 };

@@ -2,6 +2,7 @@
 #include "glint/train/normal_consistency.h"
 
 #include "glint/core/kernel.h"
+#include "glint/train/check_fits.h"
 #include "glint/train/normal_kernels.h"
 
 namespace glint {
@@ -19,8 +20,11 @@ double NormalConsistencyLoss::evaluate(
     const Image& alpha,
     float weight,
     Image& dL_dnormal,
-    Image& dL_ddepth
+    Image& dL_ddepth,
+    const Image& pixel_weight
 ) {
+  if (!pixel_weight.empty())
+    check_fits("weights of normal consistency", pixel_weight, depth.size(), 1);
   const Unprojector unproject = unprojector(camera, depth);
   const auto num_pixels = static_cast<double>(depth.num_pixels());
   fit(dL_dx_, depth.size(), 3);
@@ -29,6 +33,7 @@ double NormalConsistencyLoss::evaluate(
       unproject,
       normal,
       alpha,
+      pixel_weight,
       weight / static_cast<float>(depth.num_pixels()),
       dL_dnormal.ref(),
       dL_dx_.ref(),

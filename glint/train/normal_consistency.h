@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Normal consistency [Huang24 Eq. 14]: mean over pixels of 1 - N . (A N_d), with N the composited
-// normal (not normalised), N_d the normal of the surface depth, A the alpha map held constant.
+// Normal consistency [Huang24 Eq. 14]: mean over pixels of m (1 - N . (A N_d)), with N the
+// composited normal (not normalised), N_d the normal of the surface depth, A the alpha map held
+// constant, m = 1 or the factors of [Xie25].
 #pragma once
 
 #include "glint/core/image.h"
@@ -10,7 +11,8 @@ namespace glint {
 
 class NormalConsistencyLoss {
  public:
-  // normal: [H][W][3] camera space; depth: [H][W][1] planar z, metres; alpha: [H][W][1]. Adds
+  // normal: [H][W][3] camera space; depth: [H][W][1] planar z, metres; alpha: [H][W][1];
+  // pixel_weight: m, [H][W][1] or empty; the mean divides by the number of pixels. Adds
   // weight * gradient to dL_dnormal and dL_ddepth. Returns the unweighted loss. Pixels at the
   // border, or with a neighbour without depth, count as 1 and have no gradient.
   double evaluate(
@@ -20,7 +22,8 @@ class NormalConsistencyLoss {
       const Image& alpha,
       float weight,
       Image& dL_dnormal,
-      Image& dL_ddepth
+      Image& dL_ddepth,
+      const Image& pixel_weight = {}
   );
   // Normals of a depth map, [H][W][3]; zero at the border and where a neighbour has no depth.
   static Image depth_normals(const Camera& camera, const Image& depth);

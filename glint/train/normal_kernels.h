@@ -102,27 +102,29 @@ GLINT_HD DepthDifferences differences_at(const Unprojector& p, int x, int y) {
 
 struct NormalConsistencyAt {
   Unprojector unproject;
-  ImageView normal, alpha;
+  ImageView normal, alpha, pixel_weight;  // pixel_weight may be empty
   float scale;
   ImageRef dL_dnormal;
   ImageRef dL_dx, dL_dy;  // [H][W][3], written: gradients of the differences
 
   GLINT_HD double operator()(int x, int y) const {
     const DepthDifferences d = differences_at(unproject, x, y);
+    const float factor = pixel_weight.empty() ? 1.0f : pixel_weight.at(x, y);
+    const float share = scale * factor;
     Vec3f g_right_left{}, g_down_up{};
     double loss = 1;
     if (d.valid) {
       const Vec3f n = load3<float>(normal, x, y);
       const Vec3f target = alpha.at(x, y) * normal_from_differences(d.right_left, d.down_up);
       loss -= static_cast<double>(dot(n, target));
-      add3(dL_dnormal, x, y, -scale * target);
+      add3(dL_dnormal, x, y, -share * target);
       normal_from_differences_vjp(
-          d.right_left, d.down_up, (-scale * alpha.at(x, y)) * n, g_right_left, g_down_up
+          d.right_left, d.down_up, (-share * alpha.at(x, y)) * n, g_right_left, g_down_up
       );
     }
     store3(dL_dx, x, y, g_right_left);
     store3(dL_dy, x, y, g_down_up);
-    return loss;
+    return static_cast<double>(factor) * loss;
   }
 };
 // W |A N_D - N|_1 (plane_consistency.h).

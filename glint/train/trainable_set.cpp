@@ -41,8 +41,11 @@ TrainableSet::TrainableSet(SurfelCloud cloud, const SetTraining& training)
           {},
           training.rates,
           false,
+          0,
           {},
-          Densifier(training.densify, training.extent, training.seed)})) {
+          Densifier(
+              training.densify.for_views(training.training_views), training.extent, training.seed
+          )})) {
   training_->gradient.extra_names = cloud_.extra_names;
   training_->gradient.resize(cloud_.size());
 }
@@ -119,8 +122,16 @@ std::size_t TrainableSet::trim(std::span<const Camera> cameras, const RasterSett
   return before - cloud_.size();
 }
 
+void TrainableSet::pause_opacity(int until_step) { training().opacity_paused_until = until_step; }
+
+bool TrainableSet::resets_within(int step, int margin) const {
+  return training().densifier.resets_within(step, margin);
+}
+
 DensifyCounts TrainableSet::update(int step) {
   Training& t = training();
+  const bool still = t.frozen_geometry || step < t.opacity_paused_until;
+  t.rates.opacity = still ? 0 : t.settings.rates.opacity;
   t.adam.step(cloud_, t.gradient, t.rates, t.settings.extent);
   const DensifyCounts counts =
       t.frozen_geometry ? DensifyCounts{} : t.densifier.update(step, cloud_, t.adam);

@@ -16,8 +16,9 @@ namespace glint {
 struct SetTraining {
   SurfelRates rates;
   DensifyConfig densify;
-  float extent = 1;        // of the scene, metres
-  std::uint64_t seed = 0;  // of density control
+  float extent = 1;                // of the scene, metres
+  std::uint64_t seed = 0;          // of density control
+  std::size_t training_views = 0;  // of the scene, for the holiday of pruning; 0: not known
 };
 
 class TrainableSet final : public SurfelSet {
@@ -45,6 +46,8 @@ class TrainableSet final : public SurfelSet {
   void freeze_geometry();
   // Only opacities stay.
   void freeze_opacity() { training().rates.opacity = 0; }
+  // Opacities stay until this step.
+  void pause_opacity(int until_step);
   // Optimiser step and, when due, densification. `step` counts from 1.
   DensifyCounts update(int step);
   // Drops surfels that own a pixel (RasterOutput::owned_pixels) in fewer of the cameras than
@@ -52,6 +55,10 @@ class TrainableSet final : public SurfelSet {
   // Between update() and the next forward(); methods say when. A set whose geometry is frozen stays
   // as it is.
   std::size_t trim(std::span<const Camera> cameras, const RasterSettings& settings = {});
+  // Whether opacities are reset at most `margin` steps before or after this one.
+  bool resets_within(int step, int margin) const;
+  // For changes of the cloud between steps. Its moments have the cloud's rows after an update().
+  SurfelAdam& optimiser() { return training().adam; }
 
   const SurfelCloud& gradient() const { return training().gradient; }
 
@@ -61,6 +68,7 @@ class TrainableSet final : public SurfelSet {
     SurfelCloud gradient;
     SurfelRates rates;  // now
     bool frozen_geometry;
+    int opacity_paused_until;
     SurfelAdam adam;
     Densifier densifier;
   };

@@ -4,9 +4,29 @@
 #include <algorithm>
 
 #include "glint/core/error.h"
+#include "glint/core/kernel.h"
+#include "glint/render/map_kernels.h"
 #include "glint/render/map_ops.h"
 
 namespace glint {
+
+namespace {
+
+// Adds the terms of some losses under names of their own.
+void add_terms(const std::string& prefix, const StepStats& from, StepStats& to) {
+  for (const auto& [name, value] : from.terms) to.terms[prefix + name] = value;
+}
+
+GeometryLossConfig direct_geometry(const TransmissionLossConfig& config) {
+  GeometryLossConfig geometry;
+  geometry.lambda_consistency = config.lambda_direct_consistency;
+  geometry.near_consistency = config.direct_near_consistency;
+  geometry.lambda_smooth = config.lambda_direct_smooth;
+  geometry.smooth_from = config.direct_smooth_from;
+  return geometry;
+}
+
+}  // namespace
 
 std::vector<std::string> TransmissionLosses::set_up(
     const TransmissionLossConfig& config, const Scene& scene, const std::string& method
@@ -23,11 +43,27 @@ std::vector<std::string> TransmissionLosses::set_up(
   guidance_ = release ? TransparencyGuidance::release() : TransparencyGuidance::paper();
   guidance_.depth_threshold = config.depth_threshold;
   guidance_.low_albedo = config.low_albedo;
+  direct_geometry_.set_up(direct_geometry(config), scene, method);  // needs no prior
   std::vector<std::string> warnings;
   float& weight = config_.lambda_transparency;
   require_prior(scene, "albedo", "L_trans", method, weight, warnings);
   if (release) require_prior(scene, "basecolor", "L_trans", method, weight, warnings);
   return warnings;
+}
+
+void TransmissionLosses::use_perceptual(PerceptualLoss* loss, const PerceptualConfig& config) {
+  perceptual_ = config_.direct_lpips ? loss : nullptr;
+  perceptual_config_ = config;
+}
+
+float TransmissionLosses::add_opacity(int iteration, const Image& alpha, StepStats& stats) const {
+  const float weight = config_.lambda_opacity;
+  if (weight <= 0 || iteration < config_.opacity_from || iteration >= config_.opacity_until)
+    return 0;
+  const auto count = static_cast<double>(alpha.num_pixels());
+  const double mean = sum_kernel(alpha.size(), SumPixels{alpha}) / count;
+  stats.terms["opacity"] = static_cast<double>(weight) * (1 - mean);
+  return -weight / static_cast<float>(alpha.num_pixels());
 }
 
 TransparencyCues TransmissionLosses::cues(
@@ -60,6 +96,24 @@ void TransmissionLosses::add_plausible(
   stats.terms["plausible"] = static_cast<double>(weight) * loss;
 }
 
+// As on the interface, with terms of their own names.
+void TransmissionLosses::add_direct_geometry(
+    const View& view, int iteration, const RasterOutput& out, StepStats& stats
+) {
+  StepStats terms;
+  add_perceptual(
+      perceptual_,
+      perceptual_config_,
+      iteration,
+      out.features,
+      view.rgb,
+      dL_ddirect_.features,
+      terms
+  );
+  direct_geometry_.add(view, iteration, out, direct_depth_, dL_ddirect_, terms);
+  add_terms("direct ", terms, stats);
+}
+
 void TransmissionLosses::add_direct(
     const View& view,
     int iteration,
@@ -69,7 +123,7 @@ void TransmissionLosses::add_direct(
     StepStats& stats
 ) {
   const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
-  if (config_.lambda_direct <= 0 && !plausible) return;
+  if (!config_.has_direct() && !plausible) return;
   clear_gradient(view.camera.size(), 3, dL_ddirect_);
   if (config_.lambda_direct > 0) {
     const PhotometricWeights direct{
@@ -79,6 +133,7 @@ void TransmissionLosses::add_direct(
     );
     stats.terms["direct"] = terms.weighted(direct);
   }
+  add_direct_geometry(view, iteration, pass_.rasterizer.output(), stats);
   if (plausible) add_plausible(view, pass_.rasterizer.output(), buffer, stats);
   transmission.backward(dL_ddirect_, pass_);
 }
@@ -96,7 +151,7 @@ void TransmissionLosses::add(
 ) {
   const bool guided = config_.lambda_transparency > 0 && iteration >= config_.transparency_from;
   const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
-  if (guided || plausible || config_.lambda_direct > 0) {
+  if (guided || plausible || config_.has_direct()) {
     expected_depth_map(transmission.forward(pass_, view.camera, sh_degree), direct_depth_);
     if (guided || plausible) guidance_.label(cues(view, interface, buffer), masks_);
     add_direct(view, iteration, weights, buffer, transmission, stats);

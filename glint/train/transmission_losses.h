@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Losses that look at the transmission set from the camera on its own (not only behind the
 // interface), and at the transparency map t: guidance [Na26 Sec. 4], and what GLINT's release adds
-// (direct supervision, plausibility, a prior on t).
+// (direct supervision by colour and on its normals, plausibility, a prior on t, opacity).
 #pragma once
 
 #include <string>
 
 #include "glint/render/glass_transport.h"
 #include "glint/train/geometry_losses.h"
+#include "glint/train/perceptual.h"
 #include "glint/train/photometric.h"
 #include "glint/train/trainable_set.h"
 #include "glint/train/transparency_guidance.h"
@@ -21,6 +22,14 @@ struct TransmissionLossConfig {
   float depth_threshold = 0.01f, low_albedo = 0.05f;
   float lambda_direct = 0, lambda_plausible = 0, lambda_transparency_prior = 0;
   int transparency_from = 7000, plausible_from = 5000, transparency_prior_from = 7000;
+  // On the set seen from the camera on its own, as on the interface.
+  bool direct_lpips = false;
+  float lambda_direct_consistency = 0, lambda_direct_smooth = 0;
+  int direct_smooth_from = 5000;
+  bool direct_near_consistency = false;
+  // On the set behind the interface.
+  float lambda_opacity = 0;
+  int opacity_from = 7000, opacity_until = 31000;
 
   template <class V>
   void visit(V&& v) {
@@ -34,11 +43,30 @@ struct TransmissionLossConfig {
     v("transparency_from", transparency_from, "first published iteration of guidance");
     v("plausible_from", plausible_from, "first published iteration of plausibility");
     v("transparency_prior_from", transparency_prior_from, "first published iteration of that");
+    v("direct_lpips", direct_lpips, "LPIPS of the transmission set on its own, too");
+    v("lambda_direct_consistency", lambda_direct_consistency, "its normal consistency");
+    v("lambda_direct_smooth", lambda_direct_smooth, "its edge-aware normal smoothness");
+    v("direct_smooth_from", direct_smooth_from, "first published iteration of that smoothness");
+    v("direct_near_consistency", direct_near_consistency, "its consistency weighs near pixels more"
+    );
+    v("lambda_opacity", lambda_opacity, "draws the transmission set behind the interface opaque");
+    v("opacity_from", opacity_from, "first published iteration of that");
+    v("opacity_until", opacity_until, "last published iteration of that, exclusive");
   }
   template <class F>
   void scale(F&& scaled) {
-    for (int* window : {&transparency_from, &plausible_from, &transparency_prior_from})
+    for (int* window :
+         {&transparency_from,
+          &plausible_from,
+          &transparency_prior_from,
+          &direct_smooth_from,
+          &opacity_from,
+          &opacity_until})
       *window = scaled(*window);
+  }
+  // Whether a loss on the set's own picture is on.
+  bool has_direct() const {
+    return lambda_direct > 0 || lambda_direct_consistency > 0 || lambda_direct_smooth > 0;
   }
 };
 
@@ -49,6 +77,12 @@ class TransmissionLosses {
   std::vector<std::string> set_up(
       const TransmissionLossConfig& config, const Scene& scene, const std::string& method
   );
+  // LPIPS of the interface's pictures, for those of the set on its own if the config wants it;
+  // `loss` may be null, else it outlives this.
+  void use_perceptual(PerceptualLoss* loss, const PerceptualConfig& config);
+  // Mean over pixels of 1 - alpha of the set behind the interface: adds the weighted loss to
+  // stats.terms and returns dL/d(alpha), the same at every pixel. 0: off, or not its time.
+  float add_opacity(int iteration, const Image& alpha, StepStats& stats) const;
   // Rasterises `transmission` where a loss needs it, and adds the gradient of its parameters and of
   // the transparency map. `interface` and `buffer` are constants.
   void add(
@@ -73,6 +107,9 @@ class TransmissionLosses {
       TrainableSet& transmission,
       StepStats& stats
   );
+  void add_direct_geometry(
+      const View& view, int iteration, const RasterOutput& out, StepStats& stats
+  );
   void add_plausible(
       const View& view, const RasterOutput& out, const GlassBuffer& buffer, StepStats& stats
   );
@@ -81,6 +118,9 @@ class TransmissionLosses {
   TransparencyGuidance guidance_;
   TransparencyPriorLoss transparency_prior_;
   PhotometricLoss photometric_;
+  PerceptualLoss* perceptual_ = nullptr;
+  PerceptualConfig perceptual_config_;
+  GeometryLosses direct_geometry_;
   DepthPriorLoss depth_;
   NormalPriorLoss normal_;
   RasterPass pass_;

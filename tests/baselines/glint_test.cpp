@@ -2,6 +2,7 @@
 // What is particular to GLINT: its phases, what it is without glass, its maps.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "glint/glint_model.h"
 #include "glint/scene/ply.h"
@@ -85,6 +86,68 @@ TEST_CASE("Before the joint phase the secondary sets stay as they were") {
   method->step(30);
   CHECK_FALSE(same(transmission, cloud_of(*method, "transmission.ply"), "sh_dc"));
   CHECK_FALSE(same(reflection, cloud_of(*method, "reflection.ply"), "sh_dc"));
+}
+
+TEST_CASE("Transmission starts as a copy of the interface where it is asked to") {
+  for (const bool clone : {false, true}) {
+    const auto method = started({{"transmission_from", 30000}, {"clone_interface", clone}});
+    for (int i = 0; i < 30; ++i) method->step(i);
+    const SurfelCloud interface = cloud_of(*method, "interface.ply");
+    method->step(30);
+    const SurfelCloud transmission = cloud_of(*method, "transmission.ply");
+    CHECK(transmission.extra_names.empty());
+    REQUIRE(transmission.size() == interface.size());
+    // One step moves a number of a quaternion by 0.001 x 1000^(1/4) at most.
+    float largest = 0;
+    for (std::size_t i = 0; i < interface.rotations.size(); ++i)
+      largest = std::max(largest, std::abs(transmission.rotations[i] - interface.rotations[i]));
+    CHECK((largest < 0.006f) == clone);
+  }
+}
+
+TEST_CASE("The opacity loss makes the transmission behind the interface opaque, however it is seen"
+) {
+  for (const char* transmission : {"raster", "trace"}) {
+    std::vector<float> sums;
+    for (const float weight : {0.0f, 10.0f}) {
+      const auto method = started(
+          {{"transmission", transmission},
+           {"transmission_from", 0},
+           {"lambda_opacity", weight},
+           {"opacity_from", 0}}
+      );
+      method->step(0);
+      for (int i = 1; i < 20; ++i) CHECK(method->step(i).terms.count("opacity") == (weight > 0));
+      const SurfelCloud cloud = cloud_of(*method, "transmission.ply");
+      sums.push_back(
+          std::accumulate(cloud.opacity_logits.begin(), cloud.opacity_logits.end(), 0.0f) /
+          static_cast<float>(cloud.size())
+      );
+    }
+    INFO(transmission);
+    CHECK(sums[1] > sums[0] + 0.1f);
+  }
+}
+
+TEST_CASE("The three sets have the density control that the config gives them") {
+  GlintConfig config;
+  CHECK(config.interface_densify().channel_resets.empty());
+  CHECK(config.transmission_densify().min_opacity == config.densify.min_opacity);
+  CHECK(config.reflection_densify().max_surfels == config.densify.max_surfels);
+  config_from_json(config, glint_release_overrides(), "test");
+  const DensifyConfig interface = config.interface_densify();
+  REQUIRE(interface.channel_resets.size() == 2);
+  CHECK(interface.channel_resets[0].ceiling == 0.01f);
+  CHECK(interface.channel_resets[1].from == 3001);
+  CHECK(interface.interval_at(10000) == 500);
+  CHECK(config.transmission_densify().min_opacity == 0.05f);
+  CHECK(config.reflection_densify().min_opacity == 0.08f);
+  for (const DensifyConfig& set : {config.transmission_densify(), config.reflection_densify()}) {
+    CHECK(set.max_surfels == 500000);
+    CHECK(set.interval_at(100) == 500);
+    CHECK(set.interval_at(10000) == 500);
+    CHECK(set.channel_resets.empty());
+  }
 }
 
 TEST_CASE("Without glass GLINT trains as 2DGS does") {

@@ -152,6 +152,8 @@ TEST_CASE("The optimiser and density control do the same on a GPU") {
     densify.from = 1;
     densify.interval = 4;
     densify.reset_interval = 5;
+    densify.prune_holiday = 0;
+    densify.split_large = true;
     densify.gradient_threshold = 1e-3f;
     TrainableSet set(test_cloud(), training(densify));
     for (int step = 1; step <= 6; ++step) {

@@ -1,246 +1,272 @@
 // SPDX-License-Identifier: MIT
-// What PGSR adds to density control: sampled clones, splits by the absolute gradient, trimming.
+// Density control beyond clone, split and prune: the holiday after resets, the slow window, what is
+// decided by visibility, resets of channels.
 #include <catch2/catch.hpp>
 
-#include <array>
 #include <cmath>
+#include <numeric>
 
+#include "glint/core/error.h"
 #include "glint/render/activations.h"
-#include "glint/train/trainable_set.h"
+#include "glint/train/densify.h"
 
 using namespace glint;
 
 namespace {
 
-constexpr float kScale = 0.2f;  // metres
+constexpr float kSmall = 0.001f, kLarge = 0.5f;
 
-// Surfels in planes of their own, metres apart.
+// Opaque surfels in the plane z = 0, facing z, that nothing asks to clone or to prune.
 SurfelCloud cloud_of(std::size_t count) {
   SurfelCloud cloud;
   cloud.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    cloud.means[3 * i] = 100 * static_cast<float>(i);
-    const float q[4] = {0.9f, 0.1f * static_cast<float>(i), -0.3f, 0.2f};
-    std::copy_n(q, 4, &cloud.rotations[4 * i]);
+    cloud.rotations[4 * i] = 1;
+    cloud.means[3 * i] = static_cast<float>(i);
     cloud.opacity_logits[i] = 1;
-    cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(kScale);
+    cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(kSmall);
   }
   return cloud;
 }
+// An optimiser that knows the cloud, and has not moved it.
+SurfelAdam adam_of(SurfelCloud& cloud) {
+  SurfelCloud gradient;
+  gradient.resize(cloud.size());
+  SurfelAdam adam;
+  adam.step(cloud, gradient, {}, 1);
+  return adam;
+}
+void enlarge(SurfelCloud& cloud, std::size_t i) {
+  cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(kLarge);
+}
 
-struct Seen {
-  float gradient, abs_gradient, radius;
-};
-
-// A view of so many rows that saw every surfel; gradients as they are at 540 rows.
-void observe(Densifier& densifier, const std::vector<Seen>& surfels, int rows = 540) {
+// One view; a surfel of weight 0 is not in it.
+void observe(
+    Densifier& densifier, const std::vector<float>& weights, const std::vector<float>& gradients
+) {
   RasterOutput output;
-  output.in_view.assign(surfels.size(), 1);
-  output.alpha = Image(16, rows, 1);
   RasterGradient gradient;
-  const float scale = 540.0f / static_cast<float>(rows);
-  for (const Seen& s : surfels) {
-    gradient.screen.insert(gradient.screen.end(), {0, scale * s.gradient});
-    gradient.screen_abs.insert(
-        gradient.screen_abs.end(), {0.6f * scale * s.abs_gradient, 0.8f * scale * s.abs_gradient}
-    );
-    output.radii.push_back(s.radius / scale);
+  output.alpha = Image(960, 540, 1);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    output.in_view.push_back(weights[i] > 0);
+    output.visibility.push_back(weights[i]);
+    gradient.screen.insert(gradient.screen.end(), {gradients[i], 0});
   }
   densifier.observe(output, gradient);
+}
+void observe(Densifier& densifier, const std::vector<float>& weights) {
+  observe(densifier, weights, std::vector<float>(weights.size(), 0.0f));
 }
 
 DensifyConfig every_step() {
   DensifyConfig config;
   config.from = 0;
   config.interval = 1;
-  config.clone_scale = 1000;  // clones, no splits
-  config.max_scale = 1000;
+  config.until = 1000;
+  config.reset_interval = 10;
+  config.prune_holiday = 0;
   return config;
 }
 
-struct Run {
-  SurfelCloud cloud;
-  DensifyCounts counts;
-};
-
-Run densified(const DensifyConfig& config, const std::vector<Seen>& surfels, int rows = 540) {
-  Run run{cloud_of(surfels.size()), {}};
-  SurfelAdam adam;
-  Densifier densifier(config, 1, 5);
-  observe(densifier, surfels, rows);
-  run.counts = densifier.update(1, run.cloud, adam);
-  CHECK(adam.first().size() == run.cloud.size());
-  return run;
-}
-
-constexpr Seen kQuiet{0, 0, 1}, kMoving{1e-3f, 0, 1};
-
-}  // namespace
-
-TEST_CASE("Clones lie on their surfel, or where they are drawn from it: in its plane") {
+// The step in which surfels that stay as a reset leaves them are pruned.
+int pruned_in_step(int holiday) {
   DensifyConfig config = every_step();
-  const std::vector<Seen> seen(8, kMoving);
-  const SurfelCloud plain = densified(config, seen).cloud;
-  config.sample_clones = true;
-  const SurfelCloud sampled = densified(config, seen).cloud;
-  const SurfelCloud again = densified(config, seen).cloud;
-  REQUIRE(plain.size() == 16);
-  REQUIRE(sampled.size() == 16);
-  CHECK(sampled.means == again.means);
-  CHECK(sampled.log_scales == plain.log_scales);
-  double squares = 0;
-  for (std::size_t i = 8; i < 16; ++i) {
-    Vec3f of_plain, of_sampled;
-    for (int k = 0; k < 3; ++k) {
-      of_plain[k] = plain.means[3 * i + k] - plain.means[3 * (i - 8) + k];
-      of_sampled[k] = sampled.means[3 * i + k] - sampled.means[3 * (i - 8) + k];
-    }
-    CHECK(length(of_plain) == 0);
-    const float* q = &sampled.rotations[4 * i];
-    const Vec3f normal = column(rotation_matrix(Vec4f{q[0], q[1], q[2], q[3]}), 2);
-    CHECK(std::abs(dot(normal, of_sampled)) < 1e-4f);  // rounding of means up to 700
-    CHECK(length(of_sampled) > 0);
-    squares += static_cast<double>(dot(of_sampled, of_sampled));
-  }
-  // 16 squared normals of this variance: outside a factor of 3 in one draw of a hundred.
-  CHECK(squares > 16 * 0.04 / 3);
-  CHECK(squares < 16 * 0.04 * 3);
-}
-
-TEST_CASE("A surfel is split by its absolute gradient only where it is large, too") {
-  DensifyConfig config = every_step();
-  const std::vector<Seen> seen = {{0, 9e-4f, 21}, {0, 9e-4f, 19}, {0, 7e-4f, 21}, kQuiet};
-  const int rows = GENERATE(540, 270, 1080);               // of other images: as at 540
-  CHECK(densified(config, seen, rows).counts.split == 0);  // off
-  config.max_abs_splits = 10;
-  const Run run = densified(config, seen, rows);
-  CHECK(run.counts.split == 1);
-  CHECK(run.counts.cloned == 0);
-  REQUIRE(run.cloud.size() == 5);  // 3 stay, the first is two children
-  CHECK(run.cloud.means[0] == 100);
-  for (const std::size_t child : {3u, 4u})
-    CHECK(run.cloud.log_scales[2 * child] == Approx(std::log(kScale / 1.6f)));
-}
-
-TEST_CASE("The largest absolute gradients are split first, and not what is cloned already") {
-  DensifyConfig config = every_step();
-  config.max_abs_splits = 2;
-  const std::vector<Seen> seen = {
-      {0, 1e-3f, 30}, {1e-3f, 9e-3f, 30}, {0, 4e-3f, 30}, {0, 2e-3f, 30}};
-  const Run run = densified(config, seen);
-  CHECK(run.counts.cloned == 1);
-  CHECK(run.counts.split == 2);
-  REQUIRE(run.cloud.size() == 7);  // 0, 1, the clone of 1, children of 2 and 3
-  CHECK(run.cloud.means[0] == 0);
-  CHECK(run.cloud.means[3] == 100);
-  CHECK(run.cloud.means[6] == 100);
-
-  config.max_surfels = 6;  // the clone, and room for one split
-  CHECK(densified(config, seen).counts.split == 1);
-}
-
-TEST_CASE("The mean is over views, the radius the largest since the last densification") {
-  DensifyConfig config = every_step();
-  config.max_abs_splits = 10;
+  config.prune_holiday = holiday;
   SurfelCloud cloud = cloud_of(2);
-  SurfelAdam adam;
-  Densifier densifier(config, 1, 5);
-  observe(densifier, {{0, 1.5e-3f, 25}, {0, 2e-3f, 5}});
-  observe(densifier, {{0, 0, 5}, {0, 2e-3f, 5}});
-  CHECK(densifier.update(1, cloud, adam).split == 0);  // mean 7.5e-4; never large
-  observe(densifier, {{0, 2e-3f, 5}, {0, 2e-3f, 21}});
-  CHECK(densifier.update(2, cloud, adam).split == 1);  // the first was large before that only
-}
-
-TEST_CASE("Splits by the absolute gradient ask for the statistics they need") {
-  DensifyConfig config = every_step();
-  config.max_abs_splits = 10;
-  Densifier densifier(config, 1, 5);
-  RasterOutput output;
-  output.in_view.assign(1, 1);
-  output.alpha = Image(16, 540, 1);
-  RasterGradient gradient;
-  gradient.screen = {0, 0};
-  CHECK_THROWS_WITH(densifier.observe(output, gradient), Catch::Contains("with_statistics"));
-}
-
-TEST_CASE("What is pruned goes with its moments and with what was observed of it") {
-  SurfelCloud cloud = cloud_of(4), gradient = cloud_of(4);
-  for (std::size_t i = 0; i < 4; ++i) gradient.means[3 * i] = static_cast<float>(i + 1);
-  SurfelAdam adam;
-  adam.step(cloud, gradient, {}, 1);
-  const float moment = adam.first().means[9];
-  Densifier densifier(every_step(), 1, 5);
-  observe(densifier, {kMoving, kQuiet, kQuiet, kMoving});
-  densifier.prune({0, 1, 0, 1}, cloud, adam);
-  REQUIRE(cloud.size() == 2);
-  REQUIRE(adam.first().size() == 2);
-  CHECK(adam.first().means[3] == moment);
-  CHECK(densifier.update(1, cloud, adam).cloned == 1);
-  CHECK(cloud.means[6] == cloud.means[3]);
-}
-
-namespace {
-
-// A wall at z = 2 that faces cameras at the origin, and what a case adds.
-SurfelCloud wall_and(const std::vector<Vec3f>& others) {
-  SurfelCloud cloud;
-  cloud.resize(1 + others.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3f mean = i == 0 ? Vec3f{0, 0, 2} : others[i - 1];
-    for (int k = 0; k < 3; ++k) cloud.means[3 * i + k] = mean[k];
-    cloud.rotations[4 * i] = 1;
-    cloud.opacity_logits[i] = logit(0.95f);
-    cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(i == 0 ? 5.0f : 0.1f);
+  SurfelAdam adam = adam_of(cloud);
+  Densifier densifier(config, 1, 0);
+  for (int step = 1; step <= 30; ++step) {
+    observe(densifier, {1, 1});
+    if (densifier.update(step, cloud, adam).pruned > 0) return step;
+    if (step == config.reset_interval) cloud.opacity_logits[1] = 1;
   }
-  return cloud;
-}
-
-Camera camera_at(double x) {
-  Camera camera;
-  camera.width = camera.height = 21;
-  camera.fx = camera.fy = 20;
-  camera.cx = camera.cy = 10.5;
-  camera.translation_cam_from_world = {-x, 0, 0};
-  return camera;
-}
-
-std::vector<float> columns(const SurfelCloud& cloud) {
-  std::vector<float> z;
-  for (std::size_t i = 0; i < cloud.size(); ++i) z.push_back(cloud.means[3 * i + 2]);
-  return z;
+  return 0;
 }
 
 }  // namespace
 
-TEST_CASE("Trimming drops what owns a pixel in fewer than two training views") {
-  // Behind the wall; before it and in two views; before it and in one of them.
-  TrainableSet set(wall_and({{0, 0, 3}, {0, 0, 1}, {-0.6f, 0, 1.25f}}), SetTraining{});
-  const std::array cameras{camera_at(0), camera_at(0.2), camera_at(0.4)};
-  const std::array far_apart{camera_at(0), camera_at(0.4)};
-  SECTION("two views see the right one, three the other") {
-    CHECK(set.trim(cameras) == 1);
-    CHECK(columns(set.cloud()) == std::vector<float>{2, 1, 1.25f});
+TEST_CASE("After an opacity reset none is pruned for its opacity until the holiday is over") {
+  CHECK(pruned_in_step(0) == 11);
+  CHECK(pruned_in_step(1) == 11);
+  CHECK(pruned_in_step(4) == 14);
+  CHECK(pruned_in_step(9) == 19);
+  CHECK(pruned_in_step(10) == 20);  // in the step of the next reset, before it
+  CHECK(pruned_in_step(11) == 0);   // for_views() keeps resets further apart than that
+}
+
+TEST_CASE("Before the first reset, and without any, there is no holiday") {
+  for (const bool resets : {true, false}) {
+    DensifyConfig config = every_step();
+    config.prune_holiday = 1000;
+    config.resets = resets;
+    SurfelCloud cloud = cloud_of(1);
+    cloud.opacity_logits[0] = logit(0.01f);
+    SurfelAdam adam = adam_of(cloud);
+    Densifier densifier(config, 1, 0);
+    observe(densifier, {1});
+    CHECK(densifier.update(resets ? 5 : 15, cloud, adam).pruned == 1);
   }
-  SECTION("only one sees the last") {
-    CHECK(set.trim(far_apart) == 2);
-    CHECK(columns(set.cloud()) == std::vector<float>{2, 1});
+}
+
+TEST_CASE(
+    "The holiday is 200 steps or two epochs, and resets leave a third of their time to pruning"
+) {
+  DensifyConfig config;
+  CHECK(config.for_views(0).prune_holiday == 200);
+  CHECK(config.for_views(100).prune_holiday == 200);
+  CHECK(config.for_views(280).prune_holiday == 560);
+  CHECK(config.for_views(280).reset_interval == 3000);
+  config.reset_interval = 300;  // the shortest of short runs
+  CHECK(config.for_views(48).reset_interval == 300);
+  CHECK(config.for_views(280).reset_interval == 840);
+  config.resets = false;
+  CHECK(config.for_views(280).reset_interval == 300);
+  config = {};
+  config.reset_interval = 300;
+  config.prune_holiday = 0;
+  CHECK(config.for_views(280).prune_holiday == 0);
+  CHECK(config.for_views(280).reset_interval == 300);
+  config.prune_holiday = 500;
+  CHECK(config.for_views(10).prune_holiday == 500);
+  CHECK(config.for_views(10).reset_interval == 750);
+}
+
+TEST_CASE("Within the slow window densifications are further apart") {
+  DensifyConfig config;
+  CHECK(config.interval_at(10000) == 100);
+  config.slow_interval = 500;
+  for (const auto& [step, interval] :
+       {std::pair{3000, 100}, {3001, 500}, {18000, 500}, {18001, 100}})
+    CHECK(config.interval_at(step) == interval);
+  config.scale([](int published, int at_least) { return std::max(published / 10, at_least); });
+  CHECK(config.interval_at(300) == 50);
+  CHECK(config.interval_at(301) == 50);  // 500 / 10
+  CHECK(config.reset_interval == 300);
+  CHECK(config.slow_until == 1800);
+}
+
+TEST_CASE("A large surfel becomes five in its plane, unless it is among the least seen") {
+  for (const float weight : {5.0f, 0.5f}) {
+    DensifyConfig config = every_step();
+    config.split_large = true;
+    SurfelCloud cloud = cloud_of(12);
+    enlarge(cloud, 0);
+    SurfelAdam adam = adam_of(cloud);
+    Densifier densifier(config, 1, 0);
+    std::vector<float> weights(12, 1.0f);
+    weights[0] = weight;
+    observe(densifier, weights);
+    const DensifyCounts counts = densifier.update(1, cloud, adam);
+    const bool split = weight > 1;
+    CHECK(counts.split == (split ? 1 : 0));
+    CHECK(counts.pruned == (split ? 0 : 1));
+    REQUIRE(cloud.size() == (split ? 16 : 11));
+    CHECK(adam.first().size() == cloud.size());
+    CHECK(cloud.means[0] == 1.0f);  // the parent is gone
+    for (std::size_t child = 11; child < cloud.size(); ++child) {
+      CHECK(std::exp(cloud.log_scales[2 * child]) == Approx(kLarge / 2.5f));
+      CHECK(cloud.means[3 * child + 2] == 0.0f);
+      CHECK(cloud.means[3 * child] != 0.0f);
+      CHECK(std::abs(cloud.means[3 * child]) < 5 * kLarge);
+    }
   }
-  SECTION("one view is enough where there is one only") {
-    CHECK(set.trim(std::span(cameras).first(1)) == 1);
-    CHECK(columns(set.cloud()) == std::vector<float>{2, 1, 1.25f});
+}
+
+TEST_CASE("Weights are means over the views that saw a surfel") {
+  // Two large surfels: the first is seen often and faintly, the second once and well.
+  DensifyConfig config = every_step();
+  config.split_large = true;
+  SurfelCloud cloud = cloud_of(12);
+  enlarge(cloud, 0);
+  enlarge(cloud, 1);
+  SurfelAdam adam = adam_of(cloud);
+  Densifier densifier(config, 1, 0);
+  std::vector<float> weights(12, 3.0f);
+  weights[0] = 2;
+  weights[1] = 4;
+  observe(densifier, weights);
+  weights[1] = 0;
+  observe(densifier, weights);
+  observe(densifier, weights);  // sums: 6 and 4
+  const DensifyCounts counts = densifier.update(1, cloud, adam);
+  CHECK(counts.pruned == 1);
+  CHECK(counts.split == 1);
+  CHECK(cloud.means[0] == 2.0f);
+}
+
+TEST_CASE("Rows of the least weight go, new ones last") {
+  constexpr float kUnseen = DensifyRows::kUnseen;
+  DensifyRows rows{{1, 1, 0, 1, 1, 1}, {3, 1, 0, 2, kUnseen, 1}};
+  DensifyCounts counts;
+  drop_lightest(5, rows, counts);
+  CHECK(counts.pruned == 0);
+  drop_lightest(3, rows, counts);
+  CHECK(rows.keep == std::vector<std::uint8_t>{1, 0, 0, 1, 1, 0});
+  CHECK(counts.pruned == 2);
+  drop_lightest(1, rows, counts);
+  CHECK(rows.keep == std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0});
+  CHECK(counts.pruned == 4);
+}
+
+TEST_CASE("A cap by visibility lets surfels grow, and takes those least seen down to 0.9 of it") {
+  DensifyConfig config = every_step();
+  config.cap_by_visibility = true;
+  config.max_surfels = 10;
+  SurfelCloud cloud = cloud_of(10);
+  SurfelAdam adam = adam_of(cloud);
+  Densifier densifier(config, 1, 0);
+  std::vector<float> weights(10), gradients(10, 0.0f);
+  std::iota(weights.begin(), weights.end(), 1.0f);
+  gradients[0] = gradients[9] = 1;
+  observe(densifier, weights, gradients);
+  const DensifyCounts counts = densifier.update(1, cloud, adam);
+  CHECK(counts.cloned == 2);
+  CHECK(counts.pruned == 3);
+  REQUIRE(cloud.size() == 9);
+  CHECK(cloud.means[0] == 3.0f);  // 0, 1 and 2 went, the clone of 0 did not
+  CHECK(cloud.means[3 * 7] == 0.0f);
+  CHECK(cloud.means[3 * 8] == 9.0f);
+}
+
+TEST_CASE("An opacity reset lowers the channels that it names, from their step on") {
+  DensifyConfig config = every_step();
+  config.channel_resets = {{"transparency", 0.01f}, {"specular", 0.001f, 15}};
+  SurfelCloud cloud, gradient;
+  for (SurfelCloud* c : {&cloud, &gradient}) {
+    c->extra_names = {"transparency", "specular"};
+    c->resize(2);
+    std::fill(c->log_scales.begin(), c->log_scales.end(), std::log(kSmall));
   }
-  SECTION("frozen geometry stays") {
-    set.freeze_geometry();
-    CHECK(set.trim(cameras) == 0);
-    CHECK(set.cloud().size() == 4);
-  }
-  CHECK(set.gradient().size() == set.cloud().size());
-  // The set goes on.
-  const RasterOutput& output = set.forward(camera_at(0), 0);
-  RasterOutputGradient dL;
-  dL.alpha = Image(21, 21, 1, 1.0f);
-  CHECK(output.visibility.size() == set.cloud().size());
-  set.backward(dL);
-  set.update(1);
+  cloud.opacity_logits = {1, 1};
+  gradient.extra_logits = {1, 1, 1, 1};
+  SurfelRates rates;
+  rates.extra = {0, 0};
+  SurfelAdam adam;
+  adam.step(cloud, gradient, rates, 1);
+  cloud.extra_logits = {2, 2, logit(1e-4f), logit(1e-4f)};
+  Densifier densifier(config, 1, 0);
+  densifier.update(10, cloud, adam);
+  CHECK(sigmoid(cloud.extra_logits[0]) == Approx(0.01f));
+  CHECK(cloud.extra_logits[1] == 2.0f);
+  CHECK(cloud.extra_logits[2] == logit(1e-4f));  // below already
+  CHECK(adam.first().extra_logits[0] == 0.0f);
+  CHECK(adam.first().extra_logits[1] > 0);
+  cloud.opacity_logits = {1, 1};
+  densifier.update(20, cloud, adam);
+  CHECK(sigmoid(cloud.extra_logits[1]) == Approx(0.001f));
+  CHECK(adam.second().extra_logits[1] == 0.0f);
+  config.channel_resets = {{"roughness", 0.1f}};
+  Densifier of_another(config, 1, 0);
+  CHECK_THROWS_WITH(of_another.update(10, cloud, adam), Catch::Contains("roughness"));
+}
+
+TEST_CASE("A densifier knows how near a step is to a reset") {
+  DensifyConfig config = every_step();
+  config.until = 25;
+  const Densifier densifier(config, 1, 0);
+  for (const int step : {8, 9, 10, 11, 12, 18, 22}) CHECK(densifier.resets_within(step, 2));
+  for (const int step : {1, 2, 7, 13, 17, 23, 28, 30})
+    CHECK_FALSE(densifier.resets_within(step, 2));
+  config.resets = false;
+  CHECK_FALSE(Densifier(config, 1, 0).resets_within(10, 2));
 }

@@ -102,6 +102,55 @@ TEST_CASE("The gate of the normal prior closes at its iteration") {
   CHECK(f.terms(config, 50, g).terms.at("normal") < open);
 }
 
+TEST_CASE("Losses on the median depth reach it, and neither the depth sum nor alpha") {
+  Fixture f;
+  GeometryLossConfig config;
+  config.lambda_depth = config.lambda_consistency = 1;
+  GeometryLosses losses;
+  losses.set_up(config, f.scene, "test");
+  RasterOutputGradient expected, median;
+  StepStats a, b;
+  clear_gradient(kSize, 3, expected);
+  clear_gradient(kSize, 3, median);
+  losses.add(f.scene.train.front(), 0, f.output, f.depth, expected, a);
+  losses.add(
+      f.scene.train.front(), 0, f.output, f.depth, median, b, DepthKind::kMedian
+  );  // the same depth
+  CHECK(a.terms == b.terms);
+  CHECK(norm(median.depth_sum) + norm(median.alpha) == 0);
+  CHECK(expected.depth_median.empty());
+  // What reaches the depth sum is dL/d(depth) / alpha.
+  for (std::size_t i = 0; i < kSize.num_pixels(); ++i)
+    CHECK(
+        median.depth_median.data()[i] ==
+        Approx(expected.depth_sum.data()[i] * f.output.alpha.data()[i]).margin(1e-6)
+    );
+}
+
+TEST_CASE("Consistency weighs near pixels more where it is asked to") {
+  Fixture f;
+  RasterOutputGradient g;
+  GeometryLossConfig config;
+  config.lambda_consistency = 1;
+  const double all = f.terms(config, 0, g).terms.at("consistency");
+  config.near_consistency = true;
+  const double near = f.terms(config, 0, g).terms.at("consistency");
+  Image dL_dn(kSize.width, kSize.height, 3), dL_dz(kSize.width, kSize.height, 1);
+  CHECK(
+      near == Approx(NormalConsistencyLoss().evaluate(
+                  f.scene.train.front().camera,
+                  f.output.normal,
+                  f.depth,
+                  f.output.alpha,
+                  1,
+                  dL_dn,
+                  dL_dz,
+                  inverse_depth_weight(f.depth)
+              ))
+  );
+  CHECK(near != all);
+}
+
 TEST_CASE("A prior that a view lacks switches its loss off, with a warning") {
   Fixture f;
   f.scene.train.push_back(f.scene.train.front());
@@ -120,9 +169,12 @@ TEST_CASE("A prior that a view lacks switches its loss off, with a warning") {
   CHECK(stats.terms.count("normal") == 1);
 }
 
-TEST_CASE("The control of a baseline has GLINT's priors at the same share of its run") {
+TEST_CASE("The control of a baseline has GLINT's priors and smoothness at the same share of its run"
+) {
   const Json overrides = prior_control(30000);
   CHECK(overrides.at("lambda_depth") == PriorLosses::kLambdaDepth);
   CHECK(overrides.at("lambda_normal") == PriorLosses::kLambdaNormal);
   CHECK(overrides.at("gate_from") == 5000);
+  CHECK(overrides.at("lambda_smooth") == PriorLosses::kLambdaSmooth);
+  CHECK(overrides.at("smooth_from") == 2500);
 }

@@ -59,18 +59,44 @@ TEST_CASE("The loss is zero inside for agreeing normals, and borders and holes c
   );
 }
 
+TEST_CASE("Factors weigh the pixels of normal consistency, and its mean is over all of them") {
+  const Camera camera = test_camera(12, 10);
+  const Image depth = plane_depth(camera, normalize(Vec3d{0.1, 0.2, -1}), -4);
+  const Image normal(12, 10, 3), alpha(12, 10, 1, 1.0f);  // no normals: each pixel counts as 1
+  Image dL_dn(12, 10, 3), dL_dz(12, 10, 1), factors(12, 10, 1);
+  factors.at(3, 4) = 0.5f;
+  factors.at(7, 5) = 1;
+  CHECK(
+      NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 1, dL_dn, dL_dz, factors) ==
+      Approx(1.5 / 120)
+  );
+  for (int c = 0; c < 3; ++c) {
+    CHECK(dL_dn.at(3, 4, c) == Approx(0.5f * dL_dn.at(7, 5, c)));
+    CHECK(dL_dn.at(5, 5, c) == 0.0f);
+  }
+  CHECK(dL_dn.at(7, 5, 2) > 0);
+  CHECK_THROWS_WITH(
+      NormalConsistencyLoss().evaluate(
+          camera, normal, depth, alpha, 1, dL_dn, dL_dz, Image(11, 10, 1)
+      ),
+      Catch::Contains("weights of normal consistency")
+  );
+}
+
 TEST_CASE("The gradients of normal consistency match central differences") {
   const Camera camera = test_camera(9, 8);
   Rng rng(3);
-  Image depth(9, 8, 1), normal(9, 8, 3), alpha(9, 8, 1);
+  Image depth(9, 8, 1), normal(9, 8, 3), alpha(9, 8, 1), factors(9, 8, 1);
   for (float& z : depth.values()) z = rng.uniform(3, 3.5f);
   for (float& v : normal.values()) v = rng.uniform(-1, 1);
   for (float& a : alpha.values()) a = rng.uniform(0.5f, 1);
+  for (float& m : factors.values()) m = rng.uniform(0, 1.5f);
   Image dL_dn(9, 8, 3), dL_dz(9, 8, 1);
-  NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 0.5f, dL_dn, dL_dz);
+  NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 0.5f, dL_dn, dL_dz, factors);
   const auto loss = [&] {
     Image a(9, 8, 3), b(9, 8, 1);
-    return 0.5 * NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 0.5f, a, b);
+    return 0.5 *
+           NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 0.5f, a, b, factors);
   };
   const auto slope_at = [&](float& x, float h) {
     const float at = x;

@@ -71,6 +71,20 @@ double norm(std::span<const float> values) {
   return sum;
 }
 
+// 0.5 x the mean of a picture.
+struct MeanBrightness final : PerceptualLoss {
+  bool accepts(ImageSize) const override { return true; }
+  double evaluate(const Image& rendered, const Image&, float weight, Image& dL_drendered) override {
+    double sum = 0;
+    const auto count = static_cast<double>(rendered.values().size());
+    for (std::size_t i = 0; i < rendered.values().size(); ++i) {
+      sum += static_cast<double>(rendered.data()[i]);
+      dL_drendered.data()[i] += 0.5f * weight / static_cast<float>(count);
+    }
+    return 0.5 * sum / count;
+  }
+};
+
 TransmissionLossConfig only_guidance() {
   TransmissionLossConfig config;
   config.transparency_from = 10;
@@ -112,6 +126,82 @@ TEST_CASE("Direct supervision is the photometric loss of the set on its own, tim
   CHECK(stats.terms.at("direct") == Approx(expected));
   CHECK(norm(f.transmission.gradient().sh_dc) > 0);
   CHECK(f.transmission.gradient().sh_dc == other.transmission.gradient().sh_dc);
+}
+
+TEST_CASE("The set on its own has consistent and smooth normals, each from its iteration on") {
+  Fixture f;
+  TransmissionLossConfig config;
+  config.lambda_transparency = 0;
+  config.lambda_direct_consistency = 2;
+  config.lambda_direct_smooth = 3;
+  config.direct_smooth_from = 5;
+  const StepStats early = f.add(config, 4), late = f.add(config, 5);
+  CHECK(early.terms.size() == 1);
+  REQUIRE(late.terms.size() == 2);
+  CHECK(late.terms.at("direct smooth") == Approx(0).margin(1e-4));  // one flat wall
+  // Border pixels count as 1; inside, the normals differ by what alpha lacks to 1.
+  const double border = 1 - 10.0 * 7 / static_cast<double>(kSize.num_pixels());
+  CHECK(late.terms.at("direct consistency") > 2 * border);
+  CHECK(late.terms.at("direct consistency") < 2 * (border + 0.2));
+  CHECK(norm(f.transmission.gradient().opacity_logits) > 0);
+}
+
+TEST_CASE("LPIPS of the set on its own is that of the interface's picture") {
+  MeanBrightness loss;
+  PerceptualConfig perceptual;
+  perceptual.lambda_lpips = 4;
+  perceptual.lpips_from = 3;
+  for (const bool wanted : {false, true}) {
+    Fixture f;
+    TransmissionLossConfig config;
+    config.lambda_transparency = 0;
+    config.lambda_direct = 1;
+    config.direct_lpips = wanted;
+    TransmissionLosses losses;
+    losses.set_up(config, f.scene, "test");
+    losses.use_perceptual(&loss, perceptual);
+    const auto terms_at = [&](int iteration) {
+      StepStats stats;
+      losses.add(
+          f.scene.train[0],
+          iteration,
+          0,
+          kWeights,
+          f.interface,
+          f.buffer,
+          f.transmission,
+          f.dL_dtransparency,
+          stats
+      );
+      return stats.terms;
+    };
+    CHECK(terms_at(2).count("direct lpips") == 0);
+    CHECK((terms_at(3).count("direct lpips") == 1) == wanted);
+    if (!wanted) continue;
+    const RasterOutput& out = f.transmission.forward(f.scene.train[0].camera, 0);
+    Image gradient(kSize.width, kSize.height, 3);
+    CHECK(
+        terms_at(3).at("direct lpips") == Approx(4 * loss.evaluate(out.features, {}, 0, gradient))
+    );
+  }
+}
+
+TEST_CASE("Opacity is the mean of what the transmission lets pass, within its window") {
+  TransmissionLossConfig config;
+  config.lambda_opacity = 2;
+  config.opacity_from = 10;
+  config.opacity_until = 20;
+  Fixture f;
+  f.scene.train[0].priors["basecolor"] = constant(3, 0.5f);
+  TransmissionLosses losses;
+  losses.set_up(config, f.scene, "test");
+  StepStats stats;
+  for (const int iteration : {9, 20})
+    CHECK(losses.add_opacity(iteration, constant(1, 0.25f), stats) == 0.0f);
+  CHECK(stats.terms.empty());
+  const float gradient = losses.add_opacity(10, constant(1, 0.25f), stats);
+  CHECK(stats.terms.at("opacity") == Approx(2 * 0.75));
+  CHECK(gradient == Approx(-2.0f / static_cast<float>(kSize.num_pixels())));
 }
 
 TEST_CASE("Plausibility moves the set to the interface where it is opaque, and only there") {
