@@ -94,10 +94,8 @@ struct RefGsConfig {
     const auto scaled = [&](int published, int at_least = 1) {
       return scaled_step(published, iterations, at_least, kPublishedIterations);
     };
-    for (int* window : {&warm_up, &sh_interval, &densify.from, &densify.until})
-      *window = scaled(*window);
-    densify.interval = scaled(densify.interval, 50);
-    densify.reset_interval = scaled(densify.reset_interval, 300);
+    for (int* window : {&warm_up, &sh_interval}) *window = scaled(*window);
+    densify.scale(scaled);
     geometry.scale(scaled);
     rates = rates.for_shorter_run(static_cast<double>(kPublishedIterations) / iterations);
   }
@@ -131,7 +129,14 @@ class RefGs final : public Method {
     initial.scale = config_.initial_scale;
     initial.extra = config_.channels(faster_);
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
-    set_ = TrainableSet(points, initial, {windows_.rates, windows_.densify, scene.spatial_scale});
+    set_ = TrainableSet(
+        points,
+        initial,
+        {.rates = windows_.rates,
+         .densify = windows_.densify,
+         .extent = scene.spatial_scale,
+         .training_views = scene.train.size()}
+    );
     field_ = SpecularField(config_.field, std::vector<float>(3, std::log(0.25f)), options.seed);
     view_rng_ = Rng(options.seed, hash_name("views"));
   }
@@ -165,6 +170,7 @@ class RefGs final : public Method {
     out["rgb"] = forward(camera);
     expected_depth_map(*output_, out["depth"]);
     out["normal"] = unit_normals(output_->normal);
+    add_depth_estimates(*output_, out);
     if (!deferred_) return out;
     fit(out["interface"], camera.size(), 3);
     fit(out["reflection"], camera.size(), 3);

@@ -103,16 +103,9 @@ struct RtSplattingConfig {
     const auto scaled = [&](int published, int at_least = 1) {
       return scaled_step(published, iterations, at_least, kPublishedIterations);
     };
-    for (int* window :
-         {&surface_from,
-          &specular_from,
-          &sh_interval,
-          &perceptual.lpips_from,
-          &densify.from,
-          &densify.until})
+    for (int* window : {&surface_from, &specular_from, &sh_interval, &perceptual.lpips_from})
       *window = scaled(*window);
-    densify.interval = scaled(densify.interval, 50);
-    densify.reset_interval = scaled(densify.reset_interval, 300);
+    densify.scale(scaled);
     geometry.scale(scaled);
     rates = rates.for_shorter_run(static_cast<double>(kPublishedIterations) / iterations);
   }
@@ -153,7 +146,14 @@ class RtSplatting final : public Method {
     initial.seed = options.seed;
     initial.extra = config_.channels(faster_);
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
-    set_ = TrainableSet(points, initial, {windows_.rates, windows_.densify, scene.spatial_scale});
+    set_ = TrainableSet(
+        points,
+        initial,
+        {.rates = windows_.rates,
+         .densify = windows_.densify,
+         .extent = scene.spatial_scale,
+         .training_views = scene.train.size()}
+    );
     field_ = config_.new_field(options.seed);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
@@ -193,6 +193,7 @@ class RtSplatting final : public Method {
   MapSet render(const Camera& camera) override {
     MapSet out;
     out["rgb"] = forward(camera);
+    add_depth_estimates(*volume_output_, out);
     if (stage_ == RtStage::kTransmission) {
       expected_depth_map(*volume_output_, out["depth"]);
       out["normal"] = unit_normals(volume_output_->normal);

@@ -29,13 +29,10 @@ void PlanarConfig::scale_to(int iterations) {
   const auto scaled = [&](int published, int at_least = 1) {
     return scaled_step(published, iterations, at_least);
   };
-  for (int* window :
-       {&sh_interval, &planes.from, &exposure.from, &trim_until, &densify.from, &densify.until})
+  for (int* window : {&sh_interval, &planes.from, &exposure.from, &trim_until})
     *window = scaled(*window);
   trim_interval = scaled(trim_interval, 100);
-  // As the other methods here.
-  densify.interval = scaled(densify.interval, 50);
-  densify.reset_interval = scaled(densify.reset_interval, 300);
+  densify.scale(scaled);
   rates = rates.for_shorter_run(30000.0 / iterations);
 }
 
@@ -57,7 +54,14 @@ std::vector<std::string> PlanarModel::set_up(
   initial.seed = options.seed;
   initial.extra = extra;
   const PointCloud points = initial_points(scene, windows_.random_points, options.seed);
-  set_ = TrainableSet(points, initial, {windows_.rates, windows_.densify, scene.spatial_scale});
+  set_ = TrainableSet(
+      points,
+      initial,
+      {.rates = windows_.rates,
+       .densify = windows_.densify,
+       .extent = scene.spatial_scale,
+       .training_views = scene.train.size()}
+  );
   views_ = ViewSampler(scene.train.size(), options.seed);
   return warnings;
 }
@@ -106,6 +110,7 @@ MapSet PlanarModel::render(const Camera& camera) {
   MapSet maps;
   plane_depth_map(camera, out.plane_distance, out.normal, maps["depth"]);
   maps["normal"] = unit_normals(out.normal);
+  add_depth_estimates(out, maps);
   copy_color(out.features, maps["rgb"]);
   return maps;
 }
