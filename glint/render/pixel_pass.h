@@ -125,15 +125,13 @@ template <class T, class Code>
 struct PixelGradient {
   PixelMaps<T, Code> dL;
   PixelKept<T> kept;
-  T total_alpha;
   T median_behind;  // transmittance at or below which a hit may be the median
   T remaining;      // sum w dL/dw of the hits not met yet
 
   // From the maps, dL/d(maps) and `kept`; before the first hit.
   GLINT_HD void start(const PixelMaps<T, Code>& maps, MapChannels has) {
-    total_alpha = *maps.alpha;
     median_behind = max_of(T(0.5f), *kept.transmittance);
-    remaining = *dL.alpha * total_alpha + *dL.depth_sum * *maps.depth_sum;
+    remaining = *dL.alpha * *maps.alpha + *dL.depth_sum * *maps.depth_sum;
     for_each_attribute(
         Splat{},  // no values are looked at
         nullptr,
@@ -147,7 +145,7 @@ struct PixelGradient {
     // sum w dL/dw of the distortion is twice the distortion itself: it is quadratic in w.
     if (has.distortion)
       remaining +=
-          T(2) * *dL.distortion * (total_alpha * *kept.moment2 - *kept.moment1 * *kept.moment1);
+          T(2) * *dL.distortion * (*maps.alpha * *kept.moment2 - *kept.moment1 * *kept.moment1);
   }
   // Back through one hit, front to back. out: SplatSum and ExtraSum, added to.
   GLINT_HD void hit(
@@ -189,14 +187,15 @@ struct PixelGradient {
   }
 
  private:
+  GLINT_HD T total_alpha() const { return T(1) - *kept.transmittance; }
   GLINT_HD void add_distortion(
       const SplatHit<T>& hit, const DistortionRange& range, T& value, T& dL_dz
   ) const {
     const T z = select(hit.valid, hit.depth, T(1));
     const T near(range.near), far(range.far);
     const T m = distortion_depth(z, *kept.first_depth, near, far);
-    value += *dL.distortion * distortion_dweight(m, total_alpha, *kept.moment1, *kept.moment2);
-    const T dL_dm = *dL.distortion * distortion_dm(hit.weight, m, total_alpha, *kept.moment1);
+    value += *dL.distortion * distortion_dweight(m, total_alpha(), *kept.moment1, *kept.moment2);
+    const T dL_dm = *dL.distortion * distortion_dm(hit.weight, m, total_alpha(), *kept.moment1);
     dL_dz += distortion_depth_vjp(z, near, far, dL_dm);
   }
   // |dL/d(shift of the footprint by a pixel)| at this pixel: of what the hit's alpha does, as in

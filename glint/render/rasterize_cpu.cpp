@@ -109,7 +109,6 @@ struct BackwardVisitor {
   const TileContext& tile;
   const DistortionRange range;
   RasterSaved& saved;
-  const MapChannels flags;
   PixelGradient<T, Code> pixels[kGroupsPerTile<T>];
   // Of the current surfel.
   T sums[Code::kSums];
@@ -122,10 +121,7 @@ struct BackwardVisitor {
       const RasterOutput& out,
       const RasterOutputGradient& dL_dout
   )
-      : tile(tile),
-        range(distortion_range(tile.call.settings)),
-        saved(saved),
-        flags(tile.call.maps()) {
+      : tile(tile), range(distortion_range(tile.call.settings)), saved(saved) {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) load_group(g, out, dL_dout);
   }
 
@@ -157,7 +153,7 @@ struct BackwardVisitor {
     pixels[g].start(maps, has());
   }
 
-  MapChannels has() const { return Code::known(flags); }
+  MapChannels has() const { return Code::known(tile.call.maps()); }
   std::uint64_t groups(TileEntry entry) const {
     return groups_of_blocks<T>(saved.pair_blocks[entry.pair]);
   }
@@ -362,8 +358,7 @@ class RasterOnCpu final : public RasterBackend {
     const std::size_t pairs = saved_.lists.num_pairs();
     saved_.pair_gradients.resize(pairs * splat_sums(call.maps()));
     for_each_tile(call, saved_.lists, [&]<class T, class Code>(const TileContext& tile) {
-      // Extras are asked for at run time: GCC 12 makes slower code for PassCode<., false> here.
-      backward_tile<T, PassCode<Code::kFeatures, true>>(tile, saved_, output, dL_doutput);
+      backward_tile<T, Code>(tile, saved_, output, dL_doutput);
     });
     surfel_vjp(call, saved_, gradient);
   }
