@@ -8,8 +8,8 @@
 
 namespace glint {
 
-// alpha displayed(albedo + specular), specular = e^min(x, 5) of the network's outputs x. alpha is a
-// constant.
+// alpha displayed(albedo + specular) + (1 - alpha) background, specular = e^min(x, 5) of the
+// network's outputs x.
 template <class T>
 GLINT_HD Vec3<T> specular_radiance(Vec3<T> x) {
   const T cap(kExpCap);
@@ -24,24 +24,34 @@ GLINT_HD Vec3<T> specular_radiance_vjp(Vec3<T> x, Vec3<T> value, Vec3<T> g) {
       keep(x.z < cap, value.z * g.z)};
 }
 template <class T>
-GLINT_HD Vec3<T> deferred_color(T alpha, Vec3<T> albedo, Vec3<T> x) {
-  return alpha * displayed(albedo + specular_radiance(x));
+GLINT_HD Vec3<T> deferred_color(T alpha, Vec3<T> background, Vec3<T> albedo, Vec3<T> x) {
+  return alpha * displayed(albedo + specular_radiance(x)) + (T(1) - alpha) * background;
 }
 template <class T>
 GLINT_HD void deferred_color_vjp(
-    T alpha, Vec3<T> albedo, Vec3<T> x, Vec3<T> dL_dcolor, Vec3<T>& dL_dalbedo, Vec3<T>& dL_dx
+    T alpha,
+    Vec3<T> background,
+    Vec3<T> albedo,
+    Vec3<T> x,
+    Vec3<T> dL_dcolor,
+    T& dL_dalpha,
+    Vec3<T>& dL_dalbedo,
+    Vec3<T>& dL_dx
 ) {
   const Vec3<T> specular = specular_radiance(x);
+  dL_dalpha += dot(dL_dcolor, displayed(albedo + specular) - background);
   const Vec3<T> g = displayed_vjp(albedo + specular, alpha * dL_dcolor);
   dL_dalbedo += g;
   dL_dx += specular_radiance_vjp(x, specular, g);
 }
 
-// What a pixel is made of. directions: zero where it is not shaded, and then black.
+// What a pixel is made of. directions: zero where it is not shaded, and then black in front of the
+// background.
 struct DeferredPixels {
   int channels, albedo;  // of the features; where albedo begins
   const float *features, *alpha, *directions;
   const float* outputs;  // of the network, [pixels][3]
+  Vec3f background;
 
   GLINT_HD bool shaded(std::size_t i) const { return length2(get3(directions, i)) > 0; }
   GLINT_HD std::size_t albedo_at(std::size_t i) const {
@@ -54,28 +64,34 @@ struct ShadeDeferred {
   DeferredPixels pixels;
   float* image;
   GLINT_HD void operator()(std::size_t i) const {
+    const float alpha = pixels.alpha[i];
     const Vec3f color =
-        deferred_color(pixels.alpha[i], pixels.albedo_of(i), get3(pixels.outputs, i));
-    put3(image, i, pixels.shaded(i) ? color : Vec3f{});
+        deferred_color(alpha, pixels.background, pixels.albedo_of(i), get3(pixels.outputs, i));
+    put3(image, i, pixels.shaded(i) ? color : (1 - alpha) * pixels.background);
   }
 };
 struct ShadeDeferredVjp {
   DeferredPixels pixels;
   const float* dL_dimage;
-  float* dL_dfeatures;  // added to
+  float *dL_dfeatures, *dL_dalpha;  // added to
   float* dL_doutputs;
 
   GLINT_HD void operator()(std::size_t i) const {
+    const Vec3f dL_dcolor = get3(dL_dimage, i);
     Vec3f dL_dalbedo{}, dL_dx{};
     if (pixels.shaded(i))
       deferred_color_vjp(
           pixels.alpha[i],
+          pixels.background,
           pixels.albedo_of(i),
           get3(pixels.outputs, i),
-          get3(dL_dimage, i),
+          dL_dcolor,
+          dL_dalpha[i],
           dL_dalbedo,
           dL_dx
       );
+    else
+      dL_dalpha[i] -= dot(dL_dcolor, pixels.background);
     float* g = dL_dfeatures + pixels.albedo_at(i);
     put3(g, 0, get3(g, 0) + dL_dalbedo);
     put3(dL_doutputs, i, dL_dx);

@@ -27,33 +27,41 @@ Image surface_of(ImageSize size) { return random_map<float>(size, kRtChannels, 0
 
 }  // namespace
 
-TEST_CASE("Ref-GS's colour is sRGB of albedo and specular, times alpha") {
-  const Vec3d color = deferred_color(0.5, {0.1, 0.2, 0.0}, {std::log(0.4), -50.0, 3.0});
-  CHECK(color.x == Approx(0.5 * displayed(0.5)));
+TEST_CASE("Ref-GS's colour is sRGB of albedo and specular over its background") {
+  const Vec3d background{0.3, 0, 1};
+  const Vec3d color = deferred_color(0.5, background, {0.1, 0.2, 0.0}, {std::log(0.4), -50.0, 3.0});
+  CHECK(color.x == Approx(0.5 * displayed(0.5) + 0.15));
   CHECK(color.y == Approx(0.5 * displayed(0.2)));
-  CHECK(color.z == Approx(0.5));  // clamped
+  CHECK(color.z == Approx(1));  // clamped
 }
 
 TEST_CASE("The gradient of Ref-GS's colour matches central differences") {
-  const double alpha = 0.8;
+  const Vec3d background{0.3, 0.9, 0.1};
   check_vjp(
-      {0.1, 0.3, 0.02, -1.5, -2.0, -0.7},
+      {0.1, 0.3, 0.02, -1.5, -2.0, -0.7, 0.8},
       [&](const Vector& x) {
         Vector y;
-        push(y, deferred_color(alpha, vec3(x, 0), vec3(x, 3)));
+        push(y, deferred_color(x[6], background, vec3(x, 0), vec3(x, 3)));
         return y;
       },
       [&](const Vector& x, const Vector& g) {
         Vec3d dL_dalbedo{}, dL_dx{};
-        deferred_color_vjp(alpha, vec3(x, 0), vec3(x, 3), vec3(g, 0), dL_dalbedo, dL_dx);
+        double dL_dalpha = 0;
+        deferred_color_vjp(
+            x[6], background, vec3(x, 0), vec3(x, 3), vec3(g, 0), dL_dalpha, dL_dalbedo, dL_dx
+        );
         Vector result;
         push(result, dL_dalbedo);
         push(result, dL_dx);
+        result.push_back(dL_dalpha);
         return result;
       }
   );
   Vec3d dL_dalbedo{}, dL_dx{};  // clamped colours have none
-  deferred_color_vjp(alpha, {2, 2, 2}, Vec3d{6, 0, 0}, {1, 1, 1}, dL_dalbedo, dL_dx);
+  double dL_dalpha = 0;
+  deferred_color_vjp(
+      0.8, background, {2, 2, 2}, Vec3d{6, 0, 0}, {1, 1, 1}, dL_dalpha, dL_dalbedo, dL_dx
+  );
   CHECK(length(dL_dalbedo) + length(dL_dx) == 0);
 }
 
