@@ -75,7 +75,7 @@ class TwoDgs final : public Method {
     GLINT_CHECK(
         config_.depth == "expected" || config_.depth == "median",
         kUsage,
-        "2dgs: depth is '{}', expected expected or median",
+        "2dgs: depth is '{}', known are expected and median",
         config_.depth
     );
     if (config_.depth == "median") depth_kind_ = DepthKind::kMedian;
