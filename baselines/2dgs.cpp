@@ -75,10 +75,10 @@ class TwoDgs final : public Method {
     GLINT_CHECK(
         config_.depth == "expected" || config_.depth == "median",
         kUsage,
-        "2dgs: depth is '{}', expected expected or median",
+        "2dgs: depth is '{}', known are expected and median",
         config_.depth
     );
-    if (config_.depth == "median") depth_kind_ = DepthKind::kMedian;
+    if (config_.depth == "median") depth_kind_ = LossDepth::kMedian;
   }
 
   void initialize(const Scene& scene, const RunOptions& options) override {
@@ -147,7 +147,7 @@ class TwoDgs final : public Method {
  private:
   // Of the last forward call.
   const Image& depth_of(const RasterOutput& out) {
-    if (depth_kind_ == DepthKind::kMedian) return out.depth_median;
+    if (depth_kind_ == LossDepth::kMedian) return out.depth_median;
     expected_depth_map(out, depth_);
     return depth_;
   }
@@ -168,7 +168,7 @@ class TwoDgs final : public Method {
   }
 
   TwoDgsConfig config_, windows_;
-  DepthKind depth_kind_ = DepthKind::kExpected;
+  LossDepth depth_kind_ = LossDepth::kExpected;
   const Scene* scene_ = nullptr;
   std::vector<std::string> warnings_;
   TrainableSet set_;
@@ -195,7 +195,7 @@ MethodSpec two_dgs_spec() {
 // The paper's setting for bounded scenes: median depth (depth_ratio 1), so that normals are
 // consistent with the surface itself, and distortion of 1000, which its code uses for DTU. Rooms
 // are as bounded, and their scale fits: with cameras a few units from the surface, 0.2 / z^2 is
-// about what it is there.
+// about what it is there. It is harsh on panes, where two layers are right (docs/GLINT_NOTES.md).
 MethodSpec two_dgs_bounded_spec() {
   MethodSpec spec = two_dgs_spec();
   spec.id = "2dgs/bounded";

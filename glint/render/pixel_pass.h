@@ -199,7 +199,7 @@ struct PixelGradient {
     dL_dz += distortion_depth_vjp(z, near, far, dL_dm);
   }
   // |dL/d(shift of the footprint by a pixel)| at this pixel: of what the hit's alpha does, as in
-  // [Ye24, AbsGS]; its depth's part is left out. out: x and y, added to.
+  // [Ye24a, AbsGS]; its depth's part is left out. out: x and y, added to.
   GLINT_HD static void add_screen_abs(
       const SplatHit<T>& hit, const Splat& splat, T dL_drho, T* out
   ) {

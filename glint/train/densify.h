@@ -79,10 +79,7 @@ struct DensifyConfig {
     v("densify_slow_interval", slow_interval, "steps between densifications in the slow window");
     v("densify_slow_from", slow_from, "first step of the slow window, if it has an interval");
     v("densify_slow_until", slow_until, "last step of the slow window");
-    v("split_large",
-      split_large,
-      "large surfels are split in five, unless hardly any pixel sees "
-      "them");
+    v("split_large", split_large, "large surfels are split in five, those least seen pruned");
     v("cap_by_visibility", cap_by_visibility, "above 0.9 x max_surfels those least seen go");
   }
   // Published windows to this run's steps; scaled(published, at least).

@@ -122,9 +122,9 @@ void GeometryLosses::add(
     const Image& depth,
     RasterOutputGradient& dL_doutput,
     StepStats& stats,
-    DepthKind kind
+    LossDepth kind
 ) {
-  const bool expected = kind == DepthKind::kExpected;
+  const bool expected = kind == LossDepth::kExpected;
   Image& dL_ddepth = expected ? dL_ddepth_ : dL_doutput.depth_median;
   clear_image(dL_ddepth, depth.size(), 1);
   add_depth_prior(view, depth, dL_ddepth, stats);

@@ -58,7 +58,7 @@ struct PriorLosses {
 
 // Which depth of a rasterised set its losses look at: expected (depth_ratio 0 of [Huang24]) or
 // median (1), where the transmittance falls below one half.
-enum class DepthKind { kExpected, kMedian };
+enum class LossDepth { kExpected, kMedian };
 
 class GeometryLosses {
  public:
@@ -77,7 +77,7 @@ class GeometryLosses {
       const Image& depth,
       RasterOutputGradient& dL_doutput,
       StepStats& stats,
-      DepthKind kind = DepthKind::kExpected
+      LossDepth kind = LossDepth::kExpected
   );
 
  private:

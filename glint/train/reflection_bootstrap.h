@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a set with a specularity s is made to leave reflections to an environment [Ye24, Xie25]:
+// How a set with a specularity s is made to leave reflections to an environment [Ye24b, Xie25]:
 // "3D Gaussian Splatting with Deferred Reflection", SIGGRAPH 2024. Both act between steps, every
 // `interval` steps:
 // - colour sabotage: the colour of surfels that mirror little gets noise, so that those which

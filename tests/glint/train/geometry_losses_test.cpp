@@ -114,7 +114,7 @@ TEST_CASE("Losses on the median depth reach it, and neither the depth sum nor al
   clear_gradient(kSize, 3, median);
   losses.add(f.scene.train.front(), 0, f.output, f.depth, expected, a);
   losses.add(
-      f.scene.train.front(), 0, f.output, f.depth, median, b, DepthKind::kMedian
+      f.scene.train.front(), 0, f.output, f.depth, median, b, LossDepth::kMedian
   );  // the same depth
   CHECK(a.terms == b.terms);
   CHECK(norm(median.depth_sum) + norm(median.alpha) == 0);
