@@ -7,6 +7,7 @@
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
 #include "glint/core/simd.h"
+#include "glint/render/map_kernels.h"
 #include "glint/render/shade_kernels.h"
 
 namespace glint {
@@ -30,6 +31,7 @@ CloudArrays<F> arrays_of(Cloud& c, const ActivationOptions& options) {
       num_extra,
       options.color_only ? 0 : num_extra,
       options.opacity_factor,
+      options.color_offsets,
       {}};
   std::copy(c.extra_activations.begin(), c.extra_activations.end(), arrays.kinds);
   return arrays;
@@ -121,6 +123,12 @@ void activate_vjp(
            g.features.data()},
           pointers(dL_dcloud)}
   );
+}
+
+void color_gradient(const RasterGradient& gradient, int channels, FloatArray& dL_dcolors) {
+  const std::size_t count = gradient.features.size() / static_cast<std::size_t>(channels);
+  dL_dcolors.resize(3 * count);
+  run_kernel(count, kGrain, CopyColor{gradient.features.data(), channels, dL_dcolors.data()});
 }
 
 TraceInput trace_input(const SurfelCloud& cloud, const ActivatedSurfels& activated, int sh_degree) {

@@ -15,6 +15,9 @@ struct ActivationOptions {
   static constexpr int kNone = -1;
   int opacity_factor = kNone;  // index of an extra channel that opacities are multiplied by
   bool color_only = false;     // without extra channels among the features
+  // [N][3], added to the colours behind their clamp (LobeAppearance, say); null: nothing. They must
+  // stay as they are until activate_vjp(); their gradient: color_gradient().
+  const float* color_offsets = nullptr;
 };
 
 struct ActivatedSurfels {
@@ -43,5 +46,8 @@ void activate_vjp(
     const RasterGradient& gradient,
     SurfelCloud& dL_dcloud
 );
+
+// dL/d(colours as they were rasterised) [N][3], and so of what was added to them.
+void color_gradient(const RasterGradient& gradient, int channels, FloatArray& dL_dcolors);
 
 }  // namespace glint

@@ -16,8 +16,9 @@ template <class F>
 struct CloudArrays {
   F *means, *log_scales, *rotations, *opacity_logits, *sh_dc, *sh_rest, *extra_logits;
   int num_extra;
-  int shown_extra;     // of those, among the features: all or none
-  int opacity_factor;  // extra channel that opacities are multiplied by; negative: none
+  int shown_extra;             // of those, among the features: all or none
+  int opacity_factor;          // extra channel that opacities are multiplied by; negative: none
+  const float* color_offsets;  // [N][3], may be null
   Activation kinds[kMaxExtra];
 };
 using CloudPointers = CloudArrays<const float>;
@@ -46,6 +47,12 @@ template <class T>
 GLINT_HD T sh_coefficient(const CloudPointers& cloud, std::size_t i, int k, int c) {
   return k == 0 ? load_strided<T>(cloud.sh_dc + 3 * i + c, 3)
                 : load_strided<T>(cloud.sh_rest + 45 * i + 3 * (k - 1) + c, 45);
+}
+// What is added to a clamped colour.
+template <class T>
+GLINT_HD T color_offset(const CloudPointers& cloud, std::size_t i, int c) {
+  return cloud.color_offsets == nullptr ? T(0)
+                                        : load_strided<T>(cloud.color_offsets + 3 * i + c, 3);
 }
 template <class T>
 GLINT_HD T sh_sum(const CloudPointers& cloud, std::size_t i, int count, const T basis[16], int c) {
@@ -94,10 +101,10 @@ struct ActivateFeatures {
     sh_basis(degree, view_direction<T>(cloud, eye, i).unit, basis);
     const int channels = 3 + cloud.shown_extra;
     float* to = features + i * static_cast<std::size_t>(channels);
-    for (int c = 0; c < 3; ++c)
-      store_strided(
-          to + c, channels, sh_color(sh_sum(cloud, i, sh_coefficients(degree), basis, c))
-      );
+    for (int c = 0; c < 3; ++c) {
+      const T color = sh_color(sh_sum(cloud, i, sh_coefficients(degree), basis, c));
+      store_strided(to + c, channels, color + color_offset<T>(cloud, i, c));
+    }
     for (int e = 0; e < cloud.shown_extra; ++e)
       store_strided(to + 3 + e, channels, extra_value<T>(cloud, i, e));
   }
@@ -166,9 +173,9 @@ struct ActivateVjp {
     for (int k = 0; k < count; ++k) dL_dbasis[k] = T(0);
     for (int c = 0; c < 3; ++c) {
       const std::size_t at = i * static_cast<std::size_t>(channels()) + static_cast<std::size_t>(c);
-      const T dL_dsum = clamped_color_vjp(
-          load_strided<T>(features + at, channels()), load_strided<T>(g.features + at, channels())
-      );
+      // Exactly 0 where the colour was clamped.
+      const T color = load_strided<T>(features + at, channels()) - color_offset<T>(cloud, i, c);
+      const T dL_dsum = clamped_color_vjp(color, load_strided<T>(g.features + at, channels()));
       add_strided(out.sh_dc + 3 * i + c, 3, dL_dsum * basis[0]);
       for (int k = 1; k < count; ++k) {
         add_strided(out.sh_rest + 45 * i + 3 * (k - 1) + c, 45, dL_dsum * basis[k]);

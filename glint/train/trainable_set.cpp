@@ -71,12 +71,13 @@ void TrainableSet::backward(const RasterOutputGradient& dL_doutput) {
   backward(dL_doutput, pass_, true);
 }
 
-void TrainableSet::backward(
+const RasterGradient& TrainableSet::backward(
     const RasterOutputGradient& dL_doutput, RasterPass& pass, bool observe
 ) {
   Training& t = training();
   const RasterGradient& gradient = raster_backward(cloud_, pass, dL_doutput, t.gradient);
   if (observe) t.densifier.observe(pass.rasterizer.output(), gradient);
+  return gradient;
 }
 
 double TrainableSet::penalise_opacity(float weight) {

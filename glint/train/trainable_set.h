@@ -36,8 +36,11 @@ class TrainableSet final : public SurfelSet {
   // Back through the last forward(): adds to the gradient of the parameters, and to the statistics
   // of density control. These and all below throw (kUsage) where the set is only to be rendered.
   void backward(const RasterOutputGradient& dL_doutput);
-  // Back through a further rasterisation, whose statistics count only if asked for.
-  void backward(const RasterOutputGradient& dL_doutput, RasterPass& pass, bool observe = false);
+  // Back through a further rasterisation, whose statistics count only if asked for; returns the
+  // gradient of what was rasterised.
+  const RasterGradient& backward(
+      const RasterOutputGradient& dL_doutput, RasterPass& pass, bool observe = false
+  );
   // Adds the gradient of weight * (mean opacity) and returns the mean.
   double penalise_opacity(float weight);
   // The same for the last trace(); returns the rays' gradient, valid until the next call.

@@ -53,6 +53,8 @@ std::vector<double> activate_one(
   for (std::size_t e = 0; e < 2; ++e)
     values.push_back(options.color_only ? 0.0 : extra_in_double(cloud, i, e));
   values.push_back(sigmoid(static_cast<double>(cloud.opacity_logits[i])));
+  for (std::size_t c = 0; c < 3 && options.color_offsets != nullptr; ++c)
+    values[c] += static_cast<double>(options.color_offsets[3 * i + c]);
   if (options.opacity_factor >= 0)
     values.back() *= extra_in_double(cloud, i, static_cast<std::size_t>(options.opacity_factor));
   for (int a = 0; a < 2; ++a)
@@ -81,67 +83,73 @@ TEST_CASE("Activated clouds equal the formulas in double at every degree and lan
 
 namespace {
 
+RasterGradient random_gradient(std::size_t count, std::size_t channels) {
+  RasterGradient g;
+  Rng rng(5);
+  const auto fill = [&](const char*, std::size_t width, FloatArray& array) {
+    array.resize(width * count);
+    for (float& value : array) value = rng.uniform(-1, 1);
+  };
+  RasterGradient::for_each_array(channels, fill, g);
+  return g;
+}
+
+// What surfel i's activated values are worth to a loss with this gradient, in double.
+double loss_of(
+    const SurfelCloud& cloud,
+    std::size_t i,
+    Vec3d eye,
+    const ActivationOptions& options,
+    const RasterGradient& g
+) {
+  const std::vector<double> v = activate_one(cloud, i, eye, 3, options);
+  double sum = 0;
+  const auto add = [&](double value, const FloatArray& gradient, std::size_t at) {
+    sum += value * static_cast<double>(gradient[at]);
+  };
+  const std::size_t channels = options.color_only ? 3 : 5;
+  for (std::size_t c = 0; c < channels; ++c) add(v[c], g.features, i * channels + c);
+  add(v[5], g.opacities, i);
+  for (std::size_t k = 0; k < 2; ++k) add(v[6 + k], g.scales, 2 * i + k);
+  for (std::size_t k = 0; k < 3; ++k)
+    add(static_cast<double>(cloud.means[3 * i + k]), g.means, 3 * i + k);
+  for (std::size_t k = 0; k < 4; ++k)
+    add(static_cast<double>(cloud.rotations[4 * i + k]), g.rotations, 4 * i + k);
+  return sum;
+}
+
 void check_activate_vjp(SurfelCloud cloud, const ActivationOptions& options) {
   const Vec3d eye{0.1f, 0.2f, -3};
   ActivatedSurfels a;
   a.options = options;
   activate(cloud, cast<float>(eye), 3, a);
-  RasterGradient g;
-  const int channels = options.color_only ? 3 : 5;
-  REQUIRE(a.channels == channels);
-  Rng rng(5);
-  const auto fill = [&](FloatArray& array, std::size_t size) {
-    array.resize(size);
-    for (float& value : array) value = rng.uniform(-1, 1);
-  };
-  fill(g.means, 33), fill(g.scales, 22), fill(g.rotations, 44), fill(g.opacities, 11),
-      fill(g.features, 11 * static_cast<std::size_t>(channels));
+  const RasterGradient g = random_gradient(cloud.size(), options.color_only ? 3 : 5);
   SurfelCloud gradient;
   gradient.extra_names = cloud.extra_names;
   gradient.resize(cloud.size());
   activate_vjp(cloud, cast<float>(eye), 3, a, g, gradient);
 
-  for (std::size_t i : {std::size_t{0}, std::size_t{7}, std::size_t{10}}) {
-    const auto loss = [&] {
-      const std::vector<double> v = activate_one(cloud, i, eye, 3, options);
-      double sum = 0;
-      for (int c = 0; c < channels; ++c)
-        sum += v[c] * static_cast<double>(g.features[i * static_cast<std::size_t>(channels) + c]);
-      sum += v[5] * static_cast<double>(g.opacities[i]);
-      for (int k = 0; k < 2; ++k) sum += v[6 + k] * static_cast<double>(g.scales[2 * i + k]);
-      for (int k = 0; k < 3; ++k)
-        sum +=
-            static_cast<double>(cloud.means[3 * i + k]) * static_cast<double>(g.means[3 * i + k]);
-      for (int k = 0; k < 4; ++k)
-        sum += static_cast<double>(cloud.rotations[4 * i + k]) *
-               static_cast<double>(g.rotations[4 * i + k]);
-      return sum;
-    };
-    std::vector<FloatArray*> arrays, gradients;
-    std::vector<std::size_t> widths;
-    cloud.for_each_array([&](const char*, FloatArray& array, std::size_t width) {
-      arrays.push_back(&array);
-      widths.push_back(width);
-    });
-    gradient.for_each_array([&](const char*, FloatArray& array, std::size_t) {
-      gradients.push_back(&array);
-    });
-    for (std::size_t k = 0; k < arrays.size(); ++k)
-      for (std::size_t j = 0; j < widths[k]; ++j) {
-        float& x = (*arrays[k])[i * widths[k] + j];
-        const float at = x, h = 1.0f / 256;  // exact in float around these values
-        x = at + h;
-        const double above = loss();
-        const double up = static_cast<double>(x);
-        x = at - h;
-        const double slope = (above - loss()) / (up - static_cast<double>(x));
-        x = at;
-        CHECK(
-            static_cast<double>((*gradients[k])[i * widths[k] + j]) ==
-            Approx(slope).epsilon(1e-3).margin(2e-4)
-        );
+  std::vector<FloatArray*> gradients;
+  gradient.for_each_array([&](const char*, FloatArray& array, std::size_t) {
+    gradients.push_back(&array);
+  });
+  std::size_t next = 0;
+  cloud.for_each_array([&](const char* name, FloatArray& array, std::size_t width) {
+    const FloatArray& actual = *gradients[next++];
+    for (const std::size_t i : {0, 7, 10})
+      for (std::size_t j = i * width; j < (i + 1) * width; ++j) {
+        const float at = array[j], h = 1.0f / 256;  // exact in float around these values
+        const auto loss = [&](float x) {
+          array[j] = x;
+          return loss_of(cloud, i, eye, options, g);
+        };
+        const double slope = (loss(at + h) - loss(at - h)) /
+                             (static_cast<double>(at + h) - static_cast<double>(at - h));
+        array[j] = at;
+        INFO(name << " " << j);
+        CHECK(static_cast<double>(actual[j]) == Approx(slope).epsilon(1e-3).margin(2e-4));
       }
-  }
+  });
 }
 
 }  // namespace
@@ -183,6 +191,29 @@ TEST_CASE("Activated clouds have other activations, opacity factors and channels
       CHECK(static_cast<double>(a.opacities[i]) == Approx(expected[5]).epsilon(1e-5));
     }
   }
+}
+
+TEST_CASE("Offsets of colours are added behind the clamp, and hide no gradient and add none") {
+  SurfelCloud cloud = random_cloud(11);
+  for (std::size_t c = 0; c < 3; ++c) cloud.sh_dc[3 * 7 + c] = -9;  // clamped
+  FloatArray offsets(33);
+  Rng rng(8);
+  for (float& value : offsets) value = rng.uniform(-1, 1);
+  ActivatedSurfels a;
+  a.options.color_offsets = offsets.data();
+  activate(cloud, {0.1f, 0.2f, -3}, 3, a);
+  for (std::size_t c = 0; c < 3; ++c) CHECK(a.features[5 * 7 + c] == offsets[3 * 7 + c]);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const std::vector<double> expected = activate_one(cloud, i, {0.1f, 0.2f, -3}, 3, a.options);
+    for (std::size_t c = 0; c < 5; ++c)
+      CHECK(static_cast<double>(a.features[5 * i + c]) == Approx(expected[c]).margin(2e-6));
+  }
+  check_activate_vjp(cloud, a.options);
+  const RasterGradient g = random_gradient(11, 5);
+  FloatArray dL_dcolors;
+  color_gradient(g, 5, dL_dcolors);
+  REQUIRE(dL_dcolors.size() == 33);
+  for (std::size_t i = 0; i < 33; ++i) CHECK(dL_dcolors[i] == g.features[i / 3 * 5 + i % 3]);
 }
 
 TEST_CASE("Activations that are not one a channel are refused") {
