@@ -18,9 +18,11 @@
 // opacity; colours are display-referred.
 //
 // Deviations: map and network have CPU sizes (SpecularFieldConfig), features start small and random
-// (baselines/ref_gs.cpp); schedules are scaled to the run; masks are a prior's where the dataset
-// has one, else its ground truth of the training views, else there are none, and a warning says
-// which; LPIPS is off where the user has no weights. Not in the paper's tables.
+// (baselines/ref_gs.cpp); schedules are scaled to the run; masks are a prior's where a view
+// has one, else its ground truth, which notes() say; LPIPS is off where the user has no weights.
+// Not in the paper's tables.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,7 +30,9 @@
 #include "glint/method.h"
 #include "glint/render/map_ops.h"
 #include "glint/scene/ply.h"
+#include "glint/train/check_fits.h"
 #include "glint/train/geometry_losses.h"
+#include "glint/train/glass_masks.h"
 #include "glint/train/initial_points.h"
 #include "glint/train/perceptual.h"
 #include "glint/train/photometric.h"
@@ -114,18 +118,6 @@ struct RtSplattingConfig {
   }
 };
 
-// What the views have as masks of transparent surfaces.
-enum class MaskSource { kNone, kTruth, kPrior };
-MaskSource mask_source(const Scene& scene) {
-  const auto all_have = [&](MapSet View::*maps) {
-    return std::all_of(scene.train.begin(), scene.train.end(), [&](const View& view) {
-      return (view.*maps).has("glass");
-    });
-  };
-  if (all_have(&View::priors)) return MaskSource::kPrior;
-  return all_have(&View::truth) ? MaskSource::kTruth : MaskSource::kNone;
-}
-
 class RtSplatting final : public Method {
  public:
   explicit RtSplatting(const Json& overrides) {
@@ -179,7 +171,7 @@ class RtSplatting final : public Method {
     if (stage_ != RtStage::kTransmission) {
       expected_depth_map(*surface_output_, depth_);
       geometry_.add(view, iteration, *surface_output_, depth_, dL_dsurface_, stats);
-      if (masks_ != MaskSource::kNone) add_mask_losses(view, stats);
+      if (!glass_mask(view).empty()) add_mask_losses(view, stats);
     }
     stats.terms["occupancy"] = static_cast<double>(config_.lambda_occupancy) *
                                set_.penalise_opacity(config_.lambda_occupancy);
@@ -244,6 +236,7 @@ class RtSplatting final : public Method {
   }
   std::size_t num_surfels() const override { return set_.cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }
+  std::vector<std::string> notes() const override { return notes_; }
 
  private:
   static constexpr const char* kFieldFile = "specular_field.safetensors";
@@ -252,20 +245,17 @@ class RtSplatting final : public Method {
     warnings_ = geometry_.set_up(windows_.geometry, *scene_, "rt-splatting");
     perceptual_ = wanted_perceptual_loss(windows_.perceptual, *scene_, "rt-splatting", warnings_);
     warn_without_points(*scene_, "rt-splatting", warnings_);
-    masks_ = mask_source(*scene_);
-    if (masks_ == MaskSource::kTruth)
-      warnings_.push_back(
-          "rt-splatting: masks of transparent surfaces are the dataset's ground truth of the "
-          "training views: no prior has them"
-      );
-    if (masks_ == MaskSource::kNone)
-      warnings_.push_back(
-          "rt-splatting: no masks of transparent surfaces (prior or true map \"glass\") in all "
-          "training views: its mask losses are off"
-      );
-  }
-  const Image& mask_of(const View& view) const {
-    return (masks_ == MaskSource::kPrior ? view.priors : view.truth)["glass"];
+    const MaskCounts masks = count_glass_masks(scene_->train);
+    notes_ = windows_.field.notes();
+    notes_.push_back("glass masks: " + glass_mask_note(masks));
+    if (!masks.all())
+      warnings_.push_back(fmt::format(
+          "rt-splatting: {} of {} training views have no glass mask (diffrens/glass); its mask "
+          "losses "
+          "are off there",
+          masks.views - masks.prior - masks.truth,
+          masks.views
+      ));
   }
 
   RtPixels pixels() const {
@@ -310,8 +300,9 @@ class RtSplatting final : public Method {
   }
 
   void add_mask_losses(const View& view, StepStats& stats) {
-    const Image& mask = mask_of(view);
+    const Image& mask = glass_mask(view);
     const ImageView surface = surface_output_->features;
+    check_fits("glass mask", mask, surface.size(), 1);
     const RtMoments moments = sum_kernel(surface.size(), RtMaskMoments{surface, mask});
     const auto pixels = static_cast<float>(surface.num_pixels());
     RtMaskLoss loss{
@@ -342,8 +333,7 @@ class RtSplatting final : public Method {
 
   RtSplattingConfig config_, windows_;
   const Scene* scene_ = nullptr;
-  std::vector<std::string> warnings_;
-  MaskSource masks_ = MaskSource::kNone;
+  std::vector<std::string> warnings_, notes_;
   ViewSampler views_;
   TrainableSet set_;
   RasterPass volume_, surface_;

@@ -23,6 +23,7 @@
 #include "glint/method.h"
 #include "glint/train/check_fits.h"
 #include "glint/train/geometry_losses.h"
+#include "glint/train/glass_masks.h"
 #include "glint/train/planar_model.h"
 
 namespace glint {
@@ -60,30 +61,6 @@ struct TsgsConfig {
   }
 };
 
-// What a view says about where the glass is; empty: nothing.
-const Image& glass_mask(const View& view) {
-  return view.priors.has("glass") ? view.priors["glass"] : view.truth["glass"];
-}
-
-std::string mask_note(const std::vector<View>& views) {
-  const auto count = [&](auto&& has) { return std::count_if(views.begin(), views.end(), has); };
-  const auto all = static_cast<std::ptrdiff_t>(views.size());
-  const auto priors = count([](const View& view) { return view.priors.has("glass"); });
-  const auto masks = count([](const View& view) { return !glass_mask(view).empty(); });
-  if (priors == all) return "glass masks, test views' too: the prior folder's";
-  if (masks == 0) return "glass masks: none";
-  if (priors == 0 && masks == all)
-    return "glass masks, test views' too: the dataset's ground truth";
-  return fmt::format(
-      "glass masks, test views' too: the prior folder's for {}, the dataset's ground truth for {}, "
-      "none for {} "
-      "training views",
-      priors,
-      masks - priors,
-      all - masks
-  );
-}
-
 class Tsgs final : public Method {
  public:
   explicit Tsgs(const Json& overrides) { config_from_json(config_, overrides, "tsgs"); }
@@ -97,12 +74,13 @@ class Tsgs final : public Method {
     float wanted = config_.delighted ? 1.0f : 0.0f;
     require_prior(scene, "delighted", "the de-lighted target", "tsgs", wanted, warnings_);
     windows_.delighted = wanted > 0;
-    notes_ = {mask_note(scene.train)};
+    const MaskCounts masks = count_glass_masks(scene.train);
+    notes_ = {"glass masks, test views' too: " + glass_mask_note(masks)};
     if (config_.delighted)
       notes_.push_back(
           windows_.delighted ? "de-lighted photos: the prior folder's" : "de-lighted photos: none"
       );
-    if (notes_[0] == "glass masks: none")
+    if (masks.none())
       warnings_.push_back(fmt::format(
           "tsgs: {} has no glass masks (diffrens/glass); the de-lighted target and the depth of "
           "the first surface are off",

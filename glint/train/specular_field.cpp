@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/specular_field.h"
 
+#include <fmt/format.h>
+
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
 #include "glint/render/glass_transport.h"
@@ -9,6 +11,19 @@ namespace glint {
 
 namespace {
 constexpr std::size_t kGrain = 512;  // pixels a block
+}
+
+std::vector<std::string> SpecularFieldConfig::notes() const {
+  if (map_height == kPublishedHeight && hidden == kPublishedHidden) return {};
+  return {fmt::format(
+      "map of {} x {} directions and {} hidden values (published: {} x {} and {})",
+      map_height,
+      2 * map_height,
+      hidden,
+      kPublishedHeight,
+      2 * kPublishedHeight,
+      kPublishedHidden
+  )};
 }
 
 SpecularField::SpecularField(

@@ -19,6 +19,10 @@ struct SpecularFieldConfig {
   float min_alpha = 0.05f;
   float rate_map = 2e-3f, rate_network = 5e-4f;
 
+  static constexpr int kPublishedHeight = 512, kPublishedHidden = 256;
+  // Of a run's notes, for tables: sizes other than the published ones; none: those.
+  std::vector<std::string> notes() const;
+
   template <class V>
   void visit(V&& v) {
     v("map_height", map_height, "rows of the map of directions (published: 512)");

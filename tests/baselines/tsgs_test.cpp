@@ -64,7 +64,7 @@ TEST_CASE("Notes say whose glass masks were used: the priors', else the truth's,
   scene.train[0].priors["glass"] = {};
   CHECK(first_note(scene).find("ground truth for 1, none for 0") != std::string::npos);
   for (View& view : scene.train) view.priors["glass"] = view.truth["glass"] = {};
-  CHECK(first_note(scene) == "glass masks: none");
+  CHECK(first_note(scene) == "glass masks, test views' too: none");
 }
 
 TEST_CASE("On glass the target is the de-lighted photo, until the second half of the run") {

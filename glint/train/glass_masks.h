@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Masks of glass that some methods are given, as their publications give them masks made by other
+// networks: a prior (diffrens/glass) where the view has one, else the dataset's ground truth. Which
+// of them a run was given is a fact that readers of tables need: glass_mask_note().
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glint/scene/scene.h"
+
+namespace glint {
+
+// [H][W][1], 1: glass. Empty: the view has none.
+const Image& glass_mask(const View& view);
+
+struct MaskCounts {
+  std::size_t views = 0, prior = 0, truth = 0;  // the last two: views that get theirs from there
+
+  bool none() const { return prior + truth == 0; }
+  bool all() const { return prior + truth == views; }
+};
+MaskCounts count_glass_masks(const std::vector<View>& views);
+
+// "the prior folder's", "the dataset's ground truth", "none", or how many of each.
+std::string glass_mask_note(const MaskCounts& counts);
+
+}  // namespace glint

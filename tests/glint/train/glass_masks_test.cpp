@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/glass_masks.h"
+
+#include <catch2/catch.hpp>
+
+using namespace glint;
+
+TEST_CASE("a view's glass mask is its prior's, else the truth's, else there is none") {
+  View view;
+  CHECK(glass_mask(view).empty());
+  view.truth["glass"] = Image(2, 1, 1, 0.25f);
+  CHECK(glass_mask(view).at(0, 0) == 0.25f);
+  view.priors["glass"] = Image(2, 1, 1, 0.75f);
+  CHECK(glass_mask(view).at(0, 0) == 0.75f);
+}
+
+TEST_CASE("a note says where the masks of a run are from") {
+  std::vector<View> views(3);
+  const auto note = [&] { return glass_mask_note(count_glass_masks(views)); };
+  CHECK(note() == "none");
+  CHECK(count_glass_masks(views).none());
+  for (View& view : views) view.truth["glass"] = Image(1, 1, 1);
+  CHECK(note() == "the dataset's ground truth");
+  CHECK(count_glass_masks(views).all());
+  views[0].priors["glass"] = Image(1, 1, 1);
+  views[1].truth["glass"] = {};
+  CHECK_FALSE(count_glass_masks(views).all());
+  CHECK(
+      note() ==
+      "the prior folder's for 1, the dataset's ground truth for 1, none for 1 training views"
+  );
+  for (View& view : views) view.priors["glass"] = Image(1, 1, 1);
+  CHECK(note() == "the prior folder's");
+}
