@@ -40,7 +40,8 @@ class Method {
   // from one view to the next, and shared with step().
   virtual MapSet render(const Camera& camera) = 0;
   // The same for a view of the dataset. A method that was published with an input mask at test
-  // views overrides it; it looks at the view's mask alone, never at its picture, and notes() say so.
+  // views overrides it; it looks at the view's mask alone, never at its picture, and notes() say
+  // so.
   virtual MapSet render_view(const View& view) { return render(view.camera); }
   // The picture alone, left on the device where it was made: what FPS counts.
   virtual void draw(const Camera& camera) { render(camera); }

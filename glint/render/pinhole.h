@@ -40,7 +40,7 @@ Pinhole<T> pinhole_of(const Camera& camera) {
 
 // Two views of a scene: x_neighbor = rotation x_reference + translation.
 template <class T>
-struct ViewPair {
+struct CameraPair {
   Pinhole<T> reference, neighbor;
   Mat3<T> rotation;
   Vec3<T> translation;  // metres
@@ -54,7 +54,7 @@ struct ViewPair {
 };
 
 template <class T>
-ViewPair<T> view_pair(const Camera& reference, const Camera& neighbor) {
+CameraPair<T> camera_pair(const Camera& reference, const Camera& neighbor) {
   const Mat3d rotation =
       neighbor.rotation_cam_from_world * transpose(reference.rotation_cam_from_world);
   const Vec3d translation =

@@ -28,7 +28,7 @@ struct CountedSum {
 // w e of each reference pixel, with e the reprojection error and w = exp(-e) held constant.
 template <class T>
 struct ReprojectionAt {
-  ViewPair<T> pair;
+  CameraPair<T> pair;
   BasicImageView<T> depth, neighbor_depth;  // [H][W][1] metres, 0: none
   T min_z, max_error;                       // metres, pixels
   BasicImageRef<T> weight;       // [H][W][1] written: w, 0 where the pixel does not count
@@ -115,7 +115,7 @@ struct PixelSample {
 // point R r + t s, s = -(n.r) / d its inverse depth.
 template <class T>
 struct PatchSimilarityAt {
-  ViewPair<T> pair;
+  CameraPair<T> pair;
   ImageView gray, neighbor_gray;               // [H][W][1]
   BasicImageView<T> normal, distance, weight;  // [H][W][3], [H][W][1] metres, [H][W][1] w
   PixelSample sample;

@@ -44,7 +44,7 @@ double MultiViewLosses::geometric(
   const CountedSum sum = sum_kernel(
       size,
       ReprojectionAt<float>{
-          view_pair<float>(reference.camera, neighbor.camera),
+          camera_pair<float>(reference.camera, neighbor.camera),
           reference.depth,
           neighbor.depth,
           settings.min_z,
@@ -88,7 +88,7 @@ MultiViewTerms MultiViewLosses::evaluate(
   const CountedSum sum = sum_kernel(
       size,
       PatchSimilarityAt<float>{
-          view_pair<float>(reference.camera, neighbor.camera),
+          camera_pair<float>(reference.camera, neighbor.camera),
           reference.gray,
           neighbor.gray,
           normal,

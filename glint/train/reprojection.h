@@ -11,12 +11,12 @@ namespace glint {
 // in_neighbor: the lifted point in the neighbour's camera; depth: the neighbour's planar depth
 // there, metres. Image point in the reference.
 template <class T>
-GLINT_HD Vec3<T> moved_to_depth(const ViewPair<T>& pair, Vec3<T> in_neighbor, T depth) {
+GLINT_HD Vec3<T> moved_to_depth(const CameraPair<T>& pair, Vec3<T> in_neighbor, T depth) {
   return pair.to_reference((depth / in_neighbor.z) * in_neighbor);
 }
 template <class T>
 GLINT_HD void moved_to_depth_vjp(
-    const ViewPair<T>& pair,
+    const CameraPair<T>& pair,
     Vec3<T> in_neighbor,
     T depth,
     Vec3<T> dL_din_reference,

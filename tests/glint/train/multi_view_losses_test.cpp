@@ -46,7 +46,7 @@ struct Reprojection {
         sum(sum_kernel(
             depth.size(),
             ReprojectionAt<double>{
-                view_pair<double>(views.reference, views.neighbor),
+                camera_pair<double>(views.reference, views.neighbor),
                 depth,
                 other,
                 0.1,
@@ -107,7 +107,7 @@ struct Patches {
     sum = sum_kernel(
         distance.size(),
         PatchSimilarityAt<double>{
-            view_pair<double>(views.reference, views.neighbor),
+            camera_pair<double>(views.reference, views.neighbor),
             gray,
             other,
             normal,
@@ -349,7 +349,7 @@ TEST_CASE("Views that see nothing in common have no loss and no gradient") {
 
 TEST_CASE("Each step of a reprojection has the gradient of its differences") {
   const TwoViews views;
-  const auto pair = view_pair<double>(views.reference, views.neighbor);
+  const auto pair = camera_pair<double>(views.reference, views.neighbor);
   check_vjp(
       {0.3, -0.2, 2.1},
       [&](const Vector& x) {
