@@ -12,12 +12,12 @@
 // a background, random in training and black in renders.
 //
 // Deviations: the map has 64 rows and the network 64 hidden values, for CPUs, which notes() say
-// (map_height=512 hidden=256 are the published ones); features start small and random, not at zero, where normalising
-// them multiplies the first gradient by 1e12 and freezes Adam; schedules of the published 31,000
-// iterations are scaled to the run, and rates of a shorter one grow as those of colours do
-// (SurfelRates::for_shorter_run); views are drawn with replacement, as published. The entropy's
-// argument is read as the rendered alpha. A distant map cannot be right indoors: the paper's table
-// has it far behind in rooms.
+// (map_height=512 hidden=256 are the published ones); features start small and random, not at zero,
+// where normalising them multiplies the first gradient by 1e12 and freezes Adam; schedules of the
+// published 31,000 iterations are scaled to the run, and rates of a shorter one grow as those of
+// colours do (SurfelRates::for_shorter_run); views are drawn with replacement, as published. The
+// entropy's argument is read as the rendered alpha. A distant map cannot be right indoors: the
+// paper's table has it far behind in rooms.
 #include <algorithm>
 #include <cmath>
 
