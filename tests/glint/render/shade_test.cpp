@@ -90,7 +90,7 @@ RasterGradient random_gradient(std::size_t count, std::size_t channels) {
     array.resize(width * count);
     for (float& value : array) value = rng.uniform(-1, 1);
   };
-  RasterGradient::for_each_array(channels, fill, g);
+  RasterGradient::for_each_array({.features = static_cast<int>(channels)}, fill, g);
   return g;
 }
 
