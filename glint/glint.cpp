@@ -33,6 +33,7 @@ namespace {
 SurfelCloud without_extra(SurfelCloud cloud) {
   cloud.extra_names.clear();
   cloud.extra_logits.clear();
+  cloud.extra_activations.clear();
   return cloud;
 }
 

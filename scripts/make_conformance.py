@@ -213,6 +213,12 @@ def normal_vectors():
         "percent of the scored pixels with a prediction")
     add("normal/dropped", run, "normal-dropped", case["dropped"], 1e-9, NUMPY,
         "percent of the reference's normals that are not of unit length")
+    length = np.linalg.norm(reference.astype(np.float64), axis=2)
+    scored, background = (length > 0) & (np.abs(length - 1) < 0.05), length == 0
+    wrong = background & (np.linalg.norm(prediction, axis=2) > 0)
+    whole = (case["mean"] * scored.sum() + 90 * wrong.sum()) / (scored.sum() + background.sum())
+    add("normal/mae-background", run, "normal-mae-background", whole, 1e-5, NUMPY,
+        "pixels without a true normal count, too: 0 where nothing is predicted, else 90")
 
 
 # --- surfaces ------------------------------------------------------------------------------------
@@ -336,6 +342,8 @@ def glass_maps():
              "glass": glass, "rgb": reference / 255.0}
     found = {"rgb": rendered.astype(np.float32), "depth": depth * bounded(24, 0.9, 1.1),
              "behind_depth": behind * bounded(25, 0.8, 1.3), "normal": predicted_normal,
+             "behind_expected": behind * bounded(30, 0.9, 1.6),
+             "behind_median": np.where(bounded(31, 0, 1) < 0.2, 0, behind * bounded(32, 0.7, 1.2)),
              "transparency": np.clip(0.7 * glass + bounded(26, -0.2, 0.4), -0.1, 1.1).astype("f4"),
              "specularity": np.clip(0.2 * glass + bounded(27, 0, 0.3), 0, 1).astype("f4"),
              "transmitted": bounded(28, 0, 1, 3), "reflected": bounded(29, 0, 0.4, 3)}
@@ -400,6 +408,14 @@ def glass_vectors():
         vector("transparency-mae" + at, np.abs(clipped - glass)[m].mean(), NUMPY, where)
     behind = goldens.depth_values(d["behind_depth"][glass], t["behind_depth"][glass])
     vector("behind-absrel", behind["absrel"], NUMPY, "depth of what is behind glass, glass pixels")
+    for suffix in ["", "-expected", "-median"]:
+        p = d["behind" + (suffix.replace("-", "_") or "_depth")][glass]
+        if suffix:
+            values = goldens.depth_values(p, t["behind_depth"][glass])
+            vector("behind-absrel" + suffix, values["absrel"], NUMPY,
+                   "one rule for all methods, a hole counts as 0 metres")
+        vector("behind-coverage" + suffix, 100 * (p > 0).mean(), NUMPY,
+               "percent of glass pixels with a depth", 1e-9)
     called = clipped >= 0.5
     vector("transparency-iou", (called & glass).sum() / (called | glass).sum(), NUMPY,
            "called glass at 0.5 or more", 1e-9)

@@ -185,7 +185,7 @@ fs::path find_mesh(const fs::path& root) {
 std::vector<MapPlaces> map_places() {
   std::vector<MapPlaces> places;
   for (const MapRow& row : maps())
-    if (!row.shown_file().empty()) places.push_back(places_of(row));
+    if (!row.stored_file().empty()) places.push_back(places_of(row));
   return places;
 }
 

@@ -77,6 +77,8 @@ Json other_value(const Json& value) {
       {"release", "paper"},
       {"trace", "raster"},
       {"cameras", "none"},
+      {"expected", "median"},
+      {"full", "off"},
       {"point-to-triangle", "point-to-point"},
       {"", "x"}};
   if (value.is_boolean()) return !value.get<bool>();
