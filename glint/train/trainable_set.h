@@ -4,6 +4,7 @@
 // optimiser.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -48,7 +49,7 @@ class TrainableSet final : public SurfelSet {
   // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.
   void freeze_geometry();
   // Only opacities stay.
-  void freeze_opacity() { training().rates.opacity = 0; }
+  void freeze_opacity() { pause_opacity(std::numeric_limits<int>::max()); }
   // Opacities stay until this step.
   void pause_opacity(int until_step);
   // Optimiser step and, when due, densification. `step` counts from 1.
