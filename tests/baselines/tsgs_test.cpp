@@ -191,9 +191,9 @@ TEST_CASE("Lobes alone bring the picture nearer to the photos") {
   for (const char* kind : {"full", "real"}) {
     INFO(kind);
     config["lobes"] = kind;
-    const auto with = trained(small_room(), 150, 150, config);
+    const auto with = trained(small_room(), 60, 60, config);
     config["lobes"] = "off";
-    const auto without = trained(small_room(), 150, 2, config);
+    const auto without = trained(small_room(), 60, 2, config);
     CHECK(mean_psnr(*with) > mean_psnr(*without) + 1);
   }
 }
