@@ -2,8 +2,9 @@
 // TSGS [Li25]: "TSGS: Improving Gaussian Splatting for Transparent Surface Reconstruction via
 // Normal and De-lighting Priors", ACM MM 2025. All of PGSR (glint/train/planar_model.h), and: a
 // normal prior; for the first half of the run the target is de-lighted where the glass mask says
-// so; then opacities stay as they are and the photo is the target; at views with a mask, depth on
-// glass is that of the first surface instead of the last one before half the light is gone.
+// so; then opacities stay as they are and the photo is the target; from 60 % of the run on lobes
+// (glint/train/lobe_appearance.h, `lobes`) add to the colours; at views with a mask, depth on glass
+// is that of the first surface instead of the last one before half the light is gone.
 //
 // Given: masks of the glass (prior folder diffrens/glass, else the dataset's truth), de-lighted
 // photos (diffrens/delight) and normals (diffrens/normal). Without one of them its part is off, and
@@ -11,12 +12,16 @@
 // looks at nothing else of a view. render() of a camera has no mask.
 //
 // Deviations: those of PGSR here; the window of the first surface is in scene units like all else;
-// only glass is masked, not the background, which rooms have not: no loss on alpha. Left out: the
-// transparency tau of each splat, which has its own loss and changes no output; the appearance
-// lobes from 18,000 on, so colour is SH throughout.
+// only glass is masked, not the background, which rooms have not: no loss on alpha; features of
+// lobes are made when lobes start instead of at the start of the run, which is the same, since
+// surfels stay the same ones from half of the run on and features are zero until then; their rates
+// follow the rule of shorter runs. `lobes` "real" is its authors' network for rooms (is_real with
+// is_indoor). Left out: the transparency tau of each splat, which has its own loss and changes no
+// output.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "baselines/tsgs_kernels.h"
 #include "glint/core/kernel.h"
@@ -24,6 +29,7 @@
 #include "glint/train/check_fits.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/glass_masks.h"
+#include "glint/train/lobe_appearance.h"
 #include "glint/train/planar_model.h"
 
 namespace glint {
@@ -31,6 +37,12 @@ namespace glint {
 namespace {
 
 constexpr const char* kSceneFile = "scene_unit.json";
+
+constexpr const char* kLobesFile = "lobes.safetensors";
+constexpr const char* kNoLobes = "off";
+bool is_kind_of_lobes(std::string_view kind) {
+  return kind == "full" || kind == "real" || kind == kNoLobes;
+}
 
 struct TsgsConfig {
   PlanarConfig planar;
@@ -41,6 +53,9 @@ struct TsgsConfig {
   bool freeze_opacity = true;
   float surface_window = 0.03f;  // published scene units
   float surface_weight = 0.2f;   // what its code renders test views with; .1 elsewhere
+  std::string lobes = "full";
+  int lobes_from = 18000;
+  LobeRates lobe_rates;
 
   template <class V>
   void visit(V&& v) {
@@ -54,20 +69,47 @@ struct TsgsConfig {
     v("freeze_opacity", freeze_opacity, "opacities stay from then on");
     v("surface_window", surface_window, "of depths of the first surface, published scene units");
     v("surface_weight", surface_weight, "cumulative weight within which it is looked for");
+    v("lobes", lobes, "lobes that add to colours: full, real (a smaller network) or off");
+    v("lobes_from", lobes_from, "first published iteration with lobes");
+    lobe_rates.visit(v);
   }
   void scale_to(int iterations) {
-    for (int* window : {&gate_from, &normal_until, &photo_from})
+    for (int* window : {&gate_from, &normal_until, &photo_from, &lobes_from})
       *window = scaled_step(*window, iterations);
+    lobe_rates = lobe_rates.for_shorter_run(30000.0 / iterations);
+  }
+  // Errors (kUsage): no such lobes; surfels would come or go under their features.
+  void check() const {
+    GLINT_CHECK(
+        is_kind_of_lobes(lobes),
+        kUsage,
+        "tsgs: lobes cannot be '{}'; expected full, real or off",
+        lobes
+    );
+    GLINT_CHECK(
+        lobes == kNoLobes || std::max(planar.densify.until, planar.trim_until) <= lobes_from,
+        kUsage,
+        "tsgs: densify_until is {} and trim_until {}, expected at most lobes_from, which is {}: "
+        "lobes have a feature for each surfel; set lobes_from later, or lobes=off",
+        planar.densify.until,
+        planar.trim_until,
+        lobes_from
+    );
   }
 };
 
 class Tsgs final : public Method {
  public:
-  explicit Tsgs(const Json& overrides) { config_from_json(config_, overrides, "tsgs"); }
+  explicit Tsgs(const Json& overrides) {
+    config_from_json(config_, overrides, "tsgs");
+    config_.check();
+  }
 
   void initialize(const Scene& scene, const RunOptions& options) override {
     windows_ = config_;
     windows_.scale_to(options.iterations);
+    options_ = options;
+    stop_lobes();
     warnings_ = model_.set_up(config_.planar, scene, options, "tsgs");
     scene_unit_ = model_.scene_unit();
     require_prior(scene, "normal", "L_normal", "tsgs", windows_.lambda_normal, warnings_);
@@ -80,6 +122,7 @@ class Tsgs final : public Method {
       notes_.push_back(
           windows_.delighted ? "de-lighted photos: the prior folder's" : "de-lighted photos: none"
       );
+    if (config_.lobes != TsgsConfig{}.lobes) notes_.push_back("lobe appearance: " + config_.lobes);
     if (masks.none())
       warnings_.push_back(fmt::format(
           "tsgs: {} has no glass masks (diffrens/glass); the de-lighted target and the depth of "
@@ -91,11 +134,14 @@ class Tsgs final : public Method {
   StepStats step(int iteration) override {
     StepStats stats;
     if (iteration == windows_.photo_from && config_.freeze_opacity) model_.set().freeze_opacity();
+    if (iteration >= windows_.lobes_from && config_.lobes != kNoLobes && !lobes_)
+      start_lobes(config_.lobes);
     const View& view = model_.forward(iteration, stats);
     model_.add_losses(target_of(view, iteration), stats);
     if (windows_.lambda_normal > 0 && iteration < windows_.normal_until)
       add_normal_prior(view, iteration, stats);
     model_.backward(stats);
+    if (lobes_) lobes_->step(iteration, options_.iterations);
     return stats;
   }
 
@@ -104,7 +150,9 @@ class Tsgs final : public Method {
   void draw(const Camera& camera) override { model_.draw(camera); }
   void save(const std::string& folder) const override {
     model_.save(folder);
-    write_file(fs::path(folder) / kSceneFile, Json{{"scene_unit", scene_unit_}}.dump() + "\n");
+    if (lobes_) write_safetensors(fs::path(folder) / kLobesFile, {}, lobes_->tensors("lobes"));
+    const Json scene{{"scene_unit", scene_unit_}, {"lobes", kind_of_lobes_}};
+    write_file(fs::path(folder) / kSceneFile, scene.dump() + "\n");
   }
   void load(const std::string& folder) override {
     model_.load(folder);
@@ -117,14 +165,46 @@ class Tsgs final : public Method {
         file.string()
     );
     scene_unit_ = json["scene_unit"].get<float>();
+    load_lobes(folder, json.value("lobes", Json(kNoLobes)));  // older runs have none
   }
   Json config() const override { return config_to_json(config_); }
-  void check_finite() const override { glint::check_finite(model_.set().cloud(), "interface"); }
+  void check_finite() const override {
+    glint::check_finite(model_.set().cloud(), "interface");
+    if (lobes_) lobes_->check_finite("lobes");
+  }
   std::size_t num_surfels() const override { return model_.set().cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }
   std::vector<std::string> notes() const override { return notes_; }
 
  private:
+  void start_lobes(const std::string& kind) {
+    kind_of_lobes_ = kind;
+    LobeAppearanceConfig sizes =
+        kind == "real" ? LobeAppearanceConfig::real() : LobeAppearanceConfig{};
+    sizes.rates = windows_.lobe_rates;
+    lobes_.emplace(sizes, model_.set().cloud().size(), options_.seed);
+    model_.add_lobes(&*lobes_);
+  }
+  void stop_lobes() {
+    model_.add_lobes(nullptr);
+    lobes_.reset();
+    kind_of_lobes_ = kNoLobes;
+  }
+  void load_lobes(const fs::path& folder, const Json& kind) {
+    GLINT_CHECK(
+        kind.is_string() && is_kind_of_lobes(kind.get<std::string>()),
+        kBadPrediction,
+        "{}: lobes is {}, expected full, real or off; train the run again",
+        (folder / kSceneFile).string(),
+        kind.dump()
+    );
+    stop_lobes();
+    if (kind == kNoLobes) return;
+    start_lobes(kind.get<std::string>());
+    SafetensorsFile file(folder / kLobesFile);
+    lobes_->read(file, "lobes");
+  }
+
   // The photo; in the first stage de-lighted on glass.
   const Image& target_of(const View& view, int iteration) {
     const Image& mask = glass_mask(view);
@@ -169,6 +249,9 @@ class Tsgs final : public Method {
   TsgsConfig config_, windows_;
   std::vector<std::string> warnings_, notes_;
   PlanarModel model_;
+  std::optional<LobeAppearance> lobes_;   // once they started
+  std::string kind_of_lobes_ = kNoLobes;  // of those
+  RunOptions options_;
   Image target_;
   float scene_unit_ = 1;  // metres that a published scene unit stands for
 };

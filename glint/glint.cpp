@@ -32,6 +32,7 @@ namespace {
 // The surfels with their colour alone.
 SurfelCloud without_extra(SurfelCloud cloud) {
   cloud.extra_names.clear();
+  cloud.extra_activations.clear();
   cloud.extra_logits.clear();
   cloud.extra_activations.clear();
   return cloud;

@@ -51,6 +51,8 @@ class SurfelSet {
     pass_.rasterizer.first_surface(mask, settings, depth);
   }
 
+  // Buffers of the first of them, whose options of activation may be set before it.
+  RasterPass& pass() { return pass_; }
   SurfelCloud& cloud() { return cloud_; }
   const SurfelCloud& cloud() const { return cloud_; }
   std::size_t num_pairs() const { return pass_.rasterizer.num_pairs(); }

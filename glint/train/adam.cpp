@@ -59,9 +59,13 @@ void update(const AdamArrays& a, float correction1, float correction2) {
 
 }  // namespace
 
+float faster_rates(double shortening) {
+  return static_cast<float>(std::pow(std::max(shortening, 1.0), 0.25));
+}
+
 SurfelRates SurfelRates::for_shorter_run(double shortening) const {
   SurfelRates rates = *this;
-  const auto faster = static_cast<float>(std::pow(std::max(shortening, 1.0), 0.25));
+  const float faster = faster_rates(shortening);
   for (float* rate :
        {&rates.means,
         &rates.means_final,

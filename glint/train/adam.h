@@ -8,6 +8,10 @@
 
 namespace glint {
 
+// What rates are multiplied by in a run that is `shortening` times shorter than the published one:
+// the fourth root, at least 1.
+float faster_rates(double shortening);
+
 // Learning rates of the parameter arrays [Huang24, Kerbl23]. Positions:
 // log-linear from `means` to `means_final` over `means_steps` steps, both times the scene's extent.
 struct SurfelRates {
@@ -33,8 +37,8 @@ struct SurfelRates {
   }
 
   // Rates of a run that is `shortening` times shorter than the published one: position_steps
-  // shrink with it, and positions, colour, scales and rotations move faster by its fourth root (at
-  // least 1), the same rule for every method. Deviation: at published rates a short run ends before
+  // shrink with it, and positions, colour, scales and rotations move faster by faster_rates(), the
+  // same rule for every method. Deviation: at published rates a short run ends before
   // surfels have reached their place (docs/GLINT_NOTES.md).
   SurfelRates for_shorter_run(double shortening) const;
 };

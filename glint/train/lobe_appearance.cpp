@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/lobe_appearance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
+#include "glint/train/adam.h"
 
 namespace glint {
 
@@ -18,6 +20,11 @@ constexpr std::size_t kGrain = 256;  // surfels a block
 double evenly(double end, int i, int count) { return count < 2 ? 0 : end * i / (count - 1); }
 
 }  // namespace
+
+LobeRates LobeRates::for_shorter_run(double shortening) const {
+  const float faster = faster_rates(shortening);
+  return {faster * feature, faster * network, faster * network_final};
+}
 
 LobeAppearanceConfig LobeAppearanceConfig::real() {
   LobeAppearanceConfig config;
@@ -32,6 +39,21 @@ LobeAppearanceConfig LobeAppearanceConfig::real() {
 void world_normals(const SurfelCloud& cloud, FloatArray& normals) {
   normals.resize(3 * cloud.size());
   run_kernel(cloud.size(), 4 * kGrain, WorldNormals{cloud.rotations.data(), normals.data()});
+}
+
+void mark_in_pyramid(const SurfelCloud& cloud, const Camera& camera, Array<std::uint8_t>& visible) {
+  visible.resize(cloud.size());
+  run_kernel(
+      cloud.size(),
+      4 * kGrain,
+      MarkInPyramid{
+          cloud.means.data(),
+          cloud.log_scales.data(),
+          pinhole_of<float>(camera),
+          cast<float>(camera.rotation_cam_from_world),
+          cast<float>(camera.translation_cam_from_world),
+          visible.data()}
+  );
 }
 
 LobeAppearance::LobeAppearance(
@@ -55,6 +77,8 @@ LobeAppearance::LobeAppearance(
   features_ = TrainableArray(count * static_cast<std::size_t>(config.lobe_feature));
   to_lobes_ = Mlp({config.lobe_feature, kLobeNumbers * config.num_lobes()}, seed);
   to_color_ = Mlp({config.input_width(), config.lobe_hidden, config.lobe_hidden, 3}, seed + 1);
+  // As published, where the networks' other parameters start as PyTorch's do.
+  std::fill_n(to_color_.biases(2).begin(), 3, 0.0f);
 }
 
 // On the host: how many there are decides the sizes of what follows.
@@ -111,6 +135,17 @@ const FloatArray& LobeAppearance::forward(
   return offsets_;
 }
 
+const FloatArray& LobeAppearance::forward(const SurfelCloud& cloud, const Camera& camera) {
+  world_normals(cloud, normals_);
+  mark_in_pyramid(cloud, camera, visible_);
+  return forward(cloud.means, normals_, cast<float>(camera.center()), visible_);
+}
+
+void LobeAppearance::backward(const RasterGradient& gradient, int channels) {
+  color_gradient(gradient, channels, dL_doffsets_);
+  backward(dL_doffsets_);
+}
+
 void LobeAppearance::backward(std::span<const float> dL_doffsets) {
   GLINT_CHECK(
       numbers_ != nullptr && dL_doffsets.size() == offsets_.size(),
@@ -148,8 +183,9 @@ void LobeAppearance::backward(std::span<const float> dL_doffsets) {
 }
 
 void LobeAppearance::step(int step, int steps) {
-  const float rate = log_linear_rate(config_.rate_lobe, config_.rate_lobe_final, step, steps);
-  features_.step(config_.rate_lobe_feature);
+  const LobeRates& rates = config_.rates;
+  const float rate = log_linear_rate(rates.network, rates.network_final, step, steps);
+  features_.step(rates.feature);
   to_lobes_.parameters().step(rate);
   to_color_.parameters().step(rate);
 }

@@ -13,10 +13,23 @@
 
 namespace glint {
 
+struct LobeRates {
+  float feature = 2.5e-3f, network = 2.5e-3f, network_final = 1.25e-4f;
+
+  template <class V>
+  void visit(V&& v) {
+    v("rate_lobe_feature", feature, "learning rate of lobes' features");
+    v("rate_lobe", network, "learning rate of lobes' networks");
+    v("rate_lobe_final", network_final, "the same at the end of the run");
+  }
+  // All of them faster_rates() times as high.
+  LobeRates for_shorter_run(double shortening) const;
+};
+
 struct LobeAppearanceConfig {
   int lobe_feature = 24, lobes_theta = 4, lobes_phi = 8, lobe_hidden = 128;
   bool lobe_reflection = true;
-  float rate_lobe_feature = 2.5e-3f, rate_lobe = 2.5e-3f, rate_lobe_final = 1.25e-4f;
+  LobeRates rates;
 
   // The smaller network of captures without strong mirrors: lobes see the viewing direction itself,
   // and the normal is not used.
@@ -34,14 +47,16 @@ struct LobeAppearanceConfig {
     v("lobes_phi", lobes_phi, "axes of lobes around them");
     v("lobe_hidden", lobe_hidden, "width of the network's two hidden layers");
     v("lobe_reflection", lobe_reflection, "lobes see the mirrored direction");
-    v("rate_lobe_feature", rate_lobe_feature, "learning rate of features");
-    v("rate_lobe", rate_lobe, "learning rate of the networks");
-    v("rate_lobe_final", rate_lobe_final, "the same at the end");
+    rates.visit(v);
   }
 };
 
 // Unit normals of a cloud in the world, [N][3]: third columns of its rotations.
 void world_normals(const SurfelCloud& cloud, FloatArray& normals);
+
+// visible[i] becomes 1 where something of surfel i can be in the picture: its 3-sigma sphere meets
+// the pyramid of the image. All that reach a pixel are among them, and some that do not.
+void mark_in_pyramid(const SurfelCloud& cloud, const Camera& camera, Array<std::uint8_t>& visible);
 
 class LobeAppearance {
  public:
@@ -60,8 +75,12 @@ class LobeAppearance {
       Vec3f eye,
       std::span<const std::uint8_t> visible
   );
+  // The same for a cloud as a camera sees it, which must stay as it is until backward().
+  const FloatArray& forward(const SurfelCloud& cloud, const Camera& camera);
   // Adds dL/d(features and weights) of the last forward(). Positions and normals are constants.
   void backward(std::span<const float> dL_doffsets);
+  // The same from what was rasterised with the offsets; channels: of its features.
+  void backward(const RasterGradient& gradient, int channels);
   // An optimiser step, the networks' rate at step `step` of `steps`.
   void step(int step, int steps);
 
@@ -85,11 +104,14 @@ class LobeAppearance {
   TrainableArray features_;
   Mlp to_lobes_, to_color_;
   // Of the last forward(); M visible surfels.
+  FloatArray normals_;           // [N][3], where it was given a cloud
+  Array<std::uint8_t> visible_;  // [N]
   LobeView view_{};
   Array<std::uint32_t> surfels_;         // [M]
   FloatArray seen_features_, inputs_;    // [M][feature], [M][input_width]
   FloatArray offsets_;                   // [N][3]
   const FloatArray* numbers_ = nullptr;  // [M][lobes][4]
+  FloatArray dL_doffsets_;               // [N][3]
   FloatArray dL_dcolors_, dL_dinputs_, dL_dnumbers_, dL_dfeatures_;
 };
 

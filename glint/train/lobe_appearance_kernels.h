@@ -7,6 +7,7 @@
 
 #include "glint/core/kernel.h"
 #include "glint/render/activations.h"
+#include "glint/render/pinhole.h"
 #include "glint/render/transport.h"
 
 namespace glint {
@@ -106,6 +107,35 @@ struct WorldNormals {
   }
 };
 
+// Whether the sphere around a surfel's centre that holds its 3-sigma ellipse meets the pyramid of
+// the image, widened by what the screen-space low-pass reaches.
+struct MarkInPyramid {
+  static constexpr float kMargin = 3;  // pixels; the low-pass reaches sqrt(9 / 2)
+
+  const float *means, *log_scales;  // [N][3] metres, [N][2]
+  Pinhole<float> camera;
+  Mat3f rotation;  // camera from world
+  Vec3f translation;
+  std::uint8_t* visible;  // [N]
+
+  // On the inner side of a plane through the eye with normal (a, b) along (one axis, depth).
+  GLINT_HD static bool meets(float a, float b, float x, float z, float radius) {
+    return a * x + b * z > -radius * sqrtf(a * a + b * b);
+  }
+  GLINT_HD static bool between(float f, float low, float high, float x, float z, float radius) {
+    return meets(f, low, x, z, radius) && meets(-f, high, x, z, radius);
+  }
+  GLINT_HD void operator()(std::size_t i) const {
+    const Vec3f m = rotation * get3(means, i) + translation;
+    const float radius = 3 * exp_fast(max_of(log_scales[2 * i], log_scales[2 * i + 1]));
+    const float right = static_cast<float>(camera.width) - camera.cx;
+    const float bottom = static_cast<float>(camera.height) - camera.cy;
+    const bool x = between(camera.fx, camera.cx + kMargin, right + kMargin, m.x, m.z, radius);
+    const bool y = between(camera.fy, camera.cy + kMargin, bottom + kMargin, m.y, m.z, radius);
+    visible[i] = m.z > -radius && x && y ? 1 : 0;
+  }
+};
+
 // Rows of visible surfels, and back.
 struct GatherRows {
   const float* rows;             // [N][width]
@@ -168,6 +198,6 @@ struct LobeInputsVjp {
 };
 
 using LobeAppearanceKernels =
-    KernelList<WorldNormals, GatherRows, AddToRows, LobeInputs, LobeInputsVjp>;
+    KernelList<WorldNormals, MarkInPyramid, GatherRows, AddToRows, LobeInputs, LobeInputsVjp>;
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 #include "glint/render/map_ops.h"
 #include "glint/scene/ply.h"
 #include "glint/train/initial_points.h"
+#include "glint/train/lobe_appearance.h"
 
 namespace glint {
 
@@ -74,7 +75,7 @@ const View& PlanarModel::forward(int iteration, StepStats& stats) {
   RasterSettings settings;
   settings.with_plane_distance = iteration >= windows_.planes.from;
   settings.with_statistics = windows_.densify.max_abs_splits > 0;
-  output_ = &set_.forward(view.camera, sh_degree_, settings);
+  rasterize(view.camera, settings);
   clear_gradient(view.camera.size(), output_->features.channels(), gradient_);
   if (settings.with_plane_distance) clear_image(gradient_.plane_distance, view.camera.size(), 1);
   return view;
@@ -92,7 +93,9 @@ void PlanarModel::add_losses(const Image& target, StepStats& stats) {
 
 void PlanarModel::backward(StepStats& stats) {
   for (const auto& [name, value] : stats.terms) stats.loss += value;
-  set_.backward(gradient_);
+  RasterPass& pass = set_.pass();
+  const RasterGradient& gradient = set_.backward(gradient_, pass, true);
+  if (lobes_ != nullptr) lobes_->backward(gradient, pass.activated.channels);
   set_.update(stats.iteration + 1);
   trim(stats.iteration + 1);
   stats.num_surfels = set_.cloud().size();
@@ -118,8 +121,14 @@ MapSet PlanarModel::render(const Camera& camera) {
 const RasterOutput& PlanarModel::draw(const Camera& camera) {
   RasterSettings settings;
   settings.with_plane_distance = true;
-  output_ = &set_.forward(camera, sh_degree_, settings);
+  rasterize(camera, settings);
   return *output_;
+}
+
+void PlanarModel::rasterize(const Camera& camera, const RasterSettings& settings) {
+  set_.pass().activated.options.color_offsets =
+      lobes_ != nullptr ? lobes_->forward(set_.cloud(), camera).data() : nullptr;
+  output_ = &set_.forward(camera, sh_degree_, settings);
 }
 
 void PlanarModel::save(const std::string& folder) const {

@@ -9,6 +9,8 @@
 
 namespace glint {
 
+class LobeAppearance;
+
 struct PlanarConfig {
   float lambda_ssim = 0.2f;  // (1 - lambda) L1 + lambda (1 - SSIM)
   int sh_interval = 1000;    // one degree more each
@@ -56,6 +58,11 @@ class PlanarModel {
   void add_losses(const Image& target, StepStats& stats);
   void backward(StepStats& stats);
 
+  // From now on their offsets are added to the colours of training views, render() and draw(), and
+  // backward() gives them their gradients; the step of their optimiser is the caller's. They are
+  // borrowed, and the surfels must stay the same ones. Null: SH alone.
+  void add_lobes(LobeAppearance* lobes) { lobes_ = lobes; }
+
   const RasterOutput& output() const { return *output_; }  // of the last forward() or draw()
   RasterOutputGradient& gradient() { return gradient_; }
   const PlanarConfig& windows() const { return windows_; }
@@ -73,11 +80,13 @@ class PlanarModel {
   const TrainableSet& set() const { return set_; }
 
  private:
+  void rasterize(const Camera& camera, const RasterSettings& settings);
   void trim(int step);
 
   PlanarConfig windows_;
   const Scene* scene_ = nullptr;
   TrainableSet set_;
+  LobeAppearance* lobes_ = nullptr;
   ViewSampler views_;
   std::size_t view_ = 0;  // of this step
   int sh_degree_ = 3;

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <cmath>
+
+#include "glint/core/files.h"
 #include "glint/method.h"
 #include "glint/scene/ply.h"
+#include "glint/scene/safetensors.h"
 #include "tests/support/small_room.h"
 
 using namespace glint;
@@ -10,8 +15,10 @@ using namespace glint::test;
 
 namespace {
 
-std::unique_ptr<Method> trained(const Scene& scene, int planned, int steps) {
-  auto method = create_method("tsgs");
+std::unique_ptr<Method> trained(
+    const Scene& scene, int planned, int steps, const Json& config = Json::object()
+) {
+  auto method = create_method("tsgs", config);
   method->initialize(scene, {planned, 0});
   for (int i = 0; i < steps; ++i) method->step(i);
   return method;
@@ -46,6 +53,30 @@ std::string first_note(const Scene& scene) {
   const auto method = create_method("tsgs");
   method->initialize(scene, {40, 0});
   return method->notes().at(0);
+}
+
+std::unique_ptr<Method> saved_and_loaded(const Method& method, const fs::path& folder) {
+  method.save(folder.string());
+  auto loaded = create_method("tsgs");
+  loaded->load(folder.string());
+  return loaded;
+}
+
+Image picture(Method& method) { return method.render(small_room().test.front().camera)["rgb"]; }
+
+// PSNR of the test views' pictures, clipped as files are.
+double mean_psnr(Method& method) {
+  double sum = 0;
+  for (const View& view : small_room().test) {
+    const Image rgb = method.render(view.camera)["rgb"];
+    double squares = 0;
+    for (std::size_t i = 0; i < rgb.values().size(); ++i) {
+      const float off = std::clamp(rgb.values()[i], 0.0f, 1.0f) - view.rgb.values()[i];
+      squares += static_cast<double>(off) * static_cast<double>(off);
+    }
+    sum += -10 * std::log10(squares / static_cast<double>(rgb.values().size()));
+  }
+  return sum / static_cast<double>(small_room().test.size());
 }
 
 FloatArray saved_opacities(const Method& method) {
@@ -109,4 +140,114 @@ TEST_CASE("A view's depth is the first surface on its mask, whatever its picture
   const auto loaded = create_method("tsgs");
   loaded->load(folder.path().string());
   CHECK(same(loaded->render_view(view)["depth"], gated["depth"]));
+}
+
+TEST_CASE("Lobes start after 60 % of the run, change the picture and nothing before") {
+  const Json off{{"lobes", "off"}};
+  // 18,000 of 30,000 is step 24 of 40, whose picture they change by their start alone.
+  const auto with = trained(small_room(), 40, 24), without = trained(small_room(), 40, 24, off);
+  CHECK(same(picture(*with), picture(*without)));
+  const double before = with->step(24).terms.at("photometric");
+  CHECK(before != without->step(24).terms.at("photometric"));
+  const Image one = picture(*with), none = picture(*without);
+  CHECK_FALSE(same(one, none));
+  CHECK_NOTHROW(with->check_finite());
+  CHECK(with->num_surfels() == without->num_surfels());
+}
+
+TEST_CASE("Lobes learn: features leave zero, and networks their start") {
+  const auto method = trained(small_room(), 40, 25);
+  const auto tensor = [&](const std::string& name) {
+    const TempFolder folder;
+    method->save(folder.path().string());
+    SafetensorsFile file(folder.path() / "lobes.safetensors");
+    REQUIRE(file.find(name) != nullptr);
+    return file.read<float>(name, file.find(name)->shape);
+  };
+  const auto features = tensor("lobes.features");
+  CHECK(features.size() == 24 * method->num_surfels());
+  const auto moved =
+      std::count_if(features.begin(), features.end(), [](float x) { return x != 0; });
+  CHECK(moved > static_cast<std::ptrdiff_t>(features.size() / 4));
+  const auto lobes = tensor("lobes.to_lobes.0.weight"), color = tensor("lobes.to_color.2.weight");
+  method->step(25);
+  CHECK(tensor("lobes.features") != features);
+  CHECK(tensor("lobes.to_lobes.0.weight") != lobes);
+  CHECK(tensor("lobes.to_color.2.weight") != color);
+}
+
+TEST_CASE("Lobes alone bring the picture nearer to the photos") {
+  // Surfels stay as they start.
+  Json config{{"densify_until", 0}, {"trim_until", 0}, {"lobes_from", 1}};
+  for (const char* rate :
+       {"rate_position",
+        "rate_position_final",
+        "rate_color",
+        "rate_sh",
+        "rate_opacity",
+        "rate_scale",
+        "rate_rotation"})
+    config[rate] = 0;
+  for (const char* kind : {"full", "real"}) {
+    INFO(kind);
+    config["lobes"] = kind;
+    const auto with = trained(small_room(), 60, 60, config);
+    config["lobes"] = "off";
+    const auto without = trained(small_room(), 60, 2, config);
+    CHECK(mean_psnr(*with) > mean_psnr(*without) + 1);
+  }
+}
+
+TEST_CASE("Both kinds of lobes come back from files, and so does a run that has none yet") {
+  for (const char* kind : {"full", "real"})
+    for (const int steps : {20, 40}) {
+      INFO(kind << ", " << steps << " steps");
+      const auto method = trained(small_room(), 40, steps, {{"lobes", kind}});
+      const TempFolder folder;
+      const auto loaded = saved_and_loaded(*method, folder.path());
+      CHECK(fs::exists(folder.path() / "lobes.safetensors") == (steps == 40));
+      // SH grow with the run, and what was loaded has all degrees.
+      if (steps == 40) CHECK(same(picture(*loaded), picture(*method)));
+      const TempFolder again;
+      CHECK(same(picture(*saved_and_loaded(*loaded, again.path())), picture(*loaded)));
+    }
+}
+
+TEST_CASE("Lobes that do not exist, and surfels that come or go under them, are refused") {
+  CHECK_THROWS_WITH(
+      create_method("tsgs", {{"lobes", "half"}}),
+      Catch::Contains("lobes cannot be 'half'; expected full, real or off")
+  );
+  for (const char* window : {"densify_until", "trim_until"}) {
+    CHECK_THROWS_WITH(
+        create_method("tsgs", {{window, 20000}}), Catch::Contains("set lobes_from later")
+    );
+    CHECK_NOTHROW(create_method("tsgs", {{window, 20000}, {"lobes", "off"}}));
+    CHECK_NOTHROW(create_method("tsgs", {{window, 20000}, {"lobes_from", 20000}}));
+  }
+  const auto method = trained(small_room(), 40, 30);
+  const TempFolder folder;
+  method->save(folder.path().string());
+  write_file(folder.path() / "scene_unit.json", R"({"scene_unit": 1, "lobes": 3})");
+  CHECK_THROWS_WITH(
+      create_method("tsgs")->load(folder.path().string()),
+      Catch::Contains("lobes is 3, expected full, real or off")
+  );
+}
+
+TEST_CASE("Without lobes, masks and priors TSGS is PGSR until opacities stay") {
+  Scene scene = small_room();
+  for (View& view : scene.train) {
+    view.priors = {};
+    view.truth["glass"] = {};
+  }
+  const auto picture_of = [&](const char* id, const Json& config) {
+    const auto method = create_method(id, config);
+    method->initialize(scene, {40, 0});
+    for (int i = 0; i < 40; ++i) method->step(i);
+    return picture(*method);
+  };
+  const Image pgsr = picture_of("pgsr", Json::object());
+  CHECK(same(picture_of("tsgs", {{"lobes", "off"}, {"freeze_opacity", false}}), pgsr));
+  CHECK_FALSE(same(picture_of("tsgs", {{"freeze_opacity", false}}), pgsr));
 }

@@ -259,6 +259,61 @@ TEST_CASE("Appearance from lobes learns, and comes back from a file") {
   CHECK(other.forward() == expected);
 }
 
+TEST_CASE("Surfels that reach a pixel are among those in the pyramid, most others are not") {
+  SurfelCloud cloud;
+  const std::size_t count = 4000;
+  cloud.resize(count);
+  cloud.means = random_array(3 * count, -4, 4, 1);
+  cloud.log_scales = random_array(2 * count, -7, 0, 2);
+  cloud.rotations = random_array(4 * count, -1, 1, 3);
+  cloud.opacity_logits = random_array(count, -6, -3, 4);
+  SurfelSet set(cloud);
+  std::size_t marked = 0, reached = 0;
+  for (const Vec3d eye : {Vec3d{0, 0, 0}, Vec3d{3, 1, -2}, Vec3d{0, -6, 1}}) {
+    const Camera camera = look_at(eye, {0.3, 0.5, 0.2}, {0, 0, 1}, {64, 36}, 60);
+    const RasterOutput& output = set.forward(camera, 0);
+    Array<std::uint8_t> visible;
+    mark_in_pyramid(cloud, camera, visible);
+    REQUIRE(visible.size() == count);
+    std::size_t missed = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      missed += output.visibility[i] > 0 && visible[i] == 0 ? 1 : 0;
+      reached += output.visibility[i] > 0 ? 1 : 0;
+      marked += visible[i];
+    }
+    CHECK(missed == 0);
+  }
+  INFO(reached << " reach a pixel, " << marked << " are in the pyramid");
+  CHECK(reached > 500);
+  CHECK(marked < 3 * count / 2);
+}
+
+TEST_CASE("A cloud and a camera give what their arrays give, there and back") {
+  Fixture f(small_config(true));
+  SurfelCloud cloud;
+  cloud.resize(kSurfels);
+  cloud.means = f.means;
+  cloud.log_scales = FloatArray(2 * kSurfels, -2.0f);
+  cloud.rotations = random_array(4 * kSurfels, -1, 1, 8);
+  const Camera camera = look_at({0.2, -3, 0.5}, {0, 0, 0}, {0, 0, 1}, {64, 36}, 30);
+  const FloatArray offsets = f.appearance.forward(cloud, camera);
+  RasterGradient gradient;
+  gradient.features = random_array(4 * kSurfels, -1, 1, 9);
+  f.appearance.backward(gradient, 4);
+  const FloatArray dL_dfeatures = f.appearance.features().gradient;
+
+  Fixture plain(small_config(true));
+  world_normals(cloud, plain.normals);
+  mark_in_pyramid(cloud, camera, plain.visible);
+  plain.eye = cast<float>(camera.center());
+  CHECK(offsets == plain.forward());
+  CHECK(plain.appearance.num_visible() > 0);
+  for (std::size_t i = 0; i < kSurfels; ++i)
+    std::copy_n(&gradient.features[4 * i], 3, &plain.g[3 * i]);
+  plain.appearance.backward(plain.g);
+  CHECK(dL_dfeatures == plain.appearance.features().gradient);
+}
+
 TEST_CASE("Arrays of another number of surfels are refused") {
   Fixture f(small_config(true));
   CHECK_THROWS_WITH(f.appearance.backward(f.g), Catch::Contains("the last forward() gave 0"));
