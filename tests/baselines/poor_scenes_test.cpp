@@ -14,7 +14,7 @@ namespace {
 std::vector<std::string> warnings_of_short_run(const MethodSpec& spec, const Scene& scene) {
   const auto method = create_method(spec.id);
   RunOptions options;
-  options.iterations = 40;
+  options.iterations = 16;  // schedules scale: every phase is in it
   method->initialize(scene, options);
   for (int i = 0; i < options.iterations; ++i) {
     const StepStats stats = method->step(i);
