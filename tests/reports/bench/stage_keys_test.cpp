@@ -78,7 +78,7 @@ Json other_value(const Json& value) {
       {"trace", "raster"},
       {"cameras", "none"},
       {"expected", "median"},
-      {"full", "off"},
+      {"real", "off"},
       {"point-to-triangle", "point-to-point"},
       {"", "x"}};
   if (value.is_boolean()) return !value.get<bool>();
