@@ -165,7 +165,7 @@ TEST_CASE("Lobes learn: features leave zero, and networks their start") {
     return file.read<float>(name, file.find(name)->shape);
   };
   const auto features = tensor("lobes.features");
-  CHECK(features.size() == 24 * method->num_surfels());
+  CHECK(features.size() == 12 * method->num_surfels());
   const auto moved =
       std::count_if(features.begin(), features.end(), [](float x) { return x != 0; });
   CHECK(moved > static_cast<std::ptrdiff_t>(features.size() / 4));

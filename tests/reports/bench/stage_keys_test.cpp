@@ -78,6 +78,7 @@ Json other_value(const Json& value) {
       {"trace", "raster"},
       {"cameras", "none"},
       {"expected", "median"},
+      {"median", "expected"},
       {"real", "off"},
       {"point-to-triangle", "point-to-point"},
       {"", "x"}};
