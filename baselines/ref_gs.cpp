@@ -118,12 +118,7 @@ class RefGs final : public Method {
     windows_.scale_to(options.iterations);
     warnings_ = geometry_.set_up(windows_.geometry, scene, "ref-gs");
     warn_without_points(scene, "ref-gs", warnings_);
-    faster_ = std::pow(
-        std::max(
-            static_cast<float>(kPublishedIterations) / static_cast<float>(options.iterations), 1.0f
-        ),
-        0.25f
-    );
+    faster_ = faster_rates(static_cast<double>(kPublishedIterations) / options.iterations);
     InitialSurfels initial;
     initial.seed = options.seed;
     initial.scale = config_.initial_scale;

@@ -131,9 +131,7 @@ class RtSplatting final : public Method {
     windows_ = config_;
     windows_.scale_to(options.iterations);
     set_up_losses();
-    const float shortening =
-        static_cast<float>(kPublishedIterations) / static_cast<float>(options.iterations);
-    faster_ = std::pow(std::max(shortening, 1.0f), 0.25f);
+    faster_ = faster_rates(static_cast<double>(kPublishedIterations) / options.iterations);
     InitialSurfels initial;
     initial.seed = options.seed;
     initial.extra = config_.channels(faster_);
