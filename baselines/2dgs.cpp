@@ -90,14 +90,7 @@ class TwoDgs final : public Method {
     InitialSurfels initial;
     initial.seed = options.seed;
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
-    set_ = TrainableSet(
-        points,
-        initial,
-        {.rates = windows_.rates,
-         .densify = windows_.densify,
-         .extent = scene.spatial_scale,
-         .training_views = scene.train.size()}
-    );
+    set_ = TrainableSet(points, initial, training_on(scene, windows_.rates, windows_.densify));
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
 

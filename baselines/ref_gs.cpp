@@ -86,8 +86,7 @@ struct RefGsConfig {
     for (const char* name : {"albedo_0", "albedo_1", "albedo_2"})
       extra.push_back({name, initial_albedo, faster * rate_albedo, Activation::kCappedExp});
     extra.push_back({"roughness", initial_roughness, faster * rate_roughness});
-    for (const char* name : {"feature_0", "feature_1", "feature_2", "feature_3"})
-      extra.push_back({name, 0, faster * rate_feature, Activation::kTanh, feature_spread});
+    add_feature_channels(faster * rate_feature, feature_spread, extra);
     return extra;
   }
   void scale_to(int iterations) {
@@ -124,14 +123,7 @@ class RefGs final : public Method {
     initial.scale = config_.initial_scale;
     initial.extra = config_.channels(faster_);
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
-    set_ = TrainableSet(
-        points,
-        initial,
-        {.rates = windows_.rates,
-         .densify = windows_.densify,
-         .extent = scene.spatial_scale,
-         .training_views = scene.train.size()}
-    );
+    set_ = TrainableSet(points, initial, training_on(scene, windows_.rates, windows_.densify));
     field_ = SpecularField(config_.field, std::vector<float>(3, std::log(0.25f)), options.seed);
     view_rng_ = Rng(options.seed, hash_name("views"));
     background_rng_ = Rng(options.seed, hash_name("backgrounds"));
@@ -184,35 +176,26 @@ class RefGs final : public Method {
 
   void save(const std::string& folder) const override {
     write_surfel_ply(fs::path(folder) / "interface.ply", set_.cloud());
-    write_safetensors(
-        fs::path(folder) / kFieldFile,
-        {{"deferred", deferred_ ? "1" : "0"}},
-        field_.tensors("field")
-    );
+    field_.save(folder, deferred_ ? 1 : 0);
   }
   void load(const std::string& folder) override {
     const fs::path file = fs::path(folder) / "interface.ply";
     SurfelCloud cloud = read_surfel_ply(file);
     set_activations(config_.channels(1), file.string(), cloud);
     set_.load(std::move(cloud));
-    SafetensorsFile field(fs::path(folder) / kFieldFile);
-    field_.read(field, "field");
-    const auto flag = field.metadata().find("deferred");
-    deferred_ = flag == field.metadata().end() || flag->second != "0";
+    deferred_ = field_.load(folder, 2) == 1;
     sh_degree_ = 3;
   }
   Json config() const override { return config_to_json(config_); }
   void check_finite() const override {
     glint::check_finite(set_.cloud(), "interface");
-    field_.check_finite("field");
+    field_.check_finite();
   }
   std::size_t num_surfels() const override { return set_.cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }
   std::vector<std::string> notes() const override { return config_.field.notes(); }
 
  private:
-  static constexpr const char* kFieldFile = "specular_field.safetensors";
-
   DeferredPixels pixels() const {
     return {
         output_->features.channels(),

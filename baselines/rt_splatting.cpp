@@ -99,8 +99,7 @@ struct RtSplattingConfig {
         {"transmissivity", kHalf, faster * rate_transmissivity},
         {"reflectance", kHalf, faster * rate_reflectance},
         {"roughness", kHalf, faster * rate_roughness}};
-    for (const char* name : {"feature_0", "feature_1", "feature_2", "feature_3"})
-      extra.push_back({name, 0, faster * rate_feature, Activation::kTanh, feature_spread});
+    add_feature_channels(faster * rate_feature, feature_spread, extra);
     return extra;
   }
   void scale_to(int iterations) {
@@ -136,14 +135,7 @@ class RtSplatting final : public Method {
     initial.seed = options.seed;
     initial.extra = config_.channels(faster_);
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
-    set_ = TrainableSet(
-        points,
-        initial,
-        {.rates = windows_.rates,
-         .densify = windows_.densify,
-         .extent = scene.spatial_scale,
-         .training_views = scene.train.size()}
-    );
+    set_ = TrainableSet(points, initial, training_on(scene, windows_.rates, windows_.densify));
     field_ = config_.new_field(options.seed);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
@@ -208,37 +200,26 @@ class RtSplatting final : public Method {
 
   void save(const std::string& folder) const override {
     write_surfel_ply(fs::path(folder) / "interface.ply", set_.cloud());
-    write_safetensors(
-        fs::path(folder) / kFieldFile,
-        {{"stage", std::to_string(static_cast<int>(stage_))}},
-        field_.tensors("field")
-    );
+    field_.save(folder, static_cast<int>(stage_));
   }
   void load(const std::string& folder) override {
     const fs::path file = fs::path(folder) / "interface.ply";
     SurfelCloud cloud = read_surfel_ply(file);
     set_activations(config_.channels(1), file.string(), cloud);
     set_.load(std::move(cloud));
-    SafetensorsFile field(fs::path(folder) / kFieldFile);
-    field_.read(field, "field");
-    const auto stage = field.metadata().find("stage");
-    stage_ = stage == field.metadata().end() || stage->second == "2" ? RtStage::kAll
-             : stage->second == "1"                                  ? RtStage::kNoSpecular
-                                                                     : RtStage::kTransmission;
+    stage_ = static_cast<RtStage>(field_.load(folder, kRtStages));
     sh_degree_ = 3;
   }
   Json config() const override { return config_to_json(config_); }
   void check_finite() const override {
     glint::check_finite(set_.cloud(), "interface");
-    field_.check_finite("field");
+    field_.check_finite();
   }
   std::size_t num_surfels() const override { return set_.cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }
   std::vector<std::string> notes() const override { return notes_; }
 
  private:
-  static constexpr const char* kFieldFile = "specular_field.safetensors";
-
   void set_up_losses() {
     warnings_ = geometry_.set_up(windows_.geometry, *scene_, "rt-splatting");
     perceptual_ = wanted_perceptual_loss(windows_.perceptual, *scene_, "rt-splatting", warnings_);

@@ -10,6 +10,7 @@ namespace glint {
 
 // How much of a pixel there is yet.
 enum class RtStage : int { kTransmission, kNoSpecular, kAll };
+inline constexpr int kRtStages = 3;
 
 // Of the surface pass and the volume pass, and the network's four outputs.
 inline constexpr int kRtOutputs = 4;

@@ -53,8 +53,7 @@ struct TsgsConfig {
   bool freeze_opacity = true;
   float surface_window = 0.03f;  // published scene units
   float surface_weight = 0.2f;   // what its code renders test views with; .1 elsewhere
-  // Its authors' setting for rooms; "full" is for objects, and overfits views of rooms here
-  // (docs/BASELINES.md).
+  // Its authors' setting for rooms; "full" is for objects.
   std::string lobes = "real";
   int lobes_from = 18000;
   LobeRates lobe_rates;

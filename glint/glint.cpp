@@ -135,14 +135,7 @@ class Glint final : public Method {
   TrainableSet new_set(
       const PointCloud& points, const InitialSurfels& initial, const DensifyConfig& densify
   ) const {
-    return TrainableSet(
-        points,
-        initial,
-        {.rates = windows_.rates,
-         .densify = densify,
-         .extent = scene_->spatial_scale,
-         .training_views = scene_->train.size()}
-    );
+    return TrainableSet(points, initial, training_on(*scene_, windows_.rates, densify));
   }
   void set_up_losses() {
     warnings_.clear();

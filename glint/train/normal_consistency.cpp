@@ -7,12 +7,6 @@
 
 namespace glint {
 
-namespace {
-
-constexpr std::size_t kGrain = 1024;  // pixels a block
-
-}  // namespace
-
 double NormalConsistencyLoss::evaluate(
     const Camera& camera,
     const Image& normal,
@@ -25,26 +19,7 @@ double NormalConsistencyLoss::evaluate(
 ) {
   if (!pixel_weight.empty())
     check_fits("weights of normal consistency", pixel_weight, depth.size(), 1);
-  const Unprojector unproject = unprojector(camera, depth);
-  const auto num_pixels = static_cast<double>(depth.num_pixels());
-  fit(dL_dx_, depth.size(), 3);
-  fit(dL_dy_, depth.size(), 3);
-  const NormalConsistencyAt loss_at{
-      unproject,
-      normal,
-      alpha,
-      pixel_weight,
-      weight / static_cast<float>(depth.num_pixels()),
-      dL_dnormal.ref(),
-      dL_dx_.ref(),
-      dL_dy_.ref()};
-  const double loss = sum_kernel(depth.size(), loss_at) / num_pixels;
-  run_kernel(
-      depth.num_pixels(),
-      kGrain,
-      ConsistencyDepthVjp{unproject, dL_dx_.view(), dL_dy_.view(), dL_ddepth.ref()}
-  );
-  return loss;
+  return loss_.evaluate(camera, normal, depth, alpha, pixel_weight, weight, dL_dnormal, dL_ddepth);
 }
 
 Image NormalConsistencyLoss::depth_normals(const Camera& camera, const Image& depth) {

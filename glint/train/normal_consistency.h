@@ -4,8 +4,7 @@
 // constant, m = 1 or the factors of [Xie25].
 #pragma once
 
-#include "glint/core/image.h"
-#include "glint/scene/camera.h"
+#include "glint/train/depth_normal_loss.h"
 
 namespace glint {
 
@@ -29,7 +28,7 @@ class NormalConsistencyLoss {
   static Image depth_normals(const Camera& camera, const Image& depth);
 
  private:
-  Image dL_dx_, dL_dy_;  // [H][W][3] gradients of the differences
+  DepthNormalLoss<NormalConsistencyAt> loss_;
 };
 
 }  // namespace glint

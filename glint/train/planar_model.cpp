@@ -55,14 +55,7 @@ std::vector<std::string> PlanarModel::set_up(
   initial.seed = options.seed;
   initial.extra = extra;
   const PointCloud points = initial_points(scene, windows_.random_points, options.seed);
-  set_ = TrainableSet(
-      points,
-      initial,
-      {.rates = windows_.rates,
-       .densify = windows_.densify,
-       .extent = scene.spatial_scale,
-       .training_views = scene.train.size()}
-  );
+  set_ = TrainableSet(points, initial, training_on(scene, windows_.rates, windows_.densify));
   views_ = ViewSampler(scene.train.size(), options.seed);
   return warnings;
 }

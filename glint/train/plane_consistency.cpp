@@ -3,15 +3,12 @@
 
 #include <algorithm>
 
-#include "glint/core/kernel.h"
 #include "glint/train/check_fits.h"
-#include "glint/train/normal_kernels.h"
+#include "glint/train/pixel_access.h"
 
 namespace glint {
 
 namespace {
-
-constexpr std::size_t kPixelGrain = 1024;  // pixels a block
 
 // The larger of both central differences.
 float photo_difference(const Image& rgb, int x, int y) {
@@ -50,26 +47,7 @@ double PlaneConsistencyLoss::evaluate(
     Image& dL_ddepth
 ) {
   check_fits("flatness of the photo", flatness, depth.size(), 1);
-  const Unprojector unproject = unprojector(camera, depth);
-  const auto num_pixels = static_cast<double>(depth.num_pixels());
-  fit(dL_dx_, depth.size(), 3);
-  fit(dL_dy_, depth.size(), 3);
-  const PlaneConsistencyAt loss_at{
-      unproject,
-      normal,
-      alpha,
-      flatness,
-      weight / static_cast<float>(depth.num_pixels()),
-      dL_dnormal.ref(),
-      dL_dx_.ref(),
-      dL_dy_.ref()};
-  const double loss = sum_kernel(depth.size(), loss_at) / num_pixels;
-  run_kernel(
-      depth.num_pixels(),
-      kPixelGrain,
-      ConsistencyDepthVjp{unproject, dL_dx_.view(), dL_dy_.view(), dL_ddepth.ref()}
-  );
-  return loss;
+  return loss_.evaluate(camera, normal, depth, alpha, flatness, weight, dL_dnormal, dL_ddepth);
 }
 
 }  // namespace glint

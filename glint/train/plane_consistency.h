@@ -4,8 +4,7 @@
 // the edges of the photo, where a pixel and its neighbours need not lie in one plane.
 #pragma once
 
-#include "glint/core/image.h"
-#include "glint/scene/camera.h"
+#include "glint/train/depth_normal_loss.h"
 
 namespace glint {
 
@@ -31,7 +30,7 @@ class PlaneConsistencyLoss {
   );
 
  private:
-  Image dL_dx_, dL_dy_;  // [H][W][3] gradients of the differences
+  DepthNormalLoss<PlaneConsistencyAt> loss_;
 };
 
 }  // namespace glint

@@ -9,8 +9,22 @@
 
 namespace glint {
 
+namespace fs = std::filesystem;
+
 namespace {
+
 constexpr std::size_t kGrain = 512;  // pixels a block
+
+constexpr const char* kFile = "specular_field.safetensors";
+constexpr const char* kNetwork = "field.network";
+constexpr const char* kMap = "field.map";
+constexpr const char* kStage = "stage";  // of the method, in the file's metadata
+
+}  // namespace
+
+void add_feature_channels(float rate, float spread, std::vector<ExtraChannel>& channels) {
+  for (int k = 0; k < kSpecularFeature; ++k)
+    channels.push_back({fmt::format("feature_{}", k), 0, rate, Activation::kTanh, spread});
 }
 
 std::vector<std::string> SpecularFieldConfig::notes() const {
@@ -127,21 +141,36 @@ std::vector<std::size_t> SpecularField::map_shape() const {
   return {height, 2 * height, static_cast<std::size_t>(config_.map_channels)};
 }
 
-std::vector<TensorToWrite> SpecularField::tensors(const std::string& name) const {
-  std::vector<TensorToWrite> tensors = network_.tensors(name + ".network");
-  tensors.push_back(float_tensor(name + ".map", map_shape(), map_.values));
-  return tensors;
+void SpecularField::save(const fs::path& folder, int stage) const {
+  std::vector<TensorToWrite> tensors = network_.tensors(kNetwork);
+  tensors.push_back(float_tensor(kMap, map_shape(), map_.values));
+  write_safetensors(folder / kFile, {{kStage, std::to_string(stage)}}, tensors);
 }
 
-void SpecularField::read(SafetensorsFile& file, const std::string& name) {
-  network_.read(file, name + ".network");
-  read_floats(file, name + ".map", map_shape(), map_.values);
+int SpecularField::load(const fs::path& folder, int stages) {
+  SafetensorsFile file(folder / kFile);
+  network_.read(file, kNetwork);
+  read_floats(file, kMap, map_shape(), map_.values);
   map_changed();
+  const auto stage = file.metadata().find(kStage);
+  if (stage == file.metadata().end()) return stages - 1;
+  int known = 0;
+  while (known < stages && stage->second != std::to_string(known)) ++known;
+  GLINT_CHECK(
+      known < stages,
+      kBadReference,
+      "{}: metadata: '{}' is '{}'; expected 0 to {}, the method's stages",
+      (folder / kFile).string(),
+      kStage,
+      stage->second,
+      stages - 1
+  );
+  return known;
 }
 
-void SpecularField::check_finite(const std::string& name) const {
-  map_.check_finite(name + " map");
-  network_.parameters().check_finite(name + " network");
+void SpecularField::check_finite() const {
+  map_.check_finite("field map");
+  network_.parameters().check_finite("field network");
 }
 
 }  // namespace glint

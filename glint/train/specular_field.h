@@ -4,8 +4,11 @@
 // network. Shared by deferred methods; what they make of the network's outputs is theirs.
 #pragma once
 
+#include <filesystem>
+
 #include "glint/render/rasterize.h"
 #include "glint/render/spherical_lookup.h"
+#include "glint/scene/surfels.h"
 #include "glint/train/mlp.h"
 #include "glint/train/specular_field_kernels.h"
 
@@ -34,6 +37,10 @@ struct SpecularFieldConfig {
   }
 };
 
+// The surfels' features that the network is given, behind `channels`; raw values start at random
+// around zero.
+void add_feature_channels(float rate, float spread, std::vector<ExtraChannel>& channels);
+
 class SpecularField {
  public:
   SpecularField() = default;
@@ -60,11 +67,12 @@ class SpecularField {
   Mlp& network() { return network_; }
   void map_changed() { lookup_.set_texels(map_.values); }
 
-  // Borrow what is trained.
-  std::vector<TensorToWrite> tensors(const std::string& name) const;
-  // Errors (kBadReference): other sizes than the config's.
-  void read(SafetensorsFile& file, const std::string& name);
-  void check_finite(const std::string& name) const;
+  // A file of a run's folder, beside it the stage that the method had come to.
+  void save(const std::filesystem::path& folder, int stage) const;
+  // Returns the stage, the last where the file says none. Errors (kBadReference): other sizes than
+  // the config's, not one of `stages`.
+  int load(const std::filesystem::path& folder, int stages);
+  void check_finite() const;
 
  private:
   std::vector<std::size_t> map_shape() const;

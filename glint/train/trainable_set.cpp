@@ -5,6 +5,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
+#include "glint/scene/scene.h"
 #include "glint/train/opacity_penalty_kernels.h"
 
 namespace glint {
@@ -33,6 +34,16 @@ Array<std::uint32_t> count_observations(
 }
 
 }  // namespace
+
+SetTraining training_on(
+    const Scene& scene, const SurfelRates& rates, const DensifyConfig& densify
+) {
+  return {
+      .rates = rates,
+      .densify = densify,
+      .extent = scene.spatial_scale,
+      .training_views = scene.train.size()};
+}
 
 TrainableSet::TrainableSet(SurfelCloud cloud, const SetTraining& training)
     : SurfelSet(std::move(cloud)),

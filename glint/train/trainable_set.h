@@ -14,6 +14,8 @@
 
 namespace glint {
 
+struct Scene;
+
 struct SetTraining {
   SurfelRates rates;
   DensifyConfig densify;
@@ -21,6 +23,7 @@ struct SetTraining {
   std::uint64_t seed = 0;          // of density control
   std::size_t training_views = 0;  // of the scene, for the holiday of pruning; 0: not known
 };
+SetTraining training_on(const Scene& scene, const SurfelRates& rates, const DensifyConfig& densify);
 
 class TrainableSet final : public SurfelSet {
  public:

@@ -38,6 +38,26 @@ Vec4f wall_rotation(int axis, Rng& rng) {
   return {q.w, q.x + 0.05f * rng.normal(), q.y + 0.05f * rng.normal(), q.z + 0.3f * rng.normal()};
 }
 
+// Random colours, with every prior that a method asks for; its middle is glass.
+View perf_view(const std::string& name, const Vec3d& eye, const PerfOptions& options) {
+  const int width = options.width, height = options.height;
+  View view;
+  view.name = name;
+  view.camera = look_at(eye, {0, 0, 2}, {0, -1, 0}, {width, height}, 75);
+  view.rgb = Image(width, height, 3);
+  Rng rng(2);
+  for (float& value : view.rgb.values()) value = rng.uniform(0.3f, 0.6f);
+  Image& normal = view.priors["normal"] = Image(width, height, 3);
+  for (std::size_t i = 0; i < normal.num_pixels(); ++i) normal.data()[3 * i + 2] = -1;
+  Image& depth = view.priors["depth"] = Image(width, height, 1);
+  for (float& value : depth.values()) value = rng.uniform(0.2f, 0.8f);
+  view.priors["albedo"] = view.priors["basecolor"] = Image(width, height, 3, 0.3f);
+  Image& glass = view.priors["glass"] = Image(width, height, 1);
+  for (int y = 0; y < height; ++y)
+    for (int x = width / 4; x < width - width / 4; ++x) glass.at(x, y) = 1;
+  return view;
+}
+
 }  // namespace
 
 SurfelCloud perf_cloud(const PerfOptions& options) {
@@ -71,21 +91,8 @@ Scene perf_scene(const PerfOptions& options) {
   scene.spatial_scale = 2.5f;
   scene.bounds_min = -1.0f * kHalfRoom;
   scene.bounds_max = kHalfRoom;
-  View view;
-  view.name = "0";
-  view.camera =
-      look_at({0.5, 0.2, -2.2}, {0, 0, 2}, {0, -1, 0}, {options.width, options.height}, 75);
-  view.rgb = Image(options.width, options.height, 3);
-  Rng rng(2);
-  for (float& value : view.rgb.values()) value = rng.uniform(0.3f, 0.6f);
-  view.priors["normal"] = Image(options.width, options.height, 3);
-  for (std::size_t i = 0; i < view.priors["normal"].num_pixels(); ++i)
-    view.priors["normal"].data()[3 * i + 2] = -1;
-  view.priors["depth"] = Image(options.width, options.height, 1);
-  for (float& value : view.priors["depth"].values()) value = rng.uniform(0.2f, 0.8f);
-  view.priors["albedo"] = Image(options.width, options.height, 3, 0.3f);
-  view.priors["basecolor"] = view.priors["albedo"];
-  scene.train.push_back(std::move(view));
+  scene.train.push_back(perf_view("0", {0.5, 0.2, -2.2}, options));
+  scene.train.push_back(perf_view("1", {0.7, 0.2, -2.2}, options));
   const SurfelCloud cloud = perf_cloud(options);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     scene.points.positions.push_back(

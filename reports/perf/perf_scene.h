@@ -8,8 +8,8 @@
 
 namespace glint {
 
-// One training view of random colours; surfels as trained ones: most opaque, some faint,
-// overlapping.
+// Two training views, 20 cm apart, each other's neighbours for losses of two views; surfels as
+// trained ones: most opaque, some faint, overlapping.
 Scene perf_scene(const PerfOptions& options);
 SurfelCloud perf_cloud(const PerfOptions& options);
 

@@ -89,7 +89,10 @@ void write_perf_sets(const Method& method, const fs::path& folder, const PerfOpt
   }
 }
 
-// Whole steps of a method in mid-training (all sets and losses, SH degree 3), without
+// Of 30000: every set, loss and network of every method has started, none is frozen yet.
+constexpr int kLateIteration = 19000;
+
+// Whole steps of a method late in training (all sets and losses, SH degree 3), without
 // densification, every set with the same surfels as the ops.
 PerfCase step_case(
     const std::string& name, const std::string& id, Json config, const PerfOptions& options
@@ -97,7 +100,7 @@ PerfCase step_case(
   struct State {
     Scene scene;
     std::unique_ptr<Method> method;
-    int iteration = 15000;
+    int iteration = kLateIteration;
   };
   const auto s = std::make_shared<State>();
   s->scene = perf_scene(options);

@@ -220,10 +220,8 @@ TEST_CASE("Reflections come back from a file with the same bytes") {
   f.gradient();
   f.field.step(1);
   const TempFolder folder;
-  const fs::path file = folder.path() / "field.safetensors";
-  write_safetensors(file, {}, f.field.tensors("field"));
-  SafetensorsFile in(file);
-  other.field.read(in, "field");
+  f.field.save(folder.path(), 1);
+  CHECK(other.field.load(folder.path(), 2) == 1);
   CHECK(
       other.field.forward(other.camera, other.surface, kWhere) ==
       f.field.forward(f.camera, f.surface, kWhere)
@@ -231,5 +229,16 @@ TEST_CASE("Reflections come back from a file with the same bytes") {
   SpecularFieldConfig larger = small_config();
   larger.map_height = 16;
   SpecularField wrong(larger, {0, 0}, 1);
-  CHECK_THROWS_WITH(wrong.read(in, "field"), Catch::Contains("field.map"));
+  CHECK_THROWS_WITH(wrong.load(folder.path(), 2), Catch::Contains("field.map"));
+}
+
+TEST_CASE("A stage that the method does not have is an error that names file and stages") {
+  Fixture f(1);
+  const TempFolder folder;
+  f.field.save(folder.path(), 3);
+  CHECK_THROWS_WITH(
+      f.field.load(folder.path(), 3),
+      Catch::Contains("specular_field.safetensors") && Catch::Contains("'stage' is '3'") &&
+          Catch::Contains("expected 0 to 2")
+  );
 }
