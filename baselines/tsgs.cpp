@@ -38,6 +38,7 @@ namespace {
 
 constexpr const char* kSceneFile = "scene_unit.json";
 
+constexpr const char* kBaseColor = "basecolor";
 constexpr const char* kLobesFile = "lobes.safetensors";
 constexpr const char* kNoLobes = "off";
 bool is_kind_of_lobes(std::string_view kind) {
@@ -49,6 +50,8 @@ struct TsgsConfig {
   float lambda_normal = 0.1f, min_cosine = 0.3f;
   int gate_from = 3000, normal_until = 30000;
   bool delighted = true;
+  // Or "basecolor", on whose maps glass is as opaque as on the best de-lighted photo.
+  std::string delighted_by = "delighted";
   int photo_from = 15000;
   bool freeze_opacity = true;
   float surface_window = 0.03f;  // published scene units
@@ -66,6 +69,7 @@ struct TsgsConfig {
     v("gate_from", gate_from, "first published iteration of the normal prior's gate");
     v("normal_until", normal_until, "last published iteration of the normal prior, exclusive");
     v("delighted", delighted, "glass is compared with the de-lighted photo first");
+    v("delighted_by", delighted_by, "prior that is the de-lighted photo: delighted or basecolor");
     v("photo_from", photo_from, "first published iteration with the photo everywhere");
     v("freeze_opacity", freeze_opacity, "opacities stay from then on");
     v("surface_window", surface_window, "of depths of the first surface, published scene units");
@@ -79,8 +83,17 @@ struct TsgsConfig {
       *window = scaled_step(*window, iterations);
     lobe_rates = lobe_rates.for_shorter_run(30000.0 / iterations);
   }
-  // Errors (kUsage): no such lobes; surfels would come or go under their features.
+  MapId delighted_map() const {
+    return delighted_by == kBaseColor ? MapId("basecolor") : MapId("delighted");
+  }
+  // Errors (kUsage): no such prior or lobes; surfels would come or go under their features.
   void check() const {
+    GLINT_CHECK(
+        delighted_by == "delighted" || delighted_by == kBaseColor,
+        kUsage,
+        "tsgs: delighted_by cannot be '{}'; expected delighted or basecolor",
+        delighted_by
+    );
     GLINT_CHECK(
         is_kind_of_lobes(lobes),
         kUsage,
@@ -115,14 +128,16 @@ class Tsgs final : public Method {
     scene_unit_ = model_.scene_unit();
     require_prior(scene, "normal", "L_normal", "tsgs", windows_.lambda_normal, warnings_);
     float wanted = config_.delighted ? 1.0f : 0.0f;
-    require_prior(scene, "delighted", "the de-lighted target", "tsgs", wanted, warnings_);
+    require_prior(
+        scene, config_.delighted_map(), "the de-lighted target", "tsgs", wanted, warnings_
+    );
     windows_.delighted = wanted > 0;
     const MaskCounts masks = count_glass_masks(scene.train);
     notes_ = {"glass masks, test views' too: " + glass_mask_note(masks)};
     if (config_.delighted)
-      notes_.push_back(
-          windows_.delighted ? "de-lighted photos: the prior folder's" : "de-lighted photos: none"
-      );
+      notes_.push_back(fmt::format(
+          "de-lighted photos: {}", windows_.delighted ? config_.delighted_by + " priors" : "none"
+      ));
     if (config_.lobes != TsgsConfig{}.lobes) notes_.push_back("lobe appearance: " + config_.lobes);
     if (masks.none())
       warnings_.push_back(fmt::format(
@@ -210,7 +225,7 @@ class Tsgs final : public Method {
   const Image& target_of(const View& view, int iteration) {
     const Image& mask = glass_mask(view);
     if (!windows_.delighted || mask.empty() || iteration >= windows_.photo_from) return view.rgb;
-    const Image& delighted = view.priors["delighted"];
+    const Image& delighted = view.priors[config_.delighted_map()];
     check_fits("glass mask", mask, view.rgb.size(), 1);
     check_fits("de-lighted photo", delighted, view.rgb.size(), 3);
     fit(target_, view.rgb.size(), 3);
@@ -268,8 +283,20 @@ MethodSpec tsgs_spec() {
   return spec;
 }
 
+// GlassRoom has no de-lighted photos: here its simulated base colours take their place on glass.
+MethodSpec tsgs_basecolor_spec() {
+  MethodSpec spec = tsgs_spec();
+  spec.id = "tsgs/basecolor";
+  spec.title = "TSGS + base colour";
+  spec.paper_row = "";
+  spec.description = "TSGS with the base colour prior as its de-lighted photo";
+  spec.overrides = {{"delighted_by", kBaseColor}};
+  return spec;
+}
+
 }  // namespace
 
 GLINT_REGISTER(MethodSpec, tsgs_spec())
+GLINT_REGISTER(MethodSpec, tsgs_basecolor_spec())
 
 }  // namespace glint

@@ -87,6 +87,26 @@ FloatArray saved_opacities(const Method& method) {
 
 }  // namespace
 
+TEST_CASE("Base colours take the place of de-lighted photos where asked for") {
+  Scene dark = half_glass(1), light = half_glass(0);  // whose de-lighted photos say otherwise
+  for (View& view : dark.train)
+    view.priors["basecolor"] = Image(view.camera.width, view.camera.height, 3, 0.0f);
+  for (View& view : light.train)
+    view.priors["basecolor"] = Image(view.camera.width, view.camera.height, 3, 1.0f);
+  const auto mean_after = [&](const Scene& scene) {
+    auto method = create_method("tsgs/basecolor");
+    method->initialize(scene, {240, 0});
+    for (int i = 0; i < 110; ++i) method->step(i);
+    CHECK(method->notes().at(1) == "de-lighted photos: basecolor priors");
+    return mean_of_left_half(method->render(scene.train[0].camera)["rgb"]);
+  };
+  CHECK(mean_after(light) > mean_after(dark) + 0.15);
+  CHECK_THROWS_WITH(
+      create_method("tsgs", {{"delighted_by", "albedo"}}),
+      Catch::Contains("delighted_by cannot be 'albedo'")
+  );
+}
+
 TEST_CASE("Notes say whose glass masks were used: the priors', else the truth's, else none") {
   Scene scene = small_room();
   CHECK(first_note(scene) == "glass masks, test views' too: the dataset's ground truth");
