@@ -79,18 +79,21 @@ class GridDrawing {
   double pixels_per_point() const { return pixels_ / column_; }
 
   double height() const {
-    double height = 2 * kMargin + titles_baseline_ + below_ + kGap;
-    for (const double row : rows_) height += row + kGap;
+    double height = 2 * kMargin + static_cast<double>(num_bands_) * band_height();
     for (const LegendLine& line : grid_.legend) height += height_of(line);
     return height;
   }
 
   void draw(Canvas& canvas) const {
-    draw_titles(canvas);
-    double top = kMargin + titles_baseline_ + below_ + kGap;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      draw_row(canvas, i, top);
-      top += rows_[i] + kGap;
+    double top = kMargin;
+    for (std::size_t band = 0; band < num_bands_; ++band) {
+      draw_titles(canvas, band, top);
+      double row_top = top + titles_height();
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        draw_row(canvas, band, i, row_top);
+        row_top += rows_[i] + kGap;
+      }
+      top += band_height();
     }
     for (const LegendLine& line : grid_.legend) {
       draw_legend(canvas, line, top);
@@ -106,11 +109,24 @@ class GridDrawing {
     return bar_left_ + width_of(line.bar) + rest;
   }
 
+  double titles_height() const { return titles_baseline_ + below_ + kGap; }
+  double band_height() const {
+    double height = titles_height();
+    for (const double row : rows_) height += row + kGap;
+    return height;
+  }
+
   double columns_width() const {
     return row_titles_ + static_cast<double>(num_columns_) * (column_ + kGap) - kGap;
   }
   double left_of(std::size_t column) const {
-    return kMargin + row_titles_ + static_cast<double>(column) * (column_ + kGap);
+    return kMargin + row_titles_ + static_cast<double>(column % num_columns_) * (column_ + kGap);
+  }
+  // Calls f(column) for a band's columns among `count`.
+  template <class F>
+  void for_columns(std::size_t band, std::size_t count, F&& f) const {
+    const std::size_t end = std::min((band + 1) * num_columns_, count);
+    for (std::size_t column = band * num_columns_; column < end; ++column) f(column);
   }
 
   // As wide as the page leaves room for, but not so wide that letters have few pixels.
@@ -123,9 +139,18 @@ class GridDrawing {
     if (pixels_ == 0) pixels_ = kMinPanelWidth;
     for (const std::string& title : grid_.row_titles)
       row_titles_ = std::max(row_titles_, measure_text(title, row_style()).width + kTextGap);
+    if (grid_.bands) fold_columns();
     const auto count = static_cast<double>(num_columns_);
     const double fit = (kPageWidth - 2 * kMargin - row_titles_ - (count - 1) * kGap) / count;
     column_ = std::min(std::max(fit, kMinColumn), std::max(kMinColumn, pixels_ / kPixelsPerPoint));
+  }
+
+  // As few bands as the page's width allows, each with about as many columns.
+  void fold_columns() {
+    const double room = kPageWidth - 2 * kMargin - row_titles_ + kGap;
+    const auto most = static_cast<std::size_t>(std::max(1.0, room / (kMinColumn + kGap)));
+    num_bands_ = (num_columns_ + most - 1) / most;
+    num_columns_ = (num_columns_ + num_bands_ - 1) / num_bands_;
   }
 
   void measure_rows() {
@@ -142,23 +167,24 @@ class GridDrawing {
   static TextStyle row_style() { return wrapped(kRowTitle, kMaxRowTitle); }
 
   // The last lines of all titles stand side by side.
-  void draw_titles(Canvas& canvas) const {
+  void draw_titles(Canvas& canvas, std::size_t band, double top) const {
     const TextStyle style = wrapped(kTitle, column_);
-    for (std::size_t i = 0; i < grid_.titles.size(); ++i) {
+    for_columns(band, grid_.titles.size(), [&](std::size_t i) {
       const double last = measure_text(grid_.titles[i], style).last_baseline;
       canvas.text(
-          grid_.titles[i], {left_of(i) + column_ / 2, kMargin + titles_baseline_ - last}, style
+          grid_.titles[i], {left_of(i) + column_ / 2, top + titles_baseline_ - last}, style
       );
-    }
+    });
   }
 
-  void draw_row(Canvas& canvas, std::size_t row, double top) const {
+  void draw_row(Canvas& canvas, std::size_t band, std::size_t row, double top) const {
     if (row < grid_.row_titles.size()) {
       const double height = measure_text(grid_.row_titles[row], row_style()).height;
       canvas.text(grid_.row_titles[row], {kMargin, top + (rows_[row] - height) / 2}, row_style());
     }
-    for (std::size_t i = 0; i < grid_.rows[row].size(); ++i)
+    for_columns(band, grid_.rows[row].size(), [&](std::size_t i) {
       draw_panel(canvas, grid_.rows[row][i], {left_of(i), top, column_, rows_[row]});
+    });
   }
 
   void draw_panel(Canvas& canvas, const Image& panel, Box box) const {
@@ -191,7 +217,7 @@ class GridDrawing {
   }
 
   PictureGrid grid_;
-  std::size_t num_columns_ = 0;
+  std::size_t num_columns_ = 0, num_bands_ = 1;     // columns of a band
   int pixels_ = 0;                                  // width of a panel
   double column_ = 0, row_titles_ = 0, width_ = 0;  // points
   double titles_baseline_ = 0, below_ = 0;          // of the titles: last baseline, from there on

@@ -32,6 +32,7 @@ struct PictureGrid {
   std::vector<std::vector<Image>> rows;  // panels [h][w][1 or 3]; empty: "missing"
   std::vector<LegendLine> legend;
   std::vector<std::string> row_titles = {};  // left of the rows, '\n' between lines; none: no room
+  bool bands = false;  // columns that do not fit the page stand below the others, all rows of them
 };
 
 Image fit_panel(const Image& panel);

@@ -17,6 +17,11 @@ std::size_t glass_pixels(const View& view) {
   }));
 }
 
+bool is_shown(const std::string& scene, const FigureView& shown) {
+  const auto matches = [&](const std::string& glob) { return glob_match(glob, scene); };
+  return shown.scenes.empty() || std::any_of(shown.scenes.begin(), shown.scenes.end(), matches);
+}
+
 struct Truth {
   Scene scene;
   fs::path folder;
@@ -37,12 +42,42 @@ std::optional<Truth> load_truth(const PageScene& scene, const FigureOptions& opt
   return std::nullopt;
 }
 
-FigureScene figure_scene(const PageScene& scene, const Truth& truth) {
+const View& shown_view(const Scene& data, const std::string& name) {
+  if (name.empty()) return data.test[figure_view(data.test)];
+  std::string names;
+  for (const View& view : data.test) {
+    if (view.name == name) return view;
+    names += (names.empty() ? "" : ", ") + view.name;
+  }
+  throw Error(
+      ExitCode::kUsage, fmt::format("{} has no test view {}; it has {}", data.name, name, names)
+  );
+}
+
+void check_inside(const Crop& crop, const Camera& camera, const std::string& scene) {
+  GLINT_CHECK(
+      crop.left + crop.width <= camera.width && crop.top + crop.height <= camera.height,
+      kUsage,
+      "crop {},{},{},{} reaches out of the views of {}, which have {}x{} pixels",
+      crop.left,
+      crop.top,
+      crop.width,
+      crop.height,
+      scene,
+      camera.width,
+      camera.height
+  );
+}
+
+FigureScene figure_scene(const PageScene& scene, const Truth& truth, const FigureView& shown) {
   const Scene& data = truth.scene;
-  const View& view = data.test[figure_view(data.test)];
+  const View& view = shown_view(data, shown.view);
+  for (const Crop& crop : shown.crops) check_inside(crop, view.camera, scene.name);
   FigureScene result;
   result.name = scene.name;
   result.view = view.name;
+  result.chosen_view = !shown.view.empty();
+  result.crops = shown.crops;
   result.glass = mask_of_map(view.truth["glass"]);
   result.truth = true_layers(view);
   result.data = truth.folder;
@@ -74,16 +109,24 @@ LegendLine views_line(const std::vector<FigureScene>& scenes) {
   std::string views;
   for (const FigureScene& scene : scenes)
     views += fmt::format("{}{} of {}", views.empty() ? "" : ", ", scene.view, scene.name);
-  return {fmt::format("views: {} ({})", views, kViewRule)};
+  const bool chosen = !scenes.empty() && scenes.front().chosen_view;
+  return {chosen ? "views: " + views : fmt::format("views: {} ({})", views, kViewRule)};
 }
 
 std::vector<FigureScene> figure_scenes(
     const std::vector<Record>& records, const FigureOptions& options
 ) {
   std::vector<FigureScene> scenes;
-  for (const PageScene& scene : page_scenes(records, options.folder))
+  std::string names;
+  bool any_shown = false;
+  for (const PageScene& scene : page_scenes(records, options.folder)) {
+    names += (names.empty() ? "" : ", ") + scene.name;
+    if (!is_shown(scene.name, options.shown)) continue;
+    any_shown = true;
     if (const auto truth = load_truth(scene, options); truth && !truth->scene.test.empty())
-      scenes.push_back(figure_scene(scene, *truth));
+      scenes.push_back(figure_scene(scene, *truth, options.shown));
+  }
+  GLINT_CHECK(any_shown || names.empty(), kUsage, "no such scene: the records are of {}", names);
   return scenes;
 }
 

@@ -14,6 +14,8 @@ namespace glint {
 
 struct FigureScene {
   std::string name, view;
+  bool chosen_view = false;  // by FigureView, not by kViewRule
+  std::vector<Crop> crops;   // of FigureView
   DepthScale scale;
   MaskImage glass;                           // empty: the data have none
   LayerMaps truth;                           // ids of page_layers()
@@ -29,10 +31,11 @@ inline constexpr const char* kViewRule = "the test view with the largest share o
 // The view after kViewRule, the first of equals; without glass the middle one.
 std::size_t figure_view(const std::vector<View>& views);
 
-// "views: 0002 of room_1, ...", and the rule.
+// "views: 0002 of room_1, ...", and the rule that chose them.
 LegendLine views_line(const std::vector<FigureScene>& scenes);
 
-// Scenes whose data can be loaded, in the order of the records; others with a warning.
+// Scenes whose data can be loaded, in the order of the records; others with a warning. Errors
+// (kUsage): what FigureView asks for is not there.
 std::vector<FigureScene> figure_scenes(
     const std::vector<Record>& records, const FigureOptions& options
 );

@@ -9,21 +9,31 @@
 
 #include "glint/core/files.h"
 #include "glint/core/service.h"
+#include "reports/figures/map_crops.h"
 #include "reports/records/run_folder.h"
 
 namespace glint {
+
+// What pictures show in place of what their rules choose.
+struct FigureView {
+  std::vector<std::string> scenes = {};  // globs; none: all
+  std::string view = {};                 // name of a test view; empty: kViewRule
+  std::vector<Crop> crops = {};          // pixels of the view; none: choose_crops()
+};
 
 struct FigureOptions {
   fs::path folder;                            // OUT/PROFILE with records.jsonl and runs/
   std::function<Scene(const RunSpec&)> load;  // the data that a run was scored against
   std::vector<std::string> methods = {};      // MethodChoice
+  FigureView shown = {};
 };
 
 // FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves, f1,
 // meshes}.png, each with a PDF beside it; returns the PNGs of those that have something to show.
 // What is absent inside a figure says "missing"; scenes without data are left out of figures with
 // maps, with a warning.
-// Errors: those of read_records(), kEnvironment (disk).
+// Errors: those of read_records(), kUsage (no such scene or test view, a crop outside the view),
+// kEnvironment (disk).
 inline constinit Service<std::vector<fs::path>(const FigureOptions&)> write_figures{
     "drawing figures", "use the full build"};
 

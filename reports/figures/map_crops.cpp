@@ -2,7 +2,9 @@
 #include "reports/figures/map_crops.h"
 
 #include <algorithm>
+#include <cstdio>
 
+#include "glint/core/error.h"
 #include "glint/drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
 
@@ -14,6 +16,8 @@ constexpr int kCropParts = 4;   // a crop is this part of the picture's width an
 constexpr int kCropSteps = 24;  // places tried along each side
 constexpr int kOutline = 2;     // pixels
 constexpr std::array<float, 3> kOnGlass{1.0f, 0.55f, 0.0f}, kOffGlass{0.2f, 0.75f, 1.0f};
+constexpr std::array<std::array<float, 3>, kMaxCrops> kChosen{
+    kOnGlass, kOffGlass, {0.35f, 0.85f, 0.3f}};
 constexpr std::array<float, 3> kBlack{};
 
 // Summed over the methods, 0 where a pixel does not count; whether any does.
@@ -60,6 +64,23 @@ void draw_border(Image& picture, const Crop& box, int inset, int thickness, cons
 }
 
 }  // namespace
+
+Crop parse_crop(const std::string& text, std::size_t index) {
+  GLINT_CHECK(index < kMaxCrops, kUsage, "--crop {}: at most {} crops fit", text, kMaxCrops);
+  Crop crop;
+  char end = 0;
+  const int read = std::sscanf(
+      text.c_str(), "%d,%d,%d,%d%c", &crop.left, &crop.top, &crop.width, &crop.height, &end
+  );
+  GLINT_CHECK(
+      read == 4 && crop.left >= 0 && crop.top >= 0 && crop.width > 0 && crop.height > 0,
+      kUsage,
+      "--crop {}: expected x,y,width,height in pixels of the view, such as 40,20,32,18",
+      text
+  );
+  crop.color = kChosen[index];
+  return crop;
+}
 
 std::optional<Crop> crop_of_errors(
     const std::vector<const Image*>& errors, const MaskImage& glass, bool on_glass

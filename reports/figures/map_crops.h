@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "glint/core/image.h"
@@ -14,6 +15,12 @@ struct Crop {
   int left = 0, top = 0, width = 0, height = 0;
   std::array<float, 3> color{};  // of its outline
 };
+
+inline constexpr std::size_t kMaxCrops = 3;  // of one picture
+
+// "x,y,width,height" of a window in pixels, `index` chooses its colour. Errors (kUsage): not four
+// whole numbers, an empty window, kMaxCrops or more before it.
+Crop parse_crop(const std::string& text, std::size_t index);
 
 // The window of a quarter of the width and height with the largest sum of `errors` ([H][W][1] of
 // each method, of one size) over the pixels on glass, or over the others. `glass` empty: there is

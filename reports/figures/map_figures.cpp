@@ -55,6 +55,7 @@ std::set<std::string> methods_with(
 }
 
 std::vector<Crop> crops_of(const FigureScene& scene, const std::set<std::string>& methods) {
+  if (!scene.crops.empty()) return scene.crops;
   std::vector<const Image*> errors;
   for (const std::string& method : methods)
     if (const LayerMaps* maps = maps_of(scene, method); has(maps, "error"))
@@ -202,9 +203,10 @@ PictureGrid qualitative_figure(const std::vector<FigureScene>& scenes) {
   for (const std::string& method : methods) grid.titles.push_back(method_title(method));
   for (const FigureScene& scene : scenes) add_qualitative_rows(grid, scene, methods);
   grid.legend = legend_of(scenes, true);
-  grid.legend.push_back(
-      {"crops: where the methods together err most, on glass (orange) and off it (blue)"}
-  );
+  if (scenes.front().crops.empty())
+    grid.legend.push_back(
+        {"crops: where the methods together err most, on glass (orange) and off it (blue)"}
+    );
   return grid;
 }
 

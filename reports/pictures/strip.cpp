@@ -119,6 +119,7 @@ void write_strip(
     const fs::path& path, const StripPlan& plan, const std::vector<const View*>& views
 ) {
   PictureGrid grid{titles_of(plan), {}, legend_of(plan, views)};
+  grid.bands = true;
   for (const View* view : views) grid.rows.push_back(row_of(plan, *view));
   write_png(path, draw_image(draw_grid(std::move(grid))));
 }

@@ -6,10 +6,18 @@ namespace glint {
 
 namespace {
 
-int run_figures(const CommonOptions& common, const std::vector<std::string>& methods) {
+struct FigureChoice {
+  std::vector<std::string> methods, crops;
+  FigureView shown;
+};
+
+int run_figures(const CommonOptions& common, const FigureChoice& choice) {
   const fs::path folder = folder_with_records(common);
+  FigureView shown = choice.shown;
+  for (const std::string& crop : choice.crops)
+    shown.crops.push_back(parse_crop(crop, shown.crops.size()));
   Json json = {{"figures", Json::array()}};
-  for (const fs::path& path : write_figures({folder, load_run_data, methods})) {
+  for (const fs::path& path : write_figures({folder, load_run_data, choice.methods, shown})) {
     json["figures"].push_back(path.string());
     if (!common.json) print_text(path.string() + "\n");
   }
@@ -18,17 +26,22 @@ int run_figures(const CommonOptions& common, const std::vector<std::string>& met
 }
 
 void add_figures_verb(CommandLine& line) {
-  const auto methods = std::make_shared<std::vector<std::string>>();
+  const auto choice = std::make_shared<FigureChoice>();
   CLI::App* verb = line.add_verb(
       line.app,
       "figures",
       "write OUT/PROFILE/figures/*.png and *.pdf",
-      [&line, methods] { return run_figures(line.common, *methods); }
+      [&line, choice] { return run_figures(line.common, *choice); }
   );
   verb->add_option(
-          "--methods", *methods, "globs of the methods to show, such as 2dgs,glint,*/prior"
+          "--methods", choice->methods, "globs of the methods to show, such as 2dgs,glint,*/prior"
   )
       ->delimiter(',');
+  verb->add_option("--scene", choice->shown.scenes, "globs of the scenes to show")->delimiter(',');
+  verb->add_option("--view", choice->shown.view, "name of the test view to show");
+  verb->add_option(
+      "--crop", choice->crops, "x,y,width,height of a closer look, pixels of the view; up to three"
+  );
 }
 
 }  // namespace

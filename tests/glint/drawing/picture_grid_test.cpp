@@ -56,6 +56,25 @@ TEST_CASE("a grid is as wide as a page, narrower of few pixels, wider of many co
   CHECK(width(14, 480) > 700);
 }
 
+TEST_CASE("in bands, columns that do not fit the page stand below the others") {
+  const auto drawn = [](std::size_t columns, bool bands) {
+    PictureGrid grid{std::vector<std::string>(columns, "title"), {}, {}};
+    for (int row = 0; row < 2; ++row) grid.rows.emplace_back(columns, Image(480, 240, 3, 0.75f));
+    grid.bands = bands;
+    return draw_grid(std::move(grid));
+  };
+  CHECK(drawn(8, true).height == Approx(drawn(8, false).height));
+  const Drawing folded = drawn(18, true);  // three bands of six
+  CHECK(folded.width == Approx(504));
+  CHECK(folded.height == Approx(3 * drawn(6, false).height).epsilon(0.04));  // margins once
+  const Image picture = draw_image(folded);
+  double panels = 0;  // no panel is lost or covered
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = 0; x < picture.width(); ++x)
+      panels += std::abs(picture.at(x, y, 0) - 0.75f) < 0.01f;
+  CHECK(panels == Approx(36 * 480 * 240).epsilon(0.02));
+}
+
 TEST_CASE("titles of rows stand left of the panels, long ones are broken") {
   PictureGrid grid = one_panel();
   const Drawing plain = draw_grid(grid);

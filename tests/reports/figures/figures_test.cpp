@@ -195,6 +195,37 @@ TEST_CASE("the view with the most glass is shown, without glass the middle one")
   CHECK(figure_view(views) == 0);
 }
 
+TEST_CASE("scene, view and crops can be chosen, and wrong ones are named") {
+  const test::TempFolder folder;
+  add_run(folder.path(), "2dgs", 0.4f);
+  const auto records = read_records(folder.path() / "records.jsonl");
+  FigureOptions options{folder.path(), load_fake};
+  const std::string last = fake_scene("room_1").test.back().name;
+  options.shown = {{"room_*"}, last, {parse_crop("2,3,4,5", 0)}};
+  const auto scenes = figure_scenes(records, options);
+  REQUIRE(scenes.size() == 1);
+  CHECK(scenes[0].view == last);
+  CHECK(scenes[0].crops.at(0).top == 3);
+  CHECK(views_line(scenes).text == "views: " + last + " of room_1");
+  const auto grid = qualitative_figure(scenes);
+  CHECK(grid.legend.back().text.find("crops:") == std::string::npos);
+  options.shown = {{"room_9"}};
+  CHECK_THROWS_WITH(figure_scenes(records, options), "no such scene: the records are of room_1");
+  options.shown = {{}, "view_x"};
+  CHECK_THROWS_WITH(
+      figure_scenes(records, options), Catch::StartsWith("room_1 has no test view view_x; it has ")
+  );
+  options.shown = {{}, "", {parse_crop("10,0,7,2", 0)}};
+  CHECK_THROWS_WITH(figure_scenes(records, options), Catch::Contains("reaches out of the views"));
+}
+
+TEST_CASE("a crop is four whole numbers, and three of them fit") {
+  CHECK(parse_crop("1,2,3,4", 2).height == 4);
+  for (const char* wrong : {"", "1,2,3", "1,2,3,4,5", "1,2,0,4", "-1,2,3,4", "1,2,3,4x"})
+    CHECK_THROWS_WITH(parse_crop(wrong, 0), Catch::Contains("expected x,y,width,height"));
+  CHECK_THROWS_WITH(parse_crop("1,2,3,4", 3), Catch::Contains("at most 3"));
+}
+
 TEST_CASE("crops are where the methods together err most, on glass and off it") {
   Image first(48, 32, 1), second(48, 32, 1);
   MaskImage glass(48, 32, 1, 0);

@@ -78,7 +78,8 @@ TEST_CASE("strips of a run are written for each view and for the run, alike in w
     CHECK(one.width() == all.width());
     CHECK(one.height() < all.height());
   }
-  CHECK(all.width() >= kMinPanelWidth * static_cast<int>(strip_titles(run.path(), views).size()));
+  CHECK(all.width() < 9 * kMinPanelWidth);  // a page has eight columns at most
+  CHECK(strip_titles(run.path(), views).size() > 9);
 }
 
 TEST_CASE("errors are shown with the gain that the strip prints") {
