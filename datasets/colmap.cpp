@@ -131,10 +131,13 @@ std::string split_views(const fs::path& list, int test_every, std::vector<ViewSo
   return "sparse/0/test.txt";
 }
 
+// Empty: none; also where points3D.bin is there, as the format asks, and holds no point.
 fs::path find_points(const fs::path& model) {
   std::error_code code;
   for (const char* name : {"points3D.bin", "points3D.txt", "points3D.ply"})
-    if (fs::exists(model / name, code)) return model / name;
+    if (const fs::path path = model / name; fs::exists(path, code))
+      return path.extension() == ".bin" && read_file(path) == std::string(8, '\0') ? fs::path()
+                                                                                   : path;
   return {};
 }
 

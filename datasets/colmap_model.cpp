@@ -128,8 +128,7 @@ PointCloud read_binary_points(const fs::path& path) {
     Vec3d position;
     for (int c = 0; c < 3; ++c) position[c] = file.get<double>("a point");
     Vec3f color;
-    for (int c = 0; c < 3; ++c)
-      color[c] = static_cast<float>(file.get<std::uint8_t>("a point"));
+    for (int c = 0; c < 3; ++c) color[c] = static_cast<float>(file.get<std::uint8_t>("a point"));
     file.get<double>("a point");
     file.skip(file.count(8, "the length of a point's track"), 8);
     points.positions.push_back(cast<float>(position));

@@ -114,9 +114,10 @@ void write(ExportInput& input, const fs::path& folder, ExportReport& report) {
     report.note(
         "principal points are not in the middle: gsplat uses them, 3DGS and 2DGS take the middle"
     );
-  report.note(
-      "points have no tracks: gsplat's --depth_loss finds none (its other options do not ask)"
-  );
+  if (!points.positions.empty())
+    report.note(
+        "points have no tracks: gsplat's --depth_loss finds none (its other options do not ask)"
+    );
 }
 
 }  // namespace

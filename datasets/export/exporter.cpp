@@ -105,7 +105,9 @@ void add_scene_notes(const ExportInput& input, ExportReport& report) {
   if (renamed)
     report.note("files are not called as the views: renders go back by the order of test views");
   if (scene.points.positions.empty())
-    report.note("the scene has no points: trainers have to start from random ones");
+    report.note(
+        "the scene has no points: trainers start from random ones (gsplat: --init_type random)"
+    );
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ int run_export(const CommonOptions& common, const ExportArguments& arguments, bo
 std::string list_formats() {
   std::string text;
   for (const auto& [id, exporter] : Registry<ExporterSpec>::all())
-    text += fmt::format("{}{} ({})", text.empty() ? "" : "; ", id, exporter.writes);
+    text += (text.empty() ? "" : ", ") + id;
   return text;
 }
 
@@ -77,7 +77,7 @@ void add_dataset_export(CommandLine& line, CLI::App& dataset) {
   );
   CLI::App& app = **verb;
   app.add_option("folder", arguments->folder, "dataset folder or packed scene")->required();
-  app.add_option("--format", arguments->format, list_formats())->required();
+  app.add_option("--format", arguments->format, "one of " + list_formats())->required();
   app.add_option("--split", arguments->split, "views that are written")
       ->check(CLI::IsMember({"all", "train", "test"}))
       ->capture_default_str();

@@ -44,7 +44,8 @@ TEST_CASE("Blender's folders are loaded with the split of their files") {
   CHECK(scene.dataset == "blender");
   REQUIRE(scene.train.size() == 7);
   REQUIRE(scene.test.size() == 3);
-  CHECK(scene.train[0].name == "train_r_0");  // r_0 is in both folders
+  CHECK(scene.train[0].name == "r_3");
+  CHECK(scene.train[4].name == "train_r_0");  // r_0 is in both folders
   CHECK(scene.test[1].name == "test_r_1");
   CHECK(scene.train[0].camera.fx == Approx(folder.views[0].camera.fx));
   CHECK(

@@ -170,7 +170,6 @@ TEST_CASE("every format gives back cameras, pictures, points, split and maps") {
     std::string findings;
     for (const Finding& finding : check_dataset(exported.folder))
       findings += finding.check + ": " + finding.where + ": " + finding.message + "\n";
-    // The room's few points are no start; nothing else is wrong.
     CHECK(findings == "");
     CHECK(exported.notes("split: "));
     CHECK(exported.notes("simulated"));
@@ -304,6 +303,21 @@ TEST_CASE("what 8 bits and 65 metres do not hold is said") {
   CHECK(loaded.train[2].truth["depth"].at(5, 6) == 0);
   const Exported exact("nerfstudio");
   CHECK_FALSE(exact.notes("8 bits"));
+}
+
+TEST_CASE("a scene without points and maps is exported without them") {
+  Scene scene = room();
+  scene.points = {};
+  for (std::vector<View>* views : {&scene.train, &scene.test})
+    for (View& view : *views) view.priors = view.truth = {};
+  for (const auto& [id, exporter] : Registry<ExporterSpec>::all()) {
+    INFO(id);
+    const Exported exported(id, scene);
+    CHECK(exported.notes("no points"));
+    CHECK_FALSE(exported.notes("ground truth"));
+    check_scene(scene, load_scene(exported.folder, {}), exporter);
+    CHECK(check_dataset(exported.folder).empty());
+  }
 }
 
 TEST_CASE("nerfstudio's file names depth where all views have it, and lists every split") {
