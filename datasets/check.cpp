@@ -12,7 +12,6 @@
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
 #include "glint/core/rng.h"
-#include "glint/scene/ply.h"
 
 namespace glint {
 namespace {
@@ -87,7 +86,7 @@ void check_points(const SceneIndex& index, std::vector<Finding>& findings) {
   const std::string where = index.points.string();
   PointCloud points;
   try {
-    points = read_point_ply(index.points);
+    points = read_points(index.points);
   } catch (const Error& error) {
     findings.push_back(make_finding("unreadable-file", where, error.what()));
     return;

@@ -166,7 +166,9 @@ PosedMap read_posed(const ViewSource& view, const fs::path& path, Reader&& read)
 }
 
 PosedMap read_depth(const ViewSource& view, MapId depth) {
-  return read_posed(view, view.truth[depth], [](const fs::path& p) { return read_image(p, 1); });
+  return read_posed(view, view.truth[depth], [](const fs::path& p) {
+    return read_true_values(p, MapKind::kDepth);
+  });
 }
 
 // Indices of up to kMostViews views, evenly spaced.

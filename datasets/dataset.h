@@ -41,6 +41,8 @@ struct LoaderSpec {
   std::string looks_for = {};  // e.g. "transforms.json"; listed when no loader knows a folder
   // What check_dataset() calls; empty: it only tries load().
   std::function<std::vector<Finding>(const fs::path&)> check = {};
+  // How it chooses the test views of a folder, in words; empty: they come with the data.
+  std::function<std::string(const fs::path&)> split_rule = {};
   std::string source = {};  // the file that registers it, as the compiler calls it
 };
 

@@ -2,16 +2,13 @@
 // EasyVolcap's folder layout, as GLINT's official release and our GlassRoom generator write it:
 //   images/<view>/000000.{png,jpg}   intri.yml   extri.yml   sparse/0/points3D.ply
 //   diffrens/<prior>/<view>/000000.png
-// and, of GlassRoom only:
+// and, of GlassRoom and of what `dataset export` writes:
 //   gt/<truth>/<view>.exr (masks: .png)   scene.json
 // Priors and truth are those of the table (glint/scene/maps.h).
-#include <algorithm>
-
 #include "datasets/dataset.h"
 #include "datasets/opencv_yaml.h"
 #include "datasets/scene_index.h"
-#include "glint/core/config.h"
-#include "glint/core/error.h"
+#include "datasets/scene_json.h"
 
 namespace glint {
 namespace {
@@ -67,43 +64,23 @@ ViewSource make_view(const fs::path& folder, const OpencvCamera& camera) {
   return view;
 }
 
-// Our generator's description; absent from official scenes.
-void read_scene_json(const fs::path& path, SceneIndex& index) {
-  std::error_code code;
-  if (!fs::exists(path, code)) return;
-  try {
-    const Json json = Json::parse(read_file(path));
-    index.name = json.value("name", index.name);
-    index.dataset = json.value("dataset", index.dataset);
-    index.spec_hash = json.value("hash", index.spec_hash);
-    index.simulated_priors = json.value("simulated_priors", false);
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(
-        ExitCode::kBadReference, fmt::format("{}: {}; write it again", path.string(), error.what())
-    );
-  }
-}
-
 SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   const fs::path intri = folder / "intri.yml", extri = folder / "extri.yml";
   SceneIndex index;
   index.name = folder_name(folder);
   index.dataset = "easyvolcap";
-  std::vector<OpencvCamera> cameras = read_opencv_cameras(intri, extri);
-  std::sort(cameras.begin(), cameras.end(), [](const OpencvCamera& a, const OpencvCamera& b) {
-    return natural_less(a.name, b.name);
-  });
-  for (const OpencvCamera& camera : cameras) {
+  for (const OpencvCamera& camera : read_opencv_cameras(intri, extri)) {
     index.views.push_back(make_view(folder, camera));
     for (const std::string& problem : camera.problems)
       index.problems.push_back({"camera-field", "camera " + camera.name, problem});
   }
-  split_every(index.views, options.test_every);
+  sort_naturally(index.views);
+  index.split_rule = split_every(index.views, options.test_every);
   const fs::path points = folder / "sparse" / "0" / "points3D.ply";
   std::error_code code;
   if (fs::exists(points, code)) index.points = points;
   index.spec_hash = hash_of_files(read_file(intri) + read_file(extri), index.views);
-  read_scene_json(folder / "scene.json", index);
+  read_scene_json(folder, index);
   return index;
 }
 
@@ -115,10 +92,13 @@ std::vector<Finding> check(const fs::path& folder) {
   return check_indexed(index_folder(folder, {}));
 }
 
+std::string split_rule(const fs::path& folder) { return index_folder(folder, {}).split_rule; }
+
 }  // namespace
 
 GLINT_REGISTER(
-    LoaderSpec, {"easyvolcap", match, load, "intri.yml, extri.yml and images/<view>/", check}
+    LoaderSpec,
+    {"easyvolcap", match, load, "intri.yml, extri.yml and images/<view>/", check, split_rule}
 )
 
 }  // namespace glint

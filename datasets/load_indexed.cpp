@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <optional>
 
+#include "datasets/colmap_model.h"
+#include "datasets/map_files.h"
 #include "datasets/scene_index.h"
 #include "datasets/undistort.h"
 #include "datasets/view_maps.h"
@@ -29,10 +32,10 @@ void check_size(const fs::path& path, ImageSize found, ImageSize expected) {
   );
 }
 
-Image read_finite(const fs::path& path, int channels) {
-  Image map = read_image(path, channels);
+void check_finite(const fs::path& path, const Image& map) {
+  const auto channels = static_cast<std::size_t>(map.channels());
   for (std::size_t i = 0; i < map.values().size(); ++i) {
-    const std::size_t pixel = i / static_cast<std::size_t>(channels);
+    const std::size_t pixel = i / channels;
     GLINT_CHECK(
         std::isfinite(map.values()[i]),
         kBadReference,
@@ -43,6 +46,11 @@ Image read_finite(const fs::path& path, int channels) {
         map.values()[i]
     );
   }
+}
+
+Image read_finite(const fs::path& path, int channels) {
+  Image map = read_image(path, channels);
+  check_finite(path, map);
   return map;
 }
 
@@ -149,10 +157,28 @@ std::string folder_name(const fs::path& folder) {
   return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
 }
 
-void split_every(std::vector<ViewSource>& views, int test_every) {
+std::string split_every(std::vector<ViewSource>& views, int test_every) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     views[i].is_test = test_every > 0 && i % static_cast<std::size_t>(test_every) == 0;
     views[i].is_train = !views[i].is_test;
+  }
+  if (test_every <= 0) return "no test views";
+  return fmt::format("view 0, {0}, {1}, ... in the order of names", test_every, 2 * test_every);
+}
+
+void sort_naturally(std::vector<ViewSource>& views) {
+  std::sort(views.begin(), views.end(), [](const ViewSource& a, const ViewSource& b) {
+    return natural_less(a.name, b.name);
+  });
+}
+
+void shorten_names(std::vector<ViewSource>& views) {
+  std::map<std::string, int> count;
+  for (const ViewSource& view : views) ++count[fs::path(view.name).stem().string()];
+  for (ViewSource& view : views) {
+    const fs::path path(view.name);
+    const std::string stem = path.stem().string();
+    view.name = flat_view_name(count[stem] > 1 ? (path.parent_path() / stem).string() : stem);
   }
 }
 
@@ -220,14 +246,32 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options) {
     else if (index.views[i].is_test)
       scene.test.push_back(std::move(views[i]));
   }
-  if (!index.points.empty()) scene.points = read_point_ply(index.points);
+  if (!index.points.empty()) scene.points = read_points(index.points);
   set_extent(scene);
   return scene;
 }
 
+PointCloud read_points(const fs::path& path) {
+  PointCloud points = path.extension() == ".ply" ? read_point_ply(path) : read_colmap_points(path);
+  const bool none = std::all_of(points.normals.begin(), points.normals.end(), [](Vec3f n) {
+    return n.x == 0 && n.y == 0 && n.z == 0;
+  });
+  if (none) points.normals.clear();  // 3DGS writes zeros
+  return points;
+}
+
+Image read_true_values(const fs::path& path, MapKind kind) {
+  Image map = read_image(path, channels_of(kind));
+  if (kind == MapKind::kDepth && path.extension() == ".png")
+    for (float& value : map.values()) value *= kFarthestMillimetres / 1000;
+  return map;
+}
+
 Image read_true_map(const fs::path& path, MapKind kind) {
   if (kind == MapKind::kMask) return map_of_mask(read_mask(path));
-  return read_finite(path, channels_of(kind));
+  Image map = read_true_values(path, kind);
+  check_finite(path, map);
+  return map;
 }
 
 Image read_prior(const fs::path& path, MapKind kind) {

@@ -1,187 +1,14 @@
 // SPDX-License-Identifier: MIT
-// nerfstudio's transforms.json: camera-to-world matrices with OpenGL axes (x right, y up, z towards
-// the viewer), intrinsics per frame or for all, OpenCV distortion. Poses are used as they stand:
-// nothing is recentred or scaled, applied_transform and applied_scale stay applied.
-#include <algorithm>
-#include <cmath>
-#include <map>
+// nerfstudio's transforms.json (transforms_json.h) with its split lists and its point cloud.
 #include <set>
 
 #include "datasets/dataset.h"
-#include "datasets/scene_index.h"
-#include "glint/core/config.h"
+#include "datasets/scene_json.h"
+#include "datasets/transforms_json.h"
 #include "glint/core/error.h"
-#include "glint/core/progress.h"
-#include "glint/scene/image_files.h"
 
 namespace glint {
 namespace {
-
-// A frame's fields, with those of the whole file behind them. Every error names file and frame.
-struct FrameReader {
-  const Json& file;
-  const Json& frame;
-  std::string where;
-
-  const Json* find(const char* key) const {
-    if (const auto it = frame.find(key); it != frame.end()) return &*it;
-    if (const auto it = file.find(key); it != file.end()) return &*it;
-    return nullptr;
-  }
-
-  double number(const char* key, double otherwise) const {
-    const Json* value = find(key);
-    if (value == nullptr) return otherwise;
-    GLINT_CHECK(
-        value->is_number(),
-        kBadReference,
-        "{}: {} is {}, expected a number",
-        where,
-        key,
-        value->dump()
-    );
-    return value->get<double>();
-  }
-
-  std::string text(const char* key) const {
-    const Json* value = find(key);
-    GLINT_CHECK(
-        value != nullptr && value->is_string(), kBadReference, "{}: {}: expected a text", where, key
-    );
-    return value->get<std::string>();
-  }
-};
-
-// Pixels; 0 when not stated.
-int read_extent(const FrameReader& reader, const char* key) {
-  const double extent = reader.number(key, 0);
-  GLINT_CHECK(
-      extent >= 0 && extent < 1e6,
-      kBadReference,
-      "{}: {} is {}, expected a number of pixels",
-      reader.where,
-      key,
-      extent
-  );
-  return static_cast<int>(extent);
-}
-
-double focal_from_angle(const FrameReader& reader, const char* angle, int extent) {
-  const double radians = reader.number(angle, 0);
-  return radians > 0 && extent > 0 ? 0.5 * extent / std::tan(0.5 * radians) : 0;
-}
-
-// `image` gives the size when the file does not.
-void read_intrinsics(const FrameReader& reader, const fs::path& image, Camera& camera) {
-  camera.width = read_extent(reader, "w");
-  camera.height = read_extent(reader, "h");
-  if (camera.width == 0 || camera.height == 0) {
-    const ImageSize size = read_image_size(image);
-    camera.width = size.width;
-    camera.height = size.height;
-  }
-  camera.fx = reader.number("fl_x", focal_from_angle(reader, "camera_angle_x", camera.width));
-  camera.fy = reader.number("fl_y", focal_from_angle(reader, "camera_angle_y", camera.height));
-  if (camera.fy == 0) camera.fy = camera.fx;
-  if (camera.fx == 0) camera.fx = camera.fy;
-  GLINT_CHECK(
-      camera.fx != 0,
-      kBadReference,
-      "{}: no focal length; expected fl_x or camera_angle_x",
-      reader.where
-  );
-  camera.cx = reader.number("cx", 0.5 * camera.width);
-  camera.cy = reader.number("cy", 0.5 * camera.height);
-}
-
-std::vector<double> read_distortion(const FrameReader& reader) {
-  const Json* model = reader.find("camera_model");
-  const std::string name =
-      model != nullptr && model->is_string() ? model->get<std::string>() : "OPENCV";
-  const std::set<std::string> known{
-      "OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL"};
-  GLINT_CHECK(
-      known.contains(name) && reader.number("k4", 0) == 0,
-      kBadReference,
-      "{}: camera_model {}{}; expected OPENCV or PINHOLE: undistort the images first",
-      reader.where,
-      name,
-      known.contains(name) ? " with k4" : ""
-  );
-  std::vector<double> distortion;
-  for (const char* key : {"k1", "k2", "p1", "p2", "k3"})
-    distortion.push_back(reader.number(key, 0));
-  const bool none =
-      std::all_of(distortion.begin(), distortion.end(), [](double d) { return d == 0; });
-  return none ? std::vector<double>{} : distortion;
-}
-
-// transform_matrix: 3 or 4 rows of 4 numbers, camera to world.
-std::array<std::array<double, 4>, 3> read_matrix(const FrameReader& reader) {
-  const Json* matrix = reader.find("transform_matrix");
-  const std::string expected =
-      fmt::format("{}: transform_matrix: expected 4 x 4 numbers", reader.where);
-  GLINT_CHECK(
-      matrix != nullptr && matrix->is_array() && matrix->size() >= 3, kBadReference, "{}", expected
-  );
-  std::array<std::array<double, 4>, 3> values{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Json& row = (*matrix)[i];
-    GLINT_CHECK(row.is_array() && row.size() == 4, kBadReference, "{}", expected);
-    for (std::size_t j = 0; j < 4; ++j) {
-      GLINT_CHECK(row[j].is_number(), kBadReference, "{}, found {}", expected, row[j].dump());
-      values[i][j] = row[j].get<double>();
-    }
-  }
-  return values;
-}
-
-// The columns of the matrix are the camera's right, up and backward axes and its centre, in the
-// world; the rows of R are right, down and forward.
-void read_pose(const FrameReader& reader, Camera& camera) {
-  const auto m = read_matrix(reader);
-  const auto column = [&](std::size_t j) { return Vec3d{m[0][j], m[1][j], m[2][j]}; };
-  camera.rotation_cam_from_world = {{column(0), -column(1), -column(2)}};
-  camera.translation_cam_from_world = -(camera.rotation_cam_from_world * column(3));
-}
-
-// file_path may lack its extension (Blender exports).
-fs::path find_image(const fs::path& folder, const std::string& file_path) {
-  const fs::path path = (folder / file_path).lexically_normal();
-  std::error_code code;
-  if (fs::is_regular_file(path, code)) return path;
-  for (const char* extension : {".png", ".jpg", ".jpeg", ".JPG", ".PNG"}) {
-    const fs::path candidate = path.string() + extension;
-    if (fs::is_regular_file(candidate, code)) return candidate;
-  }
-  return path;
-}
-
-ViewSource make_view(const FrameReader& reader, const fs::path& folder) {
-  ViewSource view;
-  const std::string file_path = reader.text("file_path");
-  view.name = fs::path(file_path).lexically_normal().string();
-  view.image = find_image(folder, file_path);
-  view.where = fmt::format("{} ({})", reader.where, file_path);
-  view.scales_with_image = true;
-  read_intrinsics(reader, view.image, view.camera);
-  read_pose(reader, view.camera);
-  view.distortion = read_distortion(reader);
-  return view;
-}
-
-// Views are called by the stem of their file, or by the whole path where stems repeat.
-void shorten_names(std::vector<ViewSource>& views) {
-  std::map<std::string, int> count;
-  for (const ViewSource& view : views) ++count[fs::path(view.name).stem().string()];
-  for (ViewSource& view : views) {
-    const fs::path path(view.name);
-    std::string name = path.stem().string();
-    if (count[name] > 1) name = (path.parent_path() / name).string();
-    std::replace(name.begin(), name.end(), '/', '_');
-    view.name = name;
-  }
-}
 
 // The paths of a split list, normalised as view names are before shortening.
 std::set<std::string> read_list(const Json& json, const char* key, const std::string& where) {
@@ -196,8 +23,8 @@ std::set<std::string> read_list(const Json& json, const char* key, const std::st
 }
 
 // Without lists every test_every-th view is a test view; without test_filenames, val_filenames
-// serve.
-void split_views(
+// serve. Returns the rule in words.
+std::string split_views(
     const Json& json,
     const std::string& where,
     const LoadOptions& options,
@@ -211,24 +38,8 @@ void split_views(
     view.is_test = test.contains(view.name);
     view.is_train = train.empty() ? !view.is_test : train.contains(view.name);
   }
-}
-
-Json parse_file(const fs::path& path) {
-  try {
-    Json json = Json::parse(read_file(path));
-    GLINT_CHECK(
-        json.is_object() && json.contains("frames") && json["frames"].is_array(),
-        kBadReference,
-        "{}: frames: expected a list",
-        path.string()
-    );
-    return json;
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(
-        ExitCode::kBadReference,
-        fmt::format("{}: {}; it is cut off or damaged", path.string(), error.what())
-    );
-  }
+  return json.contains("test_filenames") ? "test_filenames of transforms.json"
+                                         : "val_filenames of transforms.json";
 }
 
 LoaderMatch match(const fs::path& folder) {
@@ -239,36 +50,20 @@ LoaderMatch match(const fs::path& folder) {
   return {Sureness::kContents, "transforms.json with frames"};
 }
 
-void read_frames(const Json& json, const fs::path& file, SceneIndex& index) {
-  std::size_t i = 0;
-  for (const Json& frame : json["frames"]) {
-    const std::string where = fmt::format("{}: frame {}", file.string(), i++);
-    try {
-      GLINT_CHECK(frame.is_object(), kBadReference, "{}: expected an object", where);
-      index.views.push_back(make_view({json, frame, where}, file.parent_path()));
-      if (frame.contains("mask_path") && i == 1)
-        log::warn(fmt::format("{}: mask_path is ignored: all pixels count", file.string()));
-    } catch (const Error& error) {
-      index.problems.push_back(make_finding("camera-field", where, error.what()));
-    }
-  }
-}
-
 SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   const fs::path file = folder / "transforms.json";
-  const Json json = parse_file(file);
+  const Json json = parse_transforms(file);
   SceneIndex index;
   index.name = folder_name(folder);
   index.dataset = "nerfstudio";
   read_frames(json, file, index);
-  std::sort(index.views.begin(), index.views.end(), [](const ViewSource& a, const ViewSource& b) {
-    return natural_less(a.name, b.name);
-  });
-  split_views(json, file.string(), options, index.views);
+  sort_naturally(index.views);
+  index.split_rule = split_views(json, file.string(), options, index.views);
   shorten_names(index.views);
   if (json.contains("ply_file_path") && json["ply_file_path"].is_string())
     index.points = folder / json["ply_file_path"].get<std::string>();
   index.spec_hash = hash_of_files(json.dump(), index.views);
+  read_scene_json(folder, index);
   return index;
 }
 
@@ -280,8 +75,12 @@ std::vector<Finding> check(const fs::path& folder) {
   return check_indexed(index_folder(folder, {}));
 }
 
+std::string split_rule(const fs::path& folder) { return index_folder(folder, {}).split_rule; }
+
 }  // namespace
 
-GLINT_REGISTER(LoaderSpec, {"nerfstudio", match, load, "transforms.json with frames", check})
+GLINT_REGISTER(
+    LoaderSpec, {"nerfstudio", match, load, "transforms.json with frames", check, split_rule}
+)
 
 }  // namespace glint

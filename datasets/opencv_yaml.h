@@ -24,4 +24,11 @@ struct OpencvCamera {
 // `names`, other names in the two files. A bad field of one camera becomes one of its `problems`.
 std::vector<OpencvCamera> read_opencv_cameras(const fs::path& intri, const fs::path& extri);
 
+// intri.yml and extri.yml of cameras that are called `names`, without distortion; 17 digits.
+void write_opencv_cameras(
+    const fs::path& folder,
+    const std::vector<std::string>& names,
+    const std::vector<Camera>& cameras
+);
+
 }  // namespace glint

@@ -33,6 +33,7 @@ struct SceneIndex {
   bool simulated_priors = false;
   fs::path points;                // empty: none
   std::vector<ViewSource> views;  // natural order of names
+  std::string split_rule;         // how test views were chosen, for people
   std::vector<Finding> problems;  // found while reading the camera files
 };
 
@@ -46,8 +47,13 @@ bool file_contains(const fs::path& file, std::string_view part);
 // The folder's own name, also for "." and names that end in a slash.
 std::string folder_name(const fs::path& folder);
 
-// View i of the natural order is a test view when i % test_every == 0; 0: all train.
-void split_every(std::vector<ViewSource>& views, int test_every);
+// View i of the given order is a test view when i % test_every == 0; 0: all train. Returns the rule
+// in words.
+std::string split_every(std::vector<ViewSource>& views, int test_every);
+
+void sort_naturally(std::vector<ViewSource>& views);
+// Names that are paths of pictures become the stem, or the whole path with '_' where stems repeat.
+void shorten_names(std::vector<ViewSource>& views);
 
 // Hexadecimal hash of the camera files' text and of the names and sizes of the images.
 std::string hash_of_files(const std::string& camera_text, const std::vector<ViewSource>& views);
@@ -67,8 +73,14 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options);
 // Everything wrong with the files, the split, the points, and maps against cameras.
 std::vector<Finding> check_indexed(const SceneIndex& index);
 
-// Readers of single maps, values checked to be finite.
+// PLY, or COLMAP's points3D.bin or .txt.
+PointCloud read_points(const fs::path& path);
+
+// Readers of single maps, values checked to be finite. True depth as PNG is in millimetres
+// (map_files.h), in any other file in metres.
 Image read_true_map(const fs::path& path, MapKind kind);
+// The same without a look at the values; masks in [0, 1].
+Image read_true_values(const fs::path& path, MapKind kind);
 // As other networks store them. Normals: (n + 1) / 2, OpenCV camera axes, to unit n or zero. Depth:
 // grey, or R + G/256 + B/65536.
 Image read_prior(const fs::path& path, MapKind kind);

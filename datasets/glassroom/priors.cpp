@@ -230,16 +230,4 @@ MapSet simulate_priors(
   return priors;
 }
 
-Image encode_depth(ImageView depth) {
-  Image encoded(depth.width, depth.height, 3);
-  for (int y = 0; y < depth.height; ++y)
-    for (int x = 0; x < depth.width; ++x) {
-      const float value = std::clamp(depth.at(x, y), 0.0f, 1.0f);
-      const float high = std::floor(value * 255) / 255;
-      encoded.at(x, y, 0) = high;
-      encoded.at(x, y, 1) = std::min(1.0f, (value - high) * 256);
-    }
-  return encoded;
-}
-
 }  // namespace glint

@@ -60,7 +60,4 @@ MapSet simulate_priors(
     std::uint64_t view
 );
 
-// Value in [0, 1] spread over three 8-bit channels: R + G / 256 + B / 65536, channels in [0, 1].
-Image encode_depth(ImageView depth);
-
 }  // namespace glint

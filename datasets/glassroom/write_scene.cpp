@@ -6,8 +6,9 @@
 #include <map>
 #include <utility>
 
-#include "datasets/glassroom/priors.h"
 #include "datasets/glassroom/texture.h"
+#include "datasets/map_files.h"
+#include "datasets/opencv_yaml.h"
 #include "glint/core/error.h"
 #include "glint/core/rng.h"
 #include "glint/scene/image_files.h"
@@ -16,72 +17,6 @@ namespace glint {
 
 namespace {
 
-constexpr double kNear = 0.05, kFar = 20;  // metres, hints to loaders that ask for them
-
-std::string yaml_matrix(
-    const std::string& key, int rows, int cols, const std::vector<double>& data
-) {
-  std::string values;
-  for (const double value : data)
-    values += (values.empty() ? "" : ", ") + fmt::format("{:.17g}", value) +
-              (value == std::floor(value) && std::abs(value) < 1e15 ? "." : "");
-  return fmt::format(
-      "{}: !!opencv-matrix\n   rows: {}\n   cols: {}\n   dt: d\n   data: [ {} ]\n",
-      key,
-      rows,
-      cols,
-      values
-  );
-}
-
-std::string yaml_head(std::size_t views) {
-  std::string text = "%YAML:1.0\n---\nnames:\n";
-  for (std::size_t i = 0; i < views; ++i)
-    text += fmt::format("   - \"{}\"\n", view_name(static_cast<int>(i)));
-  return text;
-}
-
-std::vector<double> flat(const Mat3d& m) {
-  std::vector<double> values;
-  for (const Vec3d& row : m.rows) values.insert(values.end(), {row.x, row.y, row.z});
-  return values;
-}
-
-// Axis times angle.
-Vec3d rodrigues(const Mat3d& rotation) {
-  Vec4<double> q = quaternion_from_rotation(rotation);
-  if (q.w < 0) q = {-q.w, -q.x, -q.y, -q.z};
-  const Vec3d axis{q.x, q.y, q.z};
-  const double sine = length(axis);
-  return sine < 1e-12 ? Vec3d{} : (2 * std::atan2(sine, q.w) / sine) * axis;
-}
-
-std::string intrinsics_yaml(const std::vector<Camera>& cameras) {
-  std::string text = yaml_head(cameras.size());
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const Camera& c = cameras[i];
-    const std::string name = view_name(static_cast<int>(i));
-    text += yaml_matrix("K_" + name, 3, 3, {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1});
-    text += fmt::format("H_{}: {}\nW_{}: {}\n", name, c.height, name, c.width);
-    text += yaml_matrix("D_" + name, 5, 1, {0, 0, 0, 0, 0});
-  }
-  return text;
-}
-
-std::string extrinsics_yaml(const std::vector<Camera>& cameras) {
-  std::string text = yaml_head(cameras.size());
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const std::string name = view_name(static_cast<int>(i));
-    const Vec3d r = rodrigues(cameras[i].rotation_cam_from_world);
-    const Vec3d t = cameras[i].translation_cam_from_world;
-    text += yaml_matrix("R_" + name, 3, 1, {r.x, r.y, r.z});
-    text += yaml_matrix("Rot_" + name, 3, 3, flat(cameras[i].rotation_cam_from_world));
-    text += yaml_matrix("T_" + name, 3, 1, {t.x, t.y, t.z});
-    text += fmt::format("n_{}: {}\nf_{}: {:.1f}\n", name, kNear, name, kFar);
-  }
-  return text;
-}
-
 Image scaled(ImageView image, float factor) {
   Image result(image.width, image.height, image.channels);
   for (std::size_t i = 0; i < result.values().size(); ++i)
@@ -89,22 +24,9 @@ Image scaled(ImageView image, float factor) {
   return result;
 }
 
-Image half_plus_half(ImageView normal) {
-  Image result(normal.width, normal.height, 3);
-  for (std::size_t i = 0; i < result.values().size(); ++i)
-    result.values()[i] = 0.5f * normal.data[i] + 0.5f;
-  return result;
-}
-
-void write_prior(const fs::path& path, MapKind kind, const Image& map) {
-  if (kind == MapKind::kNormal) return write_png(path, half_plus_half(map));
-  write_png(path, kind == MapKind::kDepth ? encode_depth(map) : map);
-}
-
+// Radiance is multiplied by the exposure.
 void write_truth(const fs::path& path, MapKind kind, const Image& map, float exposure) {
-  if (kind == MapKind::kMask) return write_png(path, map);
-  if (kind == MapKind::kPart) return write_exr(path, scaled(map, exposure));
-  write_exr(path, map, kind == MapKind::kNormal);
+  write_true_map(path, kind, kind == MapKind::kPart ? scaled(map, exposure) : map);
 }
 
 Vec3f vertex_color(const TraceScene& scene, const TraceMesh& mesh, Vec2f uv) {
@@ -184,8 +106,9 @@ Image display_image(ImageView radiance, float exposure) {
 }
 
 void write_cameras(const fs::path& folder, const std::vector<Camera>& cameras) {
-  write_file(folder / "intri.yml", intrinsics_yaml(cameras));
-  write_file(folder / "extri.yml", extrinsics_yaml(cameras));
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < cameras.size(); ++i) names.push_back(view_name(static_cast<int>(i)));
+  write_opencv_cameras(folder, names, cameras);
 }
 
 void write_view(

@@ -28,6 +28,8 @@ MaskImage read_mask(const fs::path& path);
 
 // [0, 1] clamped, times 255, rounded half to even. 1 or 3 channels.
 void write_png(const fs::path& path, ImageView image);
+// The same with 65535 in place of 255; 1 channel.
+void write_png16(const fs::path& path, ImageView grey);
 // float32 channels: Z for 1, R G B for 3 (or X Y Z when `xyz`), scan lines, ZIP.
 void write_exr(const fs::path& path, ImageView image, bool xyz = false);
 void write_npy(const fs::path& path, ImageView image);

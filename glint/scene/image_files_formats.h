@@ -44,6 +44,8 @@ inline float unit_value(int n, int full_range) {
 }
 // The file. 1 or 3 channels, full range.
 std::string encode_png(MaskView image);
+// One channel of 16 bits, [H][W].
+std::string encode_png16(ImageSize size, const std::uint16_t* grey);
 
 // Throws (kBadReference) unless a picture of that size can come out of `file_bytes` bytes: no
 // header makes us allocate more than 256 MiB that the file cannot fill.

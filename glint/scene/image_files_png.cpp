@@ -4,6 +4,7 @@
 // the word of a header that the file cannot fill.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
@@ -49,9 +50,12 @@ ClaimedSize claimed_size(const fs::path& path, std::string_view file) {
   );
 }
 
-unsigned char to_byte(float value) {
+// The nearest of the steps 0 ... max(T) of [0, 1].
+template <class T>
+T to_step(float value) {
   if (!(value > 0)) return 0;  // NaN too: the caller's metrics report it, a PNG cannot hold it
-  return static_cast<unsigned char>(std::nearbyint(std::min(value, 1.0f) * 255.0f));
+  constexpr auto kMax = static_cast<float>(std::numeric_limits<T>::max());
+  return static_cast<T>(std::nearbyint(std::min(value, 1.0f) * kMax));
 }
 
 }  // namespace
@@ -80,8 +84,22 @@ void write_png(const fs::path& path, ImageView image) {
       image.channels
   );
   MaskImage bytes(image.width, image.height, image.channels);
-  std::transform(image.data, image.data + bytes.values().size(), bytes.data(), to_byte);
+  std::
+      transform(image.data, image.data + bytes.values().size(), bytes.data(), to_step<unsigned char>);
   write_file(path, detail::encode_png(bytes));
+}
+
+void write_png16(const fs::path& path, ImageView grey) {
+  GLINT_CHECK(
+      !grey.empty() && grey.channels == 1,
+      kUsage,
+      "{}: cannot write a 16-bit PNG of {} channels; expected 1",
+      path.string(),
+      grey.channels
+  );
+  std::vector<std::uint16_t> steps(grey.num_pixels());
+  std::transform(grey.data, grey.data + steps.size(), steps.begin(), to_step<std::uint16_t>);
+  write_file(path, detail::encode_png16(grey.size(), steps.data()));
 }
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 #include "reports/import/import_predictions.h"
 
 #include <array>
+#include <cmath>
 
 #include "glint/scene/image_files.h"
 #include "metrics/depth.h"
@@ -13,9 +14,28 @@ namespace {
 
 constexpr double kSuspicious = 0.5;  // another convention makes less than half of the error
 
+// gsplat's trainers store truth and render side by side. The right half of such a picture; any
+// other picture as it is.
+Image without_truth(Image image, const View& view) {
+  const int width = view.camera.width;
+  constexpr double kSame = 2.0 / 255;  // mean difference; truncated to 8 bits
+  if (image.channels() != 3 || image.size() != ImageSize{2 * width, view.camera.height})
+    return image;
+  Image right(width, image.height(), 3);
+  double difference = 0;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        right.at(x, y, c) = image.at(width + x, y, c);
+        difference += static_cast<double>(std::abs(image.at(x, y, c) - view.rgb.at(x, y, c)));
+      }
+  return difference / static_cast<double>(3 * right.num_pixels()) < kSame ? right : image;
+}
+
 Image read_for(const fs::path& path, int channels, const View& view) {
-  Image image =
-      with_exit_code(ExitCode::kBadPrediction, [&] { return read_image(path, channels); });
+  Image image = without_truth(
+      with_exit_code(ExitCode::kBadPrediction, [&] { return read_image(path, channels); }), view
+  );
   GLINT_CHECK(
       image.size() == view.camera.size(),
       kBadPrediction,
@@ -73,6 +93,12 @@ double mean_angle(Image normals, const View& view, NormalAxes axes) {
   to_our_normals(normals, view.camera, axes);
   const auto errors = normal_errors(normals, view.truth["normal"]);
   return errors ? errors->mean_deg : 0;
+}
+
+void note_halves(const fs::path& picture, const View& view, std::vector<std::string>& notes) {
+  const auto read = [&] { return read_image(picture); };
+  if (with_exit_code(ExitCode::kBadPrediction, read).width() == 2 * view.camera.width)
+    notes.push_back("pictures hold truth and render side by side: their right halves count");
 }
 
 // Files are as stored, not yet in our conventions.
@@ -144,6 +170,7 @@ std::vector<std::string> import_predictions(
   for (const auto& [map, matching] : found.matching)
     if (matching == Matching::kOrder)
       notes.push_back(map + ": files given to test views by their order, not by name");
+  note_halves(found.views.front().at("rgb"), scene.test.front(), notes);
   note_conventions(found.views.front(), scene.test.front(), options, notes);
   clear_run_folder(spec.folder);
   write_run_spec(spec, {{"imported", folder.string()}, {"import", config_to_json(options)}});

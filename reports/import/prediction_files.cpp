@@ -12,7 +12,9 @@ namespace {
 // Where other programs put their maps.
 const std::vector<MapPlaces> kOtherPrograms = {
     {"rgb",
-     {"renders/*.exr",
+     {"renders/val_[0-9][0-9][0-9][0-9].png",
+      "renders/val_step*_[0-9][0-9][0-9][0-9].png",
+      "renders/*.exr",
       "renders/*.png",
       "renders/*.jpg",
       "test/ours_*/renders/*.png",

@@ -5,6 +5,7 @@
 #include "datasets/glassroom/glassroom.h"
 #include "datasets/packed_scene.h"
 #include "glint/core/progress.h"
+#include "reports/verbs/dataset_export.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -46,7 +47,31 @@ int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
   return 0;
 }
 
-Json scene_json(const Scene& scene, const std::string& loader) {
+std::vector<std::string> names_of_views(const std::vector<View>& views) {
+  std::vector<std::string> names;
+  for (const View& view : views) names.push_back(view.name);
+  return names;
+}
+
+// Names of test views in lines of a terminal's width, behind the column of titles.
+std::string wrapped_names(const std::vector<View>& views) {
+  constexpr std::size_t kIndent = 15, kWidth = 100;
+  std::string text, line;
+  for (const View& view : views) {
+    if (!line.empty() && kIndent + line.size() + 2 + view.name.size() > kWidth) {
+      text += line + ",\n" + std::string(kIndent, ' ');
+      line.clear();
+    }
+    line += (line.empty() ? "" : ", ") + view.name;
+  }
+  return views.empty() ? "none" : text + line;
+}
+
+std::string split_rule_of(const LoaderSpec& loader, const std::string& folder) {
+  return loader.split_rule ? loader.split_rule(folder) : "as it was packed";
+}
+
+Json scene_json(const Scene& scene, const std::string& loader, const std::string& split_rule) {
   const bool any = !scene.train.empty();
   return {
       {"name", scene.name},
@@ -54,6 +79,8 @@ Json scene_json(const Scene& scene, const std::string& loader) {
       {"loader", loader},
       {"train_views", scene.train.size()},
       {"test_views", scene.test.size()},
+      {"test_view_names", names_of_views(scene.test)},
+      {"split_rule", split_rule},
       {"width", any ? scene.train[0].camera.width : 0},
       {"height", any ? scene.train[0].camera.height : 0},
       {"points", scene.points.positions.size()},
@@ -67,14 +94,21 @@ struct FolderOptions {
 };
 
 int run_info(const CommonOptions& common, const FolderOptions& options) {
-  const std::string loader = find_loader(options.folder, options.loader).name;
+  const LoaderSpec& loader = find_loader(options.folder, options.loader);
   LoadOptions load;
-  load.loader = loader;
+  load.loader = loader.name;
   const Scene scene = load_scene(options.folder, load);
+  const std::string split_rule = split_rule_of(loader, options.folder);
   if (common.json)
-    print_json(scene_json(scene, loader));
+    print_json(scene_json(scene, loader.name, split_rule));
   else
-    print_text(describe_scene(scene) + "\n");
+    print_text(fmt::format(
+        "{}format         {}\nsplit          {}\ntest views     {}\n",
+        describe_scene(scene),
+        loader.name,
+        split_rule,
+        wrapped_names(scene.test)
+    ));
   return 0;
 }
 
@@ -182,12 +216,14 @@ void add_folder_verb(
 }
 
 void add_dataset_verb(CommandLine& line) {
-  CLI::App* dataset = line.app.add_subcommand("dataset", "make, describe, check and pack datasets");
+  CLI::App* dataset =
+      line.app.add_subcommand("dataset", "make, describe, check, pack and export datasets");
   dataset->require_subcommand(1);
   add_make(line, *dataset);
   add_folder_verb(line, *dataset, "info", "what a folder holds, as methods will see it", run_info);
   add_folder_verb(line, *dataset, "check", "everything wrong with a folder; exit 4", run_check);
   add_pack(line, *dataset);
+  add_dataset_export(line, *dataset);
 }
 
 }  // namespace

@@ -329,8 +329,8 @@ TEST_CASE("the loader that is surest of a folder reads it, and a tie names both 
   write_file(folder / "transforms.json", "{}");
   CHECK(find_loader(folder.path()).name == "easyvolcap");
   CHECK_THAT(
-      error_of(ExitCode::kUsage, [&] { find_loader(folder.path(), "colmap"); }),
-      Contains("loader colmap: no such loader") && Contains("nerfstudio: transforms.json")
+      error_of(ExitCode::kUsage, [&] { find_loader(folder.path(), "scans"); }),
+      Contains("loader scans: no such loader") && Contains("nerfstudio: transforms.json")
   );
 }
 

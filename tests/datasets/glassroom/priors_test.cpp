@@ -10,6 +10,7 @@
 #include <numeric>
 #include <vector>
 
+#include "datasets/map_files.h"
 #include "glint/scene/image_files.h"
 
 using namespace glint;

@@ -75,6 +75,23 @@ TEST_CASE("PNG rounds to the nearest of 255 steps, halves to even, and clamps") 
   for (int i = 0; i < 6; ++i) CHECK(read.at(i, 0) == expected[i] / 255.0f);
 }
 
+TEST_CASE("16-bit PNG rounds to the nearest of 65535 steps and is one channel") {
+  const TempFolder folder;
+  Image grey(3, 2, 1);
+  const float values[] = {0, 1.0f / 65535, 1234.4f / 65535, 0.5f, 1, 7};
+  std::copy(std::begin(values), std::end(values), grey.data());
+  write_png16(folder / "grey.png", grey);
+  const Image back = read_image(folder / "grey.png");
+  REQUIRE(back.channels() == 1);
+  CHECK(back.at(1, 0) == 1.0f / 65535);
+  CHECK(back.at(2, 0) == 1234.0f / 65535);
+  CHECK(back.at(0, 1) == 32768.0f / 65535);  // 32767.5, half to even
+  CHECK(back.at(2, 1) == 1);
+  CHECK(error_of(ExitCode::kUsage, [&] {
+          write_png16(folder / "x.png", Image(2, 2, 3));
+        }).find("expected 1") != std::string::npos);
+}
+
 TEST_CASE("PNG keeps channel order and is off by at most half a step") {
   const TempFolder folder;
   const Image image = random_image(13, 7, 3);

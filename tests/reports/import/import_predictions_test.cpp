@@ -89,6 +89,32 @@ TEST_CASE("A wrong convention is noticed where there is ground truth, and not co
   CHECK(eval_stage(c.spec, test::small_room(), {}).at("normal-mae") > 20);
 }
 
+TEST_CASE("Of gsplat's pictures, truth beside render, the render counts") {
+  Case c;
+  int i = 0;
+  for (const View& view : test::small_room().test) {
+    const int width = view.camera.width;
+    Image both(2 * width, view.camera.height, 3, 0.25f);
+    for (int y = 0; y < both.height(); ++y)
+      std::copy_n(view.rgb.data() + view.rgb.width() * y * 3, 3 * width, &both.at(0, y));
+    write_png(c.folder.path() / fmt::format("gsplat/renders/val_{:04}.png", i++), both);
+  }
+  const auto import = [&] {
+    return import_predictions(c.folder.path() / "gsplat", test::small_room(), c.spec, {});
+  };
+  CHECK_THAT(fmt::format("{}", fmt::join(import(), "; ")), Catch::Contains("right halves"));
+  const Image render =
+      read_image(view_folder(c.spec.folder, test::small_room().test[1].name) / "rgb.exr", 3);
+  CHECK(render.size() == test::small_room().test[1].camera.size());
+  CHECK(render.at(5, 5, 1) == 64.0f / 255);
+  // Twice the width without the truth is another size.
+  write_png(
+      c.folder.path() / "gsplat/renders/val_0000.png",
+      Image(2 * render.width(), render.height(), 3, 0.25f)
+  );
+  CHECK_THROWS_WITH(import(), Catch::Contains("128x36"));
+}
+
 TEST_CASE("Renders of another size and damaged files are refused by name") {
   Case c;
   const fs::path first =

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Folders as Blender's NeRF exports are: transforms_train.json and transforms_test.json
+// (transforms_json.h), mostly with camera_angle_x alone; transforms_val.json is not read.
+// points3d.ply is read where 3DGS keeps it. Alpha is dropped, so transparent pictures lie on their
+// own colour.
+#include "datasets/dataset.h"
+#include "datasets/scene_json.h"
+#include "datasets/transforms_json.h"
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+LoaderMatch match(const fs::path& folder) {
+  std::error_code code;
+  const fs::path file = folder / "transforms_train.json";
+  if (!fs::exists(file, code)) return {};
+  if (fs::exists(folder / "transforms.json", code))
+    return {Sureness::kName, "transforms_train.json beside transforms.json"};
+  if (!file_contains(file, "\"frames\"")) return {Sureness::kName, "transforms_train.json"};
+  return {Sureness::kContents, "transforms_train.json with frames"};
+}
+
+// Adds the views of one file; nothing where it is missing.
+std::string add_views(const fs::path& file, bool is_test, SceneIndex& index) {
+  std::error_code code;
+  if (is_test && !fs::exists(file, code)) return {};
+  const std::size_t first = index.views.size();
+  const Json json = parse_transforms(file);
+  read_frames(json, file, index);
+  for (std::size_t i = first; i < index.views.size(); ++i) {
+    index.views[i].is_test = is_test;
+    index.views[i].is_train = !is_test;
+  }
+  return json.dump();
+}
+
+SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
+  SceneIndex index;
+  index.name = folder_name(folder);
+  index.dataset = "blender";
+  const std::string train = add_views(folder / "transforms_train.json", false, index);
+  const std::string test = add_views(folder / "transforms_test.json", true, index);
+  sort_naturally(index.views);
+  index.split_rule = "transforms_test.json";
+  if (test.empty()) index.split_rule = split_every(index.views, options.test_every);
+  shorten_names(index.views);
+  sort_naturally(index.views);
+  std::error_code code;
+  if (const fs::path points = folder / "points3d.ply"; fs::exists(points, code))
+    index.points = points;
+  index.spec_hash = hash_of_files(train + test, index.views);
+  read_scene_json(folder, index);
+  return index;
+}
+
+Scene load(const fs::path& folder, const LoadOptions& options) {
+  return load_indexed(index_folder(folder, options), options);
+}
+
+std::vector<Finding> check(const fs::path& folder) {
+  return check_indexed(index_folder(folder, {}));
+}
+
+std::string split_rule(const fs::path& folder) { return index_folder(folder, {}).split_rule; }
+
+}  // namespace
+
+GLINT_REGISTER(
+    LoaderSpec,
+    {"blender", match, load, "transforms_train.json and transforms_test.json", check, split_rule}
+)
+
+}  // namespace glint

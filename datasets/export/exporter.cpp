@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/export/exporter.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "datasets/export/export_files.h"
+#include "glint/core/config.h"
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+constexpr const char* kExportedBy = "glint-bench dataset export";
+
+const ExporterSpec& exporter_called(const std::string& id) {
+  const auto& exporters = Registry<ExporterSpec>::all();
+  if (const auto found = exporters.find(id); found != exporters.end()) return found->second;
+  std::string list;
+  for (const auto& [name, exporter] : exporters)
+    list += fmt::format("\n  {}: {}", name, exporter.writes);
+  throw Error(ExitCode::kUsage, fmt::format("--format {}: no such format. There are:{}", id, list));
+}
+
+bool is_export(const fs::path& folder) {
+  std::error_code code;
+  const fs::path file = folder / "scene.json";
+  if (!fs::is_regular_file(file, code)) return false;
+  const Json json = Json::parse(read_file(file), nullptr, false);
+  return json.is_object() && json.value("exported_by", Json()) == kExportedBy;
+}
+
+// Nothing but an earlier export is ever removed.
+void check_folder(const fs::path& folder, bool force) {
+  std::error_code code;
+  if (!fs::exists(folder, code)) return;
+  GLINT_CHECK(
+      fs::is_directory(folder, code),
+      kUsage,
+      "{}: is a file; expected a folder or a new name",
+      folder.string()
+  );
+  if (fs::is_empty(folder, code)) return;
+  GLINT_CHECK(
+      is_export(folder),
+      kUsage,
+      "{}: is not empty and holds no earlier export; give another --out, or empty it yourself",
+      folder.string()
+  );
+  GLINT_CHECK(force, kUsage, "{}: holds an earlier export; --force replaces it", folder.string());
+}
+
+void write_scene_json(
+    const ExportInput& input, const ExporterSpec& exporter, const fs::path& folder
+) {
+  const Scene& scene = input.scene;
+  Json json = {
+      {"name", scene.name},
+      {"dataset", scene.dataset},
+      {"simulated_priors", scene.simulated_priors},
+      {"exported_by", kExportedBy},
+      {"format", exporter.id},
+      {"hash_of_source", scene.spec_hash},
+      {"side_maps", !exporter.has_scene_maps}};
+  if (exporter.has_scene_maps) {
+    json["test_views"] = Json::array();
+    for (const ExportView& view : input.views)
+      if (view.is_test) json["test_views"].push_back(view.name);
+  }
+  write_file(folder / "scene.json", json.dump(1) + "\n");
+}
+
+// The folder under a temporary name beside the final one, removed if it does not get there.
+struct UnfinishedFolder {
+  fs::path path;
+  explicit UnfinishedFolder(const fs::path& folder)
+      : path(folder.parent_path() / fmt::format(".{}.{}", folder.filename().string(), ::getpid())) {
+    std::error_code code;
+    fs::create_directories(path, code);
+    GLINT_CHECK(!code, kEnvironment, "{}: cannot be made ({})", path.string(), code.message());
+  }
+  ~UnfinishedFolder() {
+    std::error_code code;
+    fs::remove_all(path, code);
+  }
+  void move_to(const fs::path& folder) const {
+    std::error_code code;
+    fs::remove_all(folder, code);
+    if (!code) fs::rename(path, folder, code);
+    GLINT_CHECK(
+        !code, kEnvironment, "{}: cannot be replaced ({})", folder.string(), code.message()
+    );
+  }
+};
+
+void add_scene_notes(const ExportInput& input, ExportReport& report) {
+  const Scene& scene = input.scene;
+  if (scene.simulated_priors)
+    report.note("priors are simulated: say so beside every number that uses them");
+  const bool renamed =
+      std::any_of(input.views.begin(), input.views.end(), [](const ExportView& view) {
+        return view.name != view.view->name;
+      });
+  if (renamed)
+    report.note("files are not called as the views: renders go back by the order of test views");
+  if (scene.points.positions.empty())
+    report.note(
+        "the scene has no points: trainers start from random ones (gsplat: --init_type random)"
+    );
+}
+
+}  // namespace
+
+void ExportReport::add(std::string_view files, std::string_view what) {
+  parts.push_back({std::string(files), std::string(what)});
+}
+
+void ExportReport::note(std::string_view text) { notes.emplace_back(text); }
+
+std::vector<ExportView> export_views(const Scene& scene, ExportSplit split) {
+  std::vector<ExportView> views;
+  for (const bool is_test : {false, true}) {
+    if (split == (is_test ? ExportSplit::kTrain : ExportSplit::kTest)) continue;
+    for (const View& view : is_test ? scene.test : scene.train)
+      views.push_back({&view, is_test, export_name(view.name)});
+  }
+  std::sort(views.begin(), views.end(), [](const ExportView& a, const ExportView& b) {
+    return natural_less(a.view->name, b.view->name);
+  });
+  const auto not_before = [](const ExportView& a, const ExportView& b) { return a.name >= b.name; };
+  if (std::adjacent_find(views.begin(), views.end(), not_before) != views.end())
+    number_names(views);
+  return views;
+}
+
+void check_export(const fs::path& folder, const ExportOptions& options) {
+  exporter_called(options.format);
+  check_folder(folder, options.force);
+}
+
+ExportReport export_scene(const Scene& scene, const fs::path& to, const ExportOptions& options) {
+  const ExporterSpec& exporter = exporter_called(options.format);
+  const fs::path folder = fs::absolute(to / ".").lexically_normal().parent_path();
+  check_folder(folder, options.force);
+  ExportInput input{scene, export_views(scene, options.split)};
+  GLINT_CHECK(!input.views.empty(), kUsage, "{}: no views in that split", scene.name);
+  ExportReport report;
+  const UnfinishedFolder unfinished(folder);
+  exporter.write(input, unfinished.path, report);
+  if (!exporter.has_scene_maps) write_side_maps(input, unfinished.path, report);
+  write_scene_json(input, exporter, unfinished.path);
+  add_scene_notes(input, report);
+  unfinished.move_to(folder);
+  return report;
+}
+
+}  // namespace glint

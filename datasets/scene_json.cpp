@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/scene_json.h"
+
+#include <set>
+
+#include "datasets/side_maps.h"
+#include "glint/core/config.h"
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+void find_side_maps(const fs::path& folder, ViewSource& view) {
+  const auto find = [&](MapFiles& files, const MapRow& row, const fs::path& file) {
+    std::error_code code;
+    if (!file.empty() && fs::is_directory((folder / file).parent_path(), code))
+      files[row] = folder / file;
+  };
+  for (const MapRow& row : maps()) {
+    find(view.priors, row, side_prior_file(row, view.name));
+    find(view.truth, row, side_truth_file(row, view.name));
+  }
+}
+
+void split_by_names(const Json& test_views, const std::string& where, SceneIndex& index) {
+  std::set<std::string> names = test_views.get<std::set<std::string>>();
+  for (ViewSource& view : index.views) {
+    view.is_test = names.erase(view.name) > 0;
+    view.is_train = !view.is_test;
+  }
+  GLINT_CHECK(
+      names.empty(),
+      kBadReference,
+      "{}: test_views: no view is called {}",
+      where,
+      names.empty() ? "" : *names.begin()
+  );
+  index.split_rule = "test_views of scene.json";
+}
+
+}  // namespace
+
+void read_scene_json(const fs::path& folder, SceneIndex& index) {
+  const fs::path path = folder / "scene.json";
+  std::error_code code;
+  if (!fs::exists(path, code)) return;
+  try {
+    const Json json = Json::parse(read_file(path));
+    index.name = json.value("name", index.name);
+    index.dataset = json.value("dataset", index.dataset);
+    index.spec_hash = json.value("hash", index.spec_hash);
+    index.simulated_priors = json.value("simulated_priors", false);
+    if (json.contains("test_views")) split_by_names(json["test_views"], path.string(), index);
+    if (json.value("side_maps", false))
+      for (ViewSource& view : index.views) find_side_maps(folder, view);
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(
+        ExitCode::kBadReference, fmt::format("{}: {}; write it again", path.string(), error.what())
+    );
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// scene.json: what a folder says of itself besides its cameras. GlassRoom's generator and
+// `dataset export` write it; folders by others have none.
+#pragma once
+
+#include "datasets/scene_index.h"
+
+namespace glint {
+
+// Name, dataset, hash and whether priors are simulated go into the index; with "side_maps", the
+// maps of side_maps.h that are there go to the views; "test_views" (names) replaces the split.
+// Without the file nothing happens. Errors (kBadReference): no JSON object; names of no view.
+void read_scene_json(const fs::path& folder, SceneIndex& index);
+
+}  // namespace glint

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "reports/verbs/dataset_export.h"
+
+#include <memory>
+
+#include "datasets/dataset.h"
+#include "datasets/export/exporter.h"
+#include "glint/core/error.h"
+
+namespace glint {
+
+namespace {
+
+struct ExportArguments {
+  std::string folder, format, loader, split = "all";
+  double max_pixels = 0;
+  bool force = false;
+};
+
+ExportOptions export_options(const ExportArguments& arguments) {
+  const std::map<std::string, ExportSplit> splits = {
+      {"all", ExportSplit::kAll}, {"train", ExportSplit::kTrain}, {"test", ExportSplit::kTest}};
+  return {arguments.format, splits.at(arguments.split), arguments.force};
+}
+
+void print_report(const std::string& out, const std::string& format, const ExportReport& report) {
+  std::size_t width = 0;
+  for (const ExportReport::Part& part : report.parts) width = std::max(width, part.files.size());
+  std::string text = fmt::format("{}: {}\n", out, format);
+  for (const ExportReport::Part& part : report.parts)
+    text += fmt::format("  {:{}}  {}\n", part.files, width, part.what);
+  for (const std::string& note : report.notes) text += fmt::format("- {}\n", note);
+  print_text(text);
+}
+
+void print_report_json(
+    const std::string& out, const std::string& format, const ExportReport& report
+) {
+  Json parts = Json::array();
+  for (const ExportReport::Part& part : report.parts)
+    parts.push_back({{"files", part.files}, {"what", part.what}});
+  print_json({{"folder", out}, {"format", format}, {"parts", parts}, {"notes", report.notes}});
+}
+
+int run_export(const CommonOptions& common, const ExportArguments& arguments, bool out_given) {
+  GLINT_CHECK(out_given, kUsage, "dataset export: give --out FOLDER, where the export goes");
+  LoadOptions load;
+  load.loader = arguments.loader;
+  load.max_pixels = arguments.max_pixels;
+  const ExportOptions options = export_options(arguments);
+  check_export(common.out, options);
+  const Scene scene = load_scene(arguments.folder, load);
+  const ExportReport report = export_scene(scene, common.out, options);
+  (common.json ? print_report_json : print_report)(common.out, arguments.format, report);
+  return 0;
+}
+
+std::string list_formats() {
+  std::string text;
+  for (const auto& [id, exporter] : Registry<ExporterSpec>::all())
+    text += (text.empty() ? "" : ", ") + id;
+  return text;
+}
+
+}  // namespace
+
+void add_dataset_export(CommandLine& line, CLI::App& dataset) {
+  auto arguments = std::make_shared<ExportArguments>();
+  auto verb = std::make_shared<CLI::App*>(nullptr);
+  *verb = line.add_verb(
+      dataset,
+      "export",
+      "a scene as a folder that other programs train on (docs/LOADERS.md)",
+      [&line, arguments, verb] {
+        return run_export(line.common, *arguments, (*verb)->count("--out") > 0);
+      }
+  );
+  CLI::App& app = **verb;
+  app.add_option("folder", arguments->folder, "dataset folder or packed scene")->required();
+  app.add_option("--format", arguments->format, "one of " + list_formats())->required();
+  app.add_option("--split", arguments->split, "views that are written")
+      ->check(CLI::IsMember({"all", "train", "test"}))
+      ->capture_default_str();
+  app.add_option("--loader", arguments->loader, "loader that reads it, by id; empty: the surest");
+  app.add_option("--max-pixels", arguments->max_pixels, "shrink images below this area")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--force", arguments->force, "replace an earlier export in --out");
+}
+
+}  // namespace glint

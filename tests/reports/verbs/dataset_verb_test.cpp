@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// `dataset export` and `dataset info` as a user sees them.
+#include <catch2/catch.hpp>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "glint/core/config.h"
+#include "reports/verbs/command_line.h"
+#include "tests/support/small_room.h"
+
+using namespace glint;
+using namespace glint::test;
+using Catch::Contains;
+
+namespace {
+
+int run(const std::vector<std::string>& words) {
+  std::vector<const char*> arguments{"glint-bench"};
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  return run_command_line(static_cast<int>(arguments.size()), arguments.data());
+}
+
+// What a command that succeeds prints on standard output.
+std::string output_of(const std::vector<std::string>& words) {
+  const TempFolder folder;
+  std::fflush(stdout);
+  const int terminal = ::dup(STDOUT_FILENO);
+  const int file = ::open((folder / "out").c_str(), O_CREAT | O_WRONLY, 0600);
+  ::dup2(file, STDOUT_FILENO);
+  const int code = run(words);
+  std::fflush(stdout);
+  ::dup2(terminal, STDOUT_FILENO);
+  ::close(file);
+  ::close(terminal);
+  CHECK(code == 0);
+  return read_file(folder / "out");
+}
+
+}  // namespace
+
+TEST_CASE("a scene and its packed file are exported to every format and checked there") {
+  const TempFolder folder;
+  const std::string room = small_room_folder().string(), packed = folder / "room.safetensors";
+  REQUIRE(run({"dataset", "pack", room, packed, "--quiet"}) == 0);
+  for (const std::string format : {"blender", "colmap", "easyvolcap", "nerfstudio"}) {
+    INFO(format);
+    const std::string out = folder / format;
+    CHECK_THAT(
+        output_of({"dataset", "export", room, "--format", format, "--out", out, "--quiet"}),
+        Contains(out + ": " + format) && Contains("16 views (14 train, 2 test)") &&
+            Contains("priors are simulated")
+    );
+    CHECK(run({"dataset", "check", out, "--quiet"}) == 0);
+    // Earlier exports need --force.
+    const std::vector<std::string> again = {
+        "dataset", "export", packed, "--format", format, "--out", out, "--quiet", "--json"};
+    CHECK(run(again) == 1);
+    std::vector<std::string> forced = again;
+    forced.push_back("--force");
+    const Json json = Json::parse(output_of(forced));
+    CHECK(json["format"] == format);
+    CHECK(json["parts"][0]["what"].is_string());
+    CHECK(json["notes"].size() > 1);
+  }
+}
+
+TEST_CASE("an export needs a folder, a format and a scene") {
+  const TempFolder folder;
+  const std::string out = folder / "out", room = small_room_folder().string();
+  CHECK(run({"dataset", "export", room, "--format", "colmap"}) == 1);
+  CHECK(run({"dataset", "export", room, "--out", out}) == 1);
+  CHECK(run({"dataset", "export", room, "--format", "usd", "--out", out}) == 1);
+  CHECK(
+      run({"dataset", "export", room, "--format", "colmap", "--split", "val", "--out", out}) == 1
+  );
+  CHECK(run({"dataset", "export", "nowhere", "--format", "colmap", "--out", out}) == 3);
+  CHECK_FALSE(fs::exists(out));
+}
+
+TEST_CASE("dataset info says the format, the split's rule and the test views") {
+  const std::string room = small_room_folder().string();
+  CHECK_THAT(
+      output_of({"dataset", "info", room, "--quiet"}),
+      Contains("format         easyvolcap\n") &&
+          Contains("split          view 0, 8, 16, ... in the order of names\n") &&
+          Contains("test views     0000, 0008\n")
+  );
+  const Json json = Json::parse(output_of({"dataset", "info", room, "--quiet", "--json"}));
+  CHECK(json["loader"] == "easyvolcap");
+  CHECK(json["test_view_names"] == Json({"0000", "0008"}));
+  CHECK(json["test_views"] == 2);
+  CHECK(json["split_rule"] == "view 0, 8, 16, ... in the order of names");
+}
