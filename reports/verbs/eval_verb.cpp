@@ -120,7 +120,7 @@ RunSpec spec_of(
   spec.max_pixels = arguments.max_pixels;
   spec.dataset_hash = scene.spec_hash;
   spec.folder = run_folder(
-      common.profile_folder(common.resolved_profile()), {spec.scene, spec.method, spec.options.seed}
+      common.own_folder(common.resolved_profile()), {spec.scene, spec.method, spec.options.seed}
   );
   return spec;
 }

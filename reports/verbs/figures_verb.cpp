@@ -6,10 +6,10 @@ namespace glint {
 
 namespace {
 
-int run_figures(const CommonOptions& common, const std::vector<std::string>& methods) {
+int run_figures(const CommonOptions& common) {
   const fs::path folder = folder_with_records(common);
   Json json = {{"figures", Json::array()}};
-  for (const fs::path& path : write_figures({folder, load_run_data, methods})) {
+  for (const fs::path& path : write_figures({folder, load_run_data, common.methods})) {
     json["figures"].push_back(path.string());
     if (!common.json) print_text(path.string() + "\n");
   }
@@ -18,17 +18,9 @@ int run_figures(const CommonOptions& common, const std::vector<std::string>& met
 }
 
 void add_figures_verb(CommandLine& line) {
-  const auto methods = std::make_shared<std::vector<std::string>>();
-  CLI::App* verb = line.add_verb(
-      line.app,
-      "figures",
-      "write OUT/PROFILE/figures/*.png and *.pdf",
-      [&line, methods] { return run_figures(line.common, *methods); }
-  );
-  verb->add_option(
-          "--methods", *methods, "globs of the methods to show, such as 2dgs,glint,*/prior"
-  )
-      ->delimiter(',');
+  line.add_verb(line.app, "figures", "write OUT/PROFILE/figures/*.png and *.pdf", [&line] {
+    return run_figures(line.common);
+  });
 }
 
 }  // namespace
