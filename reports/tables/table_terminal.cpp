@@ -226,12 +226,27 @@ std::string notes_text(const std::vector<std::string>& notes, std::size_t width)
   return text;
 }
 
+// What was measured; methods that were not run are named in a note.
+Table brief_table(const Table& table) {
+  Table brief = without_empty_columns(without_published(table));
+  std::vector<std::string> absent;
+  std::erase_if(brief.rows, [&](const TableRow& row) {
+    const bool missing = std::all_of(row.cells.begin(), row.cells.end(), [](const TableCell& cell) {
+      return cell.status == CellStatus::kMissing;
+    });
+    if (missing) absent.push_back(row.title);
+    return missing;
+  });
+  if (!absent.empty()) brief.notes.push_back(fmt::format("Not run: {}.", fmt::join(absent, ", ")));
+  return brief;
+}
+
 // What the values are means of, and marks in cells.
 std::vector<std::string> brief_notes(const Table& table) {
   std::vector<std::string> notes = table_notes(table);
   std::erase_if(notes, [](const std::string& note) {
     return !note.starts_with("Mean over") && !note.starts_with("Not in these") &&
-           !note.starts_with("* ") && !note.starts_with("≈");
+           !note.starts_with("Not run") && !note.starts_with("* ") && !note.starts_with("≈");
   });
   return notes;
 }
@@ -258,8 +273,7 @@ std::string aligned_rows(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string table_terminal(const Table& table, TerminalStyle style) {
-  const Layout layout =
-      layout_of(style.brief ? without_empty_columns(without_published(table)) : table, style);
+  const Layout layout = layout_of(style.brief ? brief_table(table) : table, style);
   const std::string& group = layout.rows.only_group;
   std::string text = table.title + (group.empty() ? "" : ", " + group) + "\n";
   const auto blocks = blocks_of(layout.table, widths_of(layout.rows.lines), style.width);

@@ -35,7 +35,7 @@ Table without_empty_columns(const Table& table);
 struct TerminalStyle {
   bool color = false;
   std::size_t width = 0;  // columns of the terminal; 0: no limit
-  bool brief = false;     // measured columns with values and the notes on means and marks only
+  bool brief = false;     // rows and measured columns with values, notes on means and marks
 };
 // What is too wide for the terminal gets headers of several lines, then loses columns without a
 // value, then published ones (a note says so), and at last comes in blocks below each other, each
