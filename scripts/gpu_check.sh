@@ -104,7 +104,7 @@ train_and_score() {
   check "train $name" 240 glint-bench train --quiet --dataset scene.safetensors --method "$1" --device "$2" \
     --iterations "$iterations" --run "$run" || return
   check "render $name" 120 glint-bench render --quiet --device "$2" --run "$run" || return
-  check "eval $name" 60 glint-bench eval --json --run "$run" || return
+  check "eval $name" 60 glint-bench eval --json --run "$run" --out "$work" || return
   { echo "{\"method\": \"$1\", \"device\": \"$2\", \"iterations\": $iterations, \"eval\":"; cat "$work/last"; echo "}"; } \
     >>"$out/evals.json"
   metric psnr >"$work/psnr-$1-$2"

@@ -91,11 +91,12 @@ Image read_image(const fs::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".exr") return detail::read_exr(path);
   if (extension == ".npy") return detail::read_npy(path);
+  if (extension == ".tif" || extension == ".tiff") return read_tiff(path);
   const bool known = extension == ".png" || extension == ".jpg" || extension == ".jpeg";
   GLINT_CHECK(
       known,
       kBadReference,
-      "{}: unknown image format '{}'; expected .png, .jpg, .jpeg, .exr or .npy",
+      "{}: unknown image format '{}'; expected .png, .jpg, .jpeg, .exr, .npy or .tiff",
       path.string(),
       extension
   );

@@ -15,8 +15,9 @@
 
 namespace glint {
 
-// 8- and 16-bit PNG, JPEG, EXR, NPY by extension. Grey images get one channel, colour three, in the
-// order R G B; an alpha channel is dropped. Integers are divided by their maximum.
+// 8- and 16-bit PNG, JPEG, EXR, NPY, TIFF (library glint_tiff) by extension. Grey images get one
+// channel, colour three, in the order R G B; an alpha channel is dropped. Integers are divided by
+// their maximum.
 Image read_image(const fs::path& path);
 // The same, always `channels` channels (1 or 3; grey is repeated, colour to grey is an error).
 Image read_image(const fs::path& path, int channels);
@@ -38,6 +39,10 @@ void write_npy(const fs::path& path, ImageView image);
 inline constinit Service<Image(ImageView, ImageSize)> resize_image{
     "resizing pictures",
     "pack the scene at that size with the full build (glint-bench dataset pack --max-pixels)"};
+
+// float32 and 8- and 16-bit TIFF (libtiff, library glint_tiff). Errors (kBadReference): as above.
+inline constinit Service<Image(const fs::path&)> read_tiff{
+    "reading TIFF", "convert the file to EXR or NPY, or build with libtiff-dev installed"};
 
 // IEC 61966-2-1. Values outside [0, 1] are continued (encode clamps below at 0).
 float srgb_encode(float linear);

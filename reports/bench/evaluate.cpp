@@ -2,6 +2,7 @@
 #include "reports/bench/evaluate.h"
 
 #include "glint/scene/image_files.h"
+#include "reports/records/run_folder.h"
 
 namespace glint {
 
@@ -28,14 +29,18 @@ Image read_map(const fs::path& path, int channels, ImageSize size) {
 MapSet read_scored_maps(const fs::path& folder, ImageSize size) {
   MapSet rendered;
   for (const MapRow& row : maps())
-    if (!row.file.empty()) rendered[row] = read_map(folder / row.file, row.channels(), size);
+    if (!row.file.empty()) rendered[row] = read_map(render_file(folder, row), row.channels(), size);
   GLINT_CHECK(
       rendered.has("rgb"),
       kBadPrediction,
-      "{}: no rgb.exr; run `glint-bench render` first",
+      "{}: no rgb.exr and no rgb.png; run `glint-bench render` first",
       folder.string()
   );
   return rendered;
+}
+
+bool is_eight_bit_render(const fs::path& folder) {
+  return !fs::exists(folder / "rgb.exr") && fs::exists(folder / "rgb.png");
 }
 
 ViewPair view_pair(const MapSet& rendered, const View& view, const MaskImage& glass) {
@@ -47,7 +52,12 @@ ViewPair view_pair(const MapSet& rendered, const View& view, const MaskImage& gl
 
 Scores score_view(const fs::path& folder, const View& view) {
   const MapSet rendered = read_scored_maps(folder, view.rgb.size());
-  return evaluate_view(view_pair(rendered, view, mask_of_map(view.truth["glass"])));
+  Scores scores = evaluate_view(view_pair(rendered, view, mask_of_map(view.truth["glass"])));
+  if (is_eight_bit_render(folder))
+    std::erase_if(scores, [](const auto& score) {
+      return score.first == "psnr" || score.first.starts_with("psnr@");
+    });
+  return scores;
 }
 
 Json score_protocols() { return metric_protocols(); }

@@ -1,39 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/plan.h"
 
-#include <algorithm>
-
 #include "glint/method.h"
 
 namespace glint {
 
-namespace {
-
-bool matches(const std::string& pattern, const CellKey& cell) {
-  const std::string scene_method = cell.scene + "/" + cell.method;
-  for (const std::string& text : {cell.text(), scene_method, cell.scene, cell.method})
-    if (glob_match(pattern, text)) return true;
-  return false;
-}
-
-bool any_matches(const std::vector<std::string>& patterns, const CellKey& cell) {
-  return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
-    return matches(pattern, cell);
-  });
-}
-
-}  // namespace
-
-bool filter_accepts(const CellFilter& filter, const CellKey& cell) {
-  return (filter.only.empty() || any_matches(filter.only, cell)) && !any_matches(filter.skip, cell);
-}
-
 std::vector<PlanCell> make_plan(
     const Profile& profile, const CellFilter& filter, const std::vector<std::string>& assignments
 ) {
+  const auto methods = planned_methods(profile.methods, filter.methods);
   std::vector<PlanCell> plan;
   for (const SceneSource& source : profile.sources())
-    for (const std::string& method : profile.methods)
+    for (const std::string& method : methods)
       for (const std::uint64_t seed : profile.seeds) {
         PlanCell cell{{source.scene, method, seed}, source, {}};
         if (!filter_accepts(filter, cell.cell)) continue;
@@ -44,10 +22,11 @@ std::vector<PlanCell> make_plan(
   GLINT_CHECK(
       !plan.empty(),
       kUsage,
-      "no cell left: profile {} has {} scenes and {} methods, none passes --only and --skip",
+      "no cell left: profile {} has {} scenes and {} methods, none passes --only and --skip; "
+      "a method that the profile does not name is run by --methods",
       profile.name,
       profile.scenes.size(),
-      profile.methods.size()
+      methods.size()
   );
   return plan;
 }

@@ -5,18 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "reports/records/cell_filter.h"
 #include "reports/records/profile.h"
 #include "reports/records/records.h"
 
 namespace glint {
-
-struct CellFilter {
-  std::vector<std::string> only, skip;  // globs; empty `only`: all
-};
-
-// A pattern matches a cell when it matches "scene/method/seed", "scene/method", the scene or the
-// method. '*' also runs over '/'.
-bool filter_accepts(const CellFilter& filter, const CellKey& cell);
 
 struct PlanCell {
   CellKey cell;
@@ -24,8 +17,9 @@ struct PlanCell {
   Json config;  // overrides for MethodSpec::create
 };
 
-// Cells scene by scene, so that each scene is loaded once. Errors (kUsage): unknown method, a
-// config field that the method does not know, filters that leave nothing.
+// Cells scene by scene, so that each scene is loaded once; of the profile's methods, or those that
+// --methods names (planned_methods). Errors (kUsage): unknown method, a config field that the
+// method does not know, filters that leave nothing.
 std::vector<PlanCell> make_plan(
     const Profile& profile, const CellFilter& filter, const std::vector<std::string>& assignments
 );

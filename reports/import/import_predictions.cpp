@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reports/import/import_predictions.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -39,14 +40,15 @@ Image read_for(const fs::path& path, int channels, const View& view) {
   GLINT_CHECK(
       image.size() == view.camera.size(),
       kBadPrediction,
-      "{}: {}x{} pixels, but view {} has {}x{}; render at that size, or load the dataset smaller "
+      "{}: {}x{} pixels, but view {} has {}x{}{}; render at that size, or load the dataset smaller "
       "with --max-pixels",
       path.string(),
       image.width(),
       image.height(),
       view.name,
       view.camera.width,
-      view.camera.height
+      view.camera.height,
+      image.width() == 2 * view.camera.width ? " (truth and render side by side? crop them)" : ""
   );
   return image;
 }
@@ -135,6 +137,38 @@ void note_conventions(
   }
 }
 
+// Maps that the data have a truth for and the renders do not, so that a table's hole has a reason.
+void note_absent(
+    const fs::path& folder,
+    const PredictionFiles& found,
+    const View& view,
+    std::vector<std::string>& notes
+) {
+  for (const char* map : {"depth", "normal"}) {
+    if (found.matching.contains(map) || view.truth[*find_map(map)].empty()) continue;
+    const auto unread = unread_files(folder, map, found);
+    notes.push_back(fmt::format(
+        "no {0} maps read, so {0} is not scored{1}",
+        map,
+        unread.empty() ? std::string()
+                       : fmt::format(
+                             "; {} lies there, but is none of the files that are read: EXR, NPY or "
+                             "TIFF in {}/, one a test view",
+                             unread.front().string(),
+                             map
+                         )
+    ));
+  }
+}
+
+// Do they come as integers?
+bool has_eight_bit_images(const PredictionFiles& found) {
+  return std::any_of(found.views.begin(), found.views.end(), [](const auto& files) {
+    const std::string extension = files.at("rgb").extension().string();
+    return extension != ".exr" && extension != ".npy" && extension != ".tiff";
+  });
+}
+
 void copy_mesh(const fs::path& from, const fs::path& to) {
   GLINT_CHECK(fs::is_regular_file(from), kBadPrediction, "{}: no such mesh", from.string());
   write_file(to, with_exit_code(ExitCode::kBadPrediction, [&] { return read_file(from); }));
@@ -171,13 +205,18 @@ std::vector<std::string> import_predictions(
     if (matching == Matching::kOrder)
       notes.push_back(map + ": files given to test views by their order, not by name");
   note_halves(found.views.front().at("rgb"), scene.test.front(), notes);
+  const bool eight_bit = has_eight_bit_images(found);
+  if (eight_bit)
+    notes.emplace_back("8-bit images: their PSNR is psnr-8bit, which is not ranked beside psnr");
+  note_absent(folder, found, scene.test.front(), notes);
   note_conventions(found.views.front(), scene.test.front(), options, notes);
   clear_run_folder(spec.folder);
   write_run_spec(spec, {{"imported", folder.string()}, {"import", config_to_json(options)}});
   for (std::size_t i = 0; i < scene.test.size(); ++i)
     write_render(
         view_folder(spec.folder, scene.test[i].name),
-        read_view(found.views[i], scene.test[i], options)
+        read_view(found.views[i], scene.test[i], options),
+        eight_bit
     );
   const fs::path mesh = options.mesh.empty() ? found.mesh : fs::path(options.mesh);
   if (!mesh.empty()) copy_mesh(mesh, spec.folder / "mesh.ply");

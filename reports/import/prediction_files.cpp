@@ -2,6 +2,8 @@
 #include "reports/import/prediction_files.h"
 
 #include <algorithm>
+#include <cctype>
+#include <set>
 
 #include "glint/core/error.h"
 #include "reports/records/run_folder.h"
@@ -18,6 +20,11 @@ const std::vector<MapPlaces> kOtherPrograms = {
       "renders/*.png",
       "renders/*.jpg",
       "test/ours_*/renders/*.png",
+      "ours_*/renders/*.png",
+      "test/rgb/*.png",
+      "test/rgb/*.jpg",
+      "renders/test/rgb/*.png",
+      "renders/test/rgb/*.jpg",
       "RENDER/*.png",
       "RENDER/*.jpg",
       "RENDER/*.exr",
@@ -33,8 +40,10 @@ const std::vector<MapPlaces> kOtherPrograms = {
     {"depth",
      {"depth/*.exr",
       "depth/*.npy",
+      "depth/*.tiff",
       "depths/*.exr",
       "depths/*.npy",
+      "depths/*.tiff",
       "DEPTH/*.exr",
       "DEPTH/*.npy",
       "val_depthZ_*.npy",
@@ -43,6 +52,8 @@ const std::vector<MapPlaces> kOtherPrograms = {
       "test/ours_*/depth/*.npy",
       "test/ours_*/vis/depth_*.exr",
       "test/ours_*/vis/depth_*.npy",
+      "test/ours_*/vis/depth_*.tiff",
+      "vis/depth_*.tiff",
       "*_depth.exr",
       "*_depth.npy"}},
     {"normal",
@@ -169,6 +180,11 @@ void add_map(
     found.views[i][map] = named ? find_name(files, views[i])->path : files[i].path;
 }
 
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 fs::path find_mesh(const fs::path& root) {
   for (const char* candidate :
        {"mesh.ply",
@@ -183,6 +199,28 @@ fs::path find_mesh(const fs::path& root) {
 }
 
 }  // namespace
+
+std::vector<fs::path> unread_files(
+    const fs::path& folder, const std::string& map, const PredictionFiles& found
+) {
+  constexpr int kDeepest = 4;  // of the layouts above
+  std::set<fs::path> read;
+  for (const auto& view : found.views)
+    for (const auto& [id, path] : view) read.insert(path);
+  std::vector<fs::path> unread;
+  std::error_code code;
+  for (fs::recursive_directory_iterator entry(folder, code), end; entry != end && !code;
+       entry.increment(code)) {
+    if (entry.depth() >= kDeepest) entry.disable_recursion_pending();
+    const fs::path& path = entry->path();
+    const std::string name =
+        lower(path.parent_path().filename().string() + "/" + path.filename().string());
+    if (entry->is_regular_file(code) && name.find(map) != std::string::npos && !read.contains(path))
+      unread.push_back(path);
+  }
+  std::sort(unread.begin(), unread.end());
+  return unread;
+}
 
 std::vector<MapPlaces> map_places() {
   std::vector<MapPlaces> places;

@@ -17,9 +17,10 @@ struct MapPlaces {
   std::string map;  // id in the table (glint/scene/maps.h)
   std::vector<std::string> places;
 };
-// Own run folders, the layouts of 3DGS, 2DGS and PGSR (test/ours_*/renders), EasyVolcap, EnvGS and
-// GLINT (RENDER, DEPTH, NORMAL; val_depthZ_*.npy), nerfbaselines (color), gsplat
-// (renders/val_*), and plain folders rgb, depth, normal. Adding a layout is adding a line. The image comes first.
+// Own run folders, the layouts of 3DGS, 2DGS and PGSR (test/ours_*/renders, vis/depth_*.tiff),
+// 3DGRUT (ours_*/renders), nerfstudio (test/rgb), EasyVolcap, EnvGS and GLINT (RENDER, DEPTH,
+// NORMAL; val_depthZ_*.npy), nerfbaselines (color), gsplat (renders/val_*), and plain folders rgb,
+// depth, normal. Adding a layout is adding a line. The image comes first.
 std::vector<MapPlaces> map_places();
 
 // How files were given to views.
@@ -36,6 +37,11 @@ struct PredictionFiles {
 // with neither the views' names nor their number (both lists are quoted).
 PredictionFiles find_predictions(
     const fs::path& folder, const std::vector<std::string>& view_names
+);
+
+// Files whose name or folder speaks of the map ("depth") and that no view was given: for warnings.
+std::vector<fs::path> unread_files(
+    const fs::path& folder, const std::string& map, const PredictionFiles& found
 );
 
 }  // namespace glint

@@ -77,7 +77,8 @@ void write_assets(
 ) {
   for (const char* name : {"report.js", "mesh3d.js", "report.css", "LICENSES.txt"})
     write_file(assets / name, page_file(name));
-  const auto records = read_records(options.folder / "records.jsonl");
+  const auto records =
+      chosen_records(read_records(options.folder / "records.jsonl"), options.filter);
   const auto scenes = page_scenes(records, options.folder);
   for (std::size_t i = 0; i < scenes.size(); ++i) write_scene(scenes[i], i, options, assets);
   const Json summary = page_summary(options, tables, records, scenes);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/records/cell_filter.h"
 #include "reports/records/run_folder.h"
 #include "reports/tables/tables.h"
 
@@ -15,6 +16,7 @@ namespace glint {
 struct PageOptions {
   fs::path folder;                 // OUT/PROFILE with records.jsonl and runs/
   std::string profile, out, data;  // as given to --profile, --out and --data, for the commands
+  CellFilter filter;               // cells to show; empty: all
   bool single_file = false;        // everything inside index.html, no assets/ beside it
   std::function<Scene(const RunSpec&)> load;  // the data that a run was scored against
 };

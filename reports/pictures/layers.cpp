@@ -10,6 +10,7 @@
 #include "glint/scene/image_files.h"
 #include "metrics/components.h"
 #include "metrics/normal.h"
+#include "reports/records/run_folder.h"
 
 namespace glint {
 
@@ -163,7 +164,7 @@ LayerMaps rendered_layers(const fs::path& view_folder, const View* view) {
   Collector layers(view ? view->rgb.size() : ImageSize{});
   for (const MapRow& row : maps())
     if (!row.shown_file().empty())
-      layers.add(row.id, read_layer(view_folder / row.shown_file(), row.channels()));
+      layers.add(row.id, read_layer(render_file(view_folder, row), row.channels()));
   if (view == nullptr) return layers.take();
   if (const Image* rgb = layers.find("rgb")) layers.add("error", error_map(*rgb, view->rgb));
   const Image& true_normal = view->truth["normal"];

@@ -77,7 +77,7 @@ Image panel_of(const LayerMaps& maps, const MapRow& row, DepthScale scale) {
 
 std::vector<Image> row_of(const StripPlan& plan, const View& view) {
   const fs::path folder = view_folder(plan.run, view.name);
-  const Image render = read_image(folder / "rgb.exr", 3);
+  const Image render = read_image(render_file(folder, *find_map("rgb")), 3);
   std::vector<Image> row = {
       fit_panel(view.rgb), fit_panel(render), fit_panel(error_panel(render, view.rgb))};
   const LayerMaps rendered = rendered_layers(folder, &view), truth = true_layers(view);

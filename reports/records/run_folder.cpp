@@ -121,13 +121,20 @@ fs::path view_folder(const fs::path& run, const std::string& view_name) {
   return run / "renders" / flat_view_name(view_name);
 }
 
-void write_render(const fs::path& folder, const MapSet& rendered) {
+void write_render(const fs::path& folder, const MapSet& rendered, bool eight_bit) {
   const ImageSize size = rendered["rgb"].size();
   rendered.for_each([&](const MapRow& row, const Image& map) {
     check_map(folder, row, map, size);
-    if (!row.file.empty()) write_exr(folder / row.file, map, row.kind == MapKind::kNormal);
+    const bool picture_only = eight_bit && !row.picture.empty();
+    if (!row.file.empty() && !picture_only)
+      write_exr(folder / row.file, map, row.kind == MapKind::kNormal);
     if (!row.picture.empty()) write_png(folder / row.picture, map);
   });
+}
+
+fs::path render_file(const fs::path& folder, const MapRow& row) {
+  const fs::path stored = folder / row.stored_file(), picture = folder / row.picture;
+  return !row.picture.empty() && !fs::exists(stored) && fs::exists(picture) ? picture : stored;
 }
 
 std::vector<std::string> log_tail(const fs::path& run, std::size_t lines) {

@@ -48,8 +48,12 @@ fs::path view_folder(const fs::path& run, const std::string& view_name);
 
 // Every map under its names in the table (glint/scene/maps.h): values as EXR, pictures for people
 // as PNG. Errors (kBadPrediction): a map of another size than rgb, of other channels than the table
-// says, or without a file there.
-void write_render(const fs::path& folder, const MapSet& rendered);
+// says, or without a file there. `eight_bit`: the image came in integers, so it is a PNG only and
+// no EXR pretends to hold more.
+void write_render(const fs::path& folder, const MapSet& rendered, bool eight_bit = false);
+
+// Where a map of a render lies: its values, or the picture where there is nothing but that.
+fs::path render_file(const fs::path& folder, const MapRow& row);
 
 // Last lines of log.jsonl, for failure records.
 std::vector<std::string> log_tail(const fs::path& run, std::size_t lines = 50);

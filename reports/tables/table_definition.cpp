@@ -56,9 +56,7 @@ struct TableKeys {
     v("dataset_title", table.dataset_title, "its name as printed");
     v("paper_table", table.paper_table, "number of the paper's table");
     v("paper_datasets", table.paper_datasets, "published column groups");
-    v("other_methods", table.other_methods, "globs of further methods to show");
-    v("imported", table.imported, "rows for renders of other programs, too");
-    v("every_dataset", table.every_dataset, "a group for each further dataset");
+    v("leave_out", table.leave_out, "methods that other tables show; all others have rows");
     v("rows", rows, "methods");
     v("columns", columns, "metrics");
   }

@@ -71,8 +71,11 @@ std::string latex_cell(const TableCell& cell, const TableColumn& column) {
   const std::string text =
       cell.status == CellStatus::kNotApplicable ? "--" : latex_text(shown_text(cell, column));
   if (cell.rank < 1) return text;
+  // Shades are lost in black and white: the first is bold, the second underlined, too.
+  const char* form = cell.rank == 1 ? "\\textbf" : "\\underline";
+  const std::string marked = cell.rank < 3 ? fmt::format("{}{{{}}}", form, text) : text;
   const auto& shade = kRankShades[cell.rank - 1];
-  return fmt::format("\\cellcolor[RGB]{{{},{},{}}}{}", shade[0], shade[1], shade[2], text);
+  return fmt::format("\\cellcolor[RGB]{{{},{},{}}}{}", shade[0], shade[1], shade[2], marked);
 }
 
 struct ColumnGroup {

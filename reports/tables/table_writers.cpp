@@ -10,8 +10,6 @@ namespace {
 constexpr std::string_view kPublishedNote =
     "† published by the paper's authors, measured on their own data; not comparable digit by "
     "digit.";
-constexpr std::string_view kPartialNote =
-    "* mean over fewer scenes than other methods; not ranked.";
 
 std::string status_word(CellStatus status) {
   switch (status) {
@@ -160,10 +158,6 @@ std::vector<std::string> table_notes(const Table& table) {
   const bool published = std::any_of(
       table.columns.begin(), table.columns.end(), [](const TableColumn& c) { return c.published; }
   );
-  bool partial = false;
-  for (const TableRow& row : table.rows)
-    for (const TableCell& cell : row.cells) partial |= cell.status == CellStatus::kPartial;
-  if (partial) notes.emplace_back(kPartialNote);
   if (published) notes.emplace_back(kPublishedNote);
   return notes;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A Table in each format. Cells without a value are words, never zeros or blanks; published
-// columns carry a dagger, means over fewer scenes an asterisk.
+// columns carry a dagger, values that are not ranked an asterisk.
 #pragma once
 
 #include <string>
@@ -19,18 +19,27 @@ std::string shown_title(const TableColumn& column);  // "RMSE (m) ↓"
 std::vector<std::string> table_notes(const Table& table);
 
 std::string table_markdown(const Table& table);  // best in bold, second in italics
-// A tabular to \input: needs booktabs and xcolor with its option `table`.
+// A tabular to \input, best in bold, second underlined: needs booktabs and xcolor with its option
+// `table`.
 std::string table_latex(const Table& table);
 // Method id first, then column ids; unrounded values, or the status word.
 std::string table_csv(const Table& table);
 Json table_json(const Table& table);
 std::string table_html(const Table& table);  // a page of its own, every text escaped
 
+// Measured columns only, without what is said of the published ones.
+Table without_published(const Table& table);
+// Columns in which a method has a value, measured or published.
+Table without_empty_columns(const Table& table);
+
 struct TerminalStyle {
   bool color = false;
   std::size_t width = 0;  // columns of the terminal; 0: no limit
+  bool brief = false;     // rows and measured columns with values, notes on means and marks
 };
-// Wider tables come in blocks below each other, each with the methods; published ones last.
+// What is too wide for the terminal gets headers of several lines, then loses columns without a
+// value, then published ones (a note says so), and at last comes in blocks below each other, each
+// with the methods.
 std::string table_terminal(const Table& table, TerminalStyle style = {});
 
 // Measured minus published, for the columns that the paper has on its first dataset; no columns

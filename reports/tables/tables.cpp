@@ -8,12 +8,11 @@
 #include "reports/tables/method_title.h"
 #include "reports/tables/published.h"
 #include "reports/tables/statistics.h"
+#include "reports/tables/table_cells.h"
 
 namespace glint {
 
 namespace {
-
-using RecordPointers = std::vector<const Record*>;
 
 std::string dataset_title_of(const TableDefinition& definition, const std::string& dataset) {
   return dataset == definition.dataset ? definition.dataset_title : dataset;
@@ -48,6 +47,15 @@ void add_published_columns(
       }
 }
 
+bool has_value(
+    const std::vector<Record>& records, const std::string& dataset, const std::string& metric
+) {
+  return std::any_of(records.begin(), records.end(), [&](const Record& record) {
+    return record.dataset == dataset && record.ok() && record.metrics.contains(metric);
+  });
+}
+
+// The table's own dataset, then those of the records that have a value for the column.
 std::vector<TableColumn> columns_of(
     const TableDefinition& definition, const std::vector<Record>& records
 ) {
@@ -55,9 +63,9 @@ std::vector<TableColumn> columns_of(
   std::set<std::string> further;
   for (const Record& record : records)
     if (record.dataset != definition.dataset) further.insert(record.dataset);
-  if (!definition.every_dataset) further.clear();
   for (const std::string& dataset : further)
     for (TableColumn column : definition.columns) {
+      if (!has_value(records, dataset, column.metric)) continue;
       column.id = fmt::format("{}/{}", dataset, column.id);
       column.dataset = dataset;
       column.group = dataset_title_of(definition, dataset);
@@ -74,163 +82,49 @@ bool is_imported(const std::vector<Record>& records, const std::string& method) 
   });
 }
 
+// Those of the definition, then every other method with records that it does not leave out.
 std::vector<TableRowDefinition> rows_of(
     const TableDefinition& definition, const std::vector<Record>& records
 ) {
   std::vector<TableRowDefinition> rows = definition.rows;
-  std::set<std::string> listed, extra;
+  std::set<std::string> listed(definition.leave_out.begin(), definition.leave_out.end());
   for (const TableRowDefinition& row : rows) listed.insert(row.method);
-  const auto is_other = [&](const Record& record) {
-    return (definition.imported && !record.imported.empty()) ||
-           std::any_of(
-               definition.other_methods.begin(),
-               definition.other_methods.end(),
-               [&](const std::string& glob) { return glob_match(glob, record.cell.method); }
-           );
-  };
+  std::set<std::string> extra;
   for (const Record& record : records)
-    if (!listed.count(record.cell.method) && is_other(record)) extra.insert(record.cell.method);
+    if (!listed.contains(record.cell.method)) extra.insert(record.cell.method);
   for (const std::string& method : extra) rows.push_back({method, method_title(method), ""});
   for (TableRowDefinition& row : rows)
     if (is_imported(records, row.method)) row.title += " (renders imported)";
   return rows;
 }
 
-std::set<std::string> scenes_of(const std::vector<Record>& records, const std::string& dataset) {
-  std::set<std::string> scenes;
-  for (const Record& record : records)
-    if (record.dataset == dataset) scenes.insert(record.cell.scene);
+// The scenes of each column's means: those common to the methods, where any has the metric.
+std::vector<SizedScenes> scenes_of_columns(
+    const std::vector<TableColumn>& columns, const std::vector<Record>& records
+) {
+  const auto common = common_scenes(records);
+  std::vector<SizedScenes> scenes(columns.size());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto of_dataset = common.find(columns[i].dataset);
+    if (columns[i].published || of_dataset == common.end()) continue;
+    for (const Record& record : records)
+      if (record.dataset == columns[i].dataset && record.metrics.contains(columns[i].metric) &&
+          of_dataset->second.contains(sized_scene(record)))
+        scenes[i].insert(sized_scene(record));
+  }
   return scenes;
-}
-
-std::string failure_note(const Record& record) {
-  std::string note = fmt::format(
-      "{} failed ({}: {})", record.cell.text(), record.failure->stage, record.failure->message
-  );
-  std::replace(note.begin(), note.end(), '\n', ' ');
-  return note;
-}
-
-std::string format_value(double value, const TableColumn& column) {
-  return fmt::format("{:.{}f}", value, column.decimals);
-}
-
-// What a finished run says about why it has no value of the metric; empty: nothing.
-std::string reason_of_absence(const RecordPointers& records, const std::string& metric) {
-  for (const Record* record : records)
-    if (const auto it = record->not_measured.find(metric);
-        record->ok() && it != record->not_measured.end())
-      return it->second;
-  return {};
-}
-
-// Did the run say that there is no such value? Of a region: also where there is the value of whole
-// pictures, but the data have no such region.
-bool says_not_applicable(const Record& record, const std::string& metric) {
-  const std::string whole = metric.substr(0, metric.find('@'));
-  const auto& ids = record.not_applicable;
-  return std::find(ids.begin(), ids.end(), whole) != ids.end() ||
-         (whole != metric && record.metrics.contains(whole) && !record.metrics.contains(metric));
-}
-
-// Failed only where every run did: a finished one without the value says that it is not measured.
-TableCell cell_without_values(const RecordPointers& records, const TableColumn& column) {
-  TableCell cell;
-  if (const std::string reason = reason_of_absence(records, column.metric); !reason.empty()) {
-    cell.status = CellStatus::kUnavailable;
-    cell.text = cell.note = reason;
-    return cell;
-  }
-  const bool finished = std::any_of(records.begin(), records.end(), [](const Record* record) {
-    return record->ok();
-  });
-  const bool applicable = std::none_of(records.begin(), records.end(), [&](const Record* record) {
-    return record->ok() && says_not_applicable(*record, column.metric);
-  });
-  if (!records.empty() && !finished) {
-    cell.status = CellStatus::kFailed;
-    cell.note = failure_note(*records.front());
-  } else if (!applicable) {
-    cell.status = CellStatus::kNotApplicable;
-    cell.note = "the method has no such map, or the data no truth for it";
-  } else {
-    cell.note = finished ? "not measured" : "not built or not run";
-  }
-  return cell;
-}
-
-// Scenes first, then seeds. `expected`: scenes that any method has.
-TableCell measured_cell(
-    const RecordPointers& records, const TableColumn& column, std::size_t expected
-) {
-  TableCell cell;
-  std::map<std::uint64_t, std::vector<double>> scenes_of_seed;
-  for (const Record* record : records)
-    if (const auto it = record->metrics.find(column.metric);
-        record->ok() && it != record->metrics.end()) {
-      const double value = it->second * column.scale;
-      scenes_of_seed[record->cell.seed].push_back(value);
-      cell.values[{record->cell.scene, record->cell.seed}] = value;
-    }
-  if (scenes_of_seed.empty()) return cell_without_values(records, column);
-
-  std::vector<double> seed_means;
-  std::size_t fewest = expected;
-  for (const auto& [seed, values] : scenes_of_seed) {
-    seed_means.push_back(mean_of(values));
-    fewest = std::min(fewest, values.size());
-  }
-  cell.value = mean_of(seed_means);
-  cell.spread = spread_of(seed_means);
-  cell.num_scenes = static_cast<int>(fewest);
-  cell.num_seeds = static_cast<int>(seed_means.size());
-  cell.text = format_value(cell.value, column);
-  cell.status = fewest == expected ? CellStatus::kOk : CellStatus::kPartial;
-  if (cell.status == CellStatus::kPartial)
-    cell.note = fmt::format("mean over {} of {} scenes", fewest, expected);
-  return cell;
-}
-
-std::string text_field(const Record& record, const std::string& field) {
-  if (field == "resolution") return record.resolution;
-  const auto it = record.environment.find(field);
-  return it != record.environment.end() && it->is_string() ? it->get<std::string>() : "";
-}
-
-TableCell text_cell(const RecordPointers& records, const TableColumn& column) {
-  std::set<std::string> values;
-  for (const Record* record : records)
-    if (const std::string text = text_field(*record, column.field); record->ok() && !text.empty())
-      values.insert(text);
-  if (values.empty()) return cell_without_values(records, column);
-  TableCell cell;
-  cell.status = CellStatus::kOk;
-  for (const std::string& value : values) cell.text += (cell.text.empty() ? "" : ", ") + value;
-  return cell;
-}
-
-TableCell published_cell(
-    const TableDefinition& definition, const TableColumn& column, const TableRowDefinition& row
-) {
-  TableCell cell;
-  const PublishedValue* value =
-      find_published(definition.paper_table, column.dataset, row.paper_row, column.paper_column);
-  cell.status = value ? CellStatus::kOk : CellStatus::kNotApplicable;
-  if (!value) return cell;
-  cell.value = value->value;
-  cell.text = value->text;
-  cell.note = value->source;
-  return cell;
 }
 
 TableRow build_row(
     const TableDefinition& definition,
     const TableRowDefinition& row,
-    const std::vector<TableColumn>& columns,
+    const Table& table,
+    const std::vector<SizedScenes>& scenes,
     const std::vector<Record>& records
 ) {
   TableRow result{row.method, row.title, row.paper_row, {}};
-  for (const TableColumn& column : columns) {
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const TableColumn& column = table.columns[i];
     if (column.published) {
       result.cells.push_back(published_cell(definition, column, row));
       continue;
@@ -240,12 +134,23 @@ TableRow build_row(
       if (record.dataset == column.dataset && record.cell.method == row.method)
         matching.push_back(&record);
     result.cells.push_back(
-        column.metric.empty()
-            ? text_cell(matching, column)
-            : measured_cell(matching, column, scenes_of(records, column.dataset).size())
+        column.metric.empty() ? text_cell(matching, column)
+                              : measured_cell(matching, column, scenes[i])
     );
   }
   return result;
+}
+
+// Is all that it has measured of other scenes or sizes than the others' means?
+bool is_apart(const TableRow& row, const Table& table) {
+  bool apart = false;
+  for (std::size_t i = 0; i < row.cells.size(); ++i) {
+    const TableColumn& column = table.columns[i];
+    if (column.published || column.metric.empty() || !row.cells[i].has_value()) continue;
+    if (!row.cells[i].apart) return false;
+    apart = true;
+  }
+  return apart;
 }
 
 // 1 for the best; equal values share a rank and the next one is skipped. Methods beyond the paper's
@@ -371,26 +276,63 @@ void add_method_notes(Table& table, const std::vector<Record>& records) {
   table.notes.insert(table.notes.end(), notes.begin(), notes.end());
 }
 
-void add_notes(
-    Table& table, const TableDefinition& definition, const std::vector<Record>& records
-) {
-  std::set<std::uint64_t> seeds;
-  for (const Record& record : records) seeds.insert(record.cell.seed);
-  std::string scenes;
-  for (const std::string& scene : scenes_of(records, definition.dataset))
-    scenes += (scenes.empty() ? "" : ", ") + scene;
-  table.notes.push_back(fmt::format(
-      "Mean over test views, then {} ({}), then {}.{}",
-      counted(scenes_of(records, definition.dataset).size(), "scene"),
-      scenes.empty() ? "none run yet" : scenes,
-      counted(seeds.size(), "seed"),
-      seeds.size() > 1 ? " ±: standard deviation over seeds, of two their range." : ""
-  ));
+void add_failures(Table& table, const std::vector<Record>& records) {
   std::set<std::string> failures;
   for (const Record& record : records)
     for (const TableRow& row : table.rows)
       if (!record.ok() && record.cell.method == row.method) failures.insert(failure_note(record));
   table.notes.insert(table.notes.end(), failures.begin(), failures.end());
+}
+
+// What the cells with an asterisk are means of, a line for each row and reason.
+void add_partial_notes(Table& table) {
+  for (const TableRow& row : table.rows) {
+    std::set<std::string> reasons;
+    for (const TableCell& cell : row.cells)
+      if (cell.status == CellStatus::kPartial) reasons.insert(cell.note);
+    for (const std::string& reason : reasons)
+      table.notes.push_back(fmt::format("* {}: {}; not ranked.", row.title, reason));
+  }
+}
+
+// Scenes that some methods have beyond those of the means.
+SizedScenes left_out(
+    const std::vector<Record>& records, const std::string& dataset, const SizedScenes& common
+) {
+  SizedScenes scenes;
+  for (const Record& record : records)
+    if (record.ok() && record.dataset == dataset && !common.contains(sized_scene(record)))
+      scenes.insert(sized_scene(record));
+  return scenes;
+}
+
+// Which scenes the means are taken over.
+void add_scenes_note(
+    Table& table, const TableDefinition& definition, const std::vector<Record>& records
+) {
+  std::set<std::uint64_t> seeds;
+  for (const Record& record : records) seeds.insert(record.cell.seed);
+  const SizedScenes common = common_scenes(records)[definition.dataset];
+  const SizedScenes others = left_out(records, definition.dataset, common);
+  const std::string scenes = scenes_text(common, !others.empty());
+  table.notes.push_back(fmt::format(
+      "Mean over test views, then {} ({}), then {}.{}",
+      counted(common.size(), "scene"),
+      common.empty() ? "none run yet" : scenes,
+      counted(seeds.size(), "seed"),
+      seeds.size() > 1 ? " ±: standard deviation over seeds, of two their range." : ""
+  ));
+  if (!others.empty())
+    table.notes.push_back(fmt::format(
+        "Not in these means, as too few methods have them: {}.", scenes_text(others, true)
+    ));
+}
+
+void add_notes(
+    Table& table, const TableDefinition& definition, const std::vector<Record>& records
+) {
+  add_scenes_note(table, definition, records);
+  add_failures(table, records);
   add_method_notes(table, records);
   for (const OrderAgreement& order : table.agreement) table.notes.push_back(agreement_note(order));
 }
@@ -400,8 +342,12 @@ void add_notes(
 Table build_table(const TableDefinition& definition, const std::vector<Record>& records) {
   Table table{definition.id, definition.title, definition.caption, {}, {}, {}, {}};
   table.columns = columns_of(definition, records);
+  const std::vector<SizedScenes> scenes = scenes_of_columns(table.columns, records);
   for (const TableRowDefinition& row : rows_of(definition, records))
-    table.rows.push_back(build_row(definition, row, table.columns, records));
+    table.rows.push_back(build_row(definition, row, table, scenes, records));
+  std::stable_partition(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
+    return !is_apart(row, table);
+  });
   TieTests ties;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     if (table.columns[i].published) continue;
@@ -413,7 +359,16 @@ Table build_table(const TableDefinition& definition, const std::vector<Record>& 
   }
   add_notes(table, definition, records);
   add_tie_notes(table, ties);
+  add_partial_notes(table);
   return table;
+}
+
+void keep_rows_with_records(TableDefinition& definition, const std::vector<Record>& records) {
+  std::erase_if(definition.rows, [&](const TableRowDefinition& row) {
+    return std::none_of(records.begin(), records.end(), [&](const Record& record) {
+      return record.cell.method == row.method;
+    });
+  });
 }
 
 bool has_measurement(const Table& table) {

@@ -43,16 +43,15 @@ struct TableDefinition {
   std::string dataset, dataset_title;       // "glassroom", "GlassRoom"
   std::string paper_table;                  // "1"; empty: the paper has no such table
   std::vector<std::string> paper_datasets;  // published columns, one group each
-  std::vector<std::string> other_methods;   // globs: methods with records, beyond `rows`
-  bool imported = true;                     // rows for other programs' renders, too
-  bool every_dataset = false;               // a group for each further dataset in the records
+  // Methods without a row although they have records: those that stand in other tables.
+  std::vector<std::string> leave_out;
   std::vector<TableRowDefinition> rows;
   std::vector<TableColumn> columns;
 };
 
 enum class CellStatus {
   kOk,
-  kPartial,        // mean over fewer scenes than others have; never ranked
+  kPartial,        // of fewer or other scenes than others, or of 8-bit images; never ranked
   kMissing,        // not built or not run
   kFailed,         // every run failed
   kUnavailable,    // run where the metric's files were missing; `text` says which
@@ -65,10 +64,11 @@ struct TableCell {
   double spread = 0;  // over seeds: sample standard deviation (>= 3 seeds) or range (2)
   int num_scenes = 0, num_seeds = 0;
   std::map<std::pair<std::string, std::uint64_t>, double> values;  // of each scene and seed
-  int rank = 0;       // 1, 2, 3; 0: not among them or nothing to rank against
-  bool tied = false;  // second, but the interval of the difference to the first contains zero
-  std::string text;   // as printed, without marks
-  std::string note;   // why it failed, or what is missing
+  int rank = 0;        // 1, 2, 3; 0: not among them or nothing to rank against
+  bool apart = false;  // on none of the scenes, or at another size, of the other methods' means
+  bool tied = false;   // second, but the interval of the difference to the first contains zero
+  std::string text;    // as printed, without marks
+  std::string note;    // why it failed, or what is missing
 
   bool has_value() const { return status == CellStatus::kOk || status == CellStatus::kPartial; }
 };
@@ -94,9 +94,13 @@ TableDefinition parse_table_definition(std::string_view toml, const std::string&
 // All embedded definitions, in the order of their ids.
 std::vector<TableDefinition> table_definitions();
 
-// Means over views are in the records; here over scenes, then over seeds. Ranks on unrounded
-// values.
+// Means over views are in the records; here over the scenes that most methods have at one size
+// (common_scenes.h), then over seeds. Ranks on unrounded values. Every method with records has a
+// row, unless the definition leaves it out; rows of other scenes or sizes come last.
 Table build_table(const TableDefinition& definition, const std::vector<Record>& records);
+
+// For tables of a choice: no row for a method that has no record among the chosen.
+void keep_rows_with_records(TableDefinition& definition, const std::vector<Record>& records);
 
 // Has it a number that this suite measured, complete or partial?
 bool has_measurement(const Table& table);

@@ -41,7 +41,7 @@ int run_all(const CommonOptions& common, bool force) {
   options.profile = common.resolved_profile();
   options.filter = common.filter();
   options.assignments = common.set;
-  options.out = common.profile_folder(options.profile);
+  options.out = common.own_folder(options.profile);
   options.force = force;
   options.identify = common.scene_identifier();
   options.load = common.scene_loader();

@@ -18,7 +18,7 @@ namespace {
 
 void add_common_options(CLI::App& verb, CommonOptions& common) {
   const char* group = "Common";
-  verb.add_option("--out", common.out, "results go to OUT/PROFILE")
+  verb.add_option("--out", common.out, "results lie in OUT/PROFILE; that folder itself does, too")
       ->capture_default_str()
       ->group(group);
   verb.add_option("--data", common.data, "scenes that were made or fetched")
@@ -26,6 +26,9 @@ void add_common_options(CLI::App& verb, CommonOptions& common) {
       ->group(group);
   verb.add_option("--profile", common.profile, "smoke, ci, small, paper, or a TOML file")
       ->capture_default_str()
+      ->group(group);
+  verb.add_option("--methods", common.methods, "globs of methods, a,b,c; also beyond the profile's")
+      ->delimiter(',')
       ->group(group);
   verb.add_option("--only", common.only, "only cells whose scene/method/seed matches a glob")
       ->group(group);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
+#include "glint/core/progress.h"
 #include "reports/tables/compare.h"
 #include "reports/verbs/verb.h"
 
@@ -15,8 +16,11 @@ struct CompareVerbOptions {
 };
 
 int run_compare(const CommonOptions& common, const CompareVerbOptions& options) {
+  const auto store = [&](const std::string& path) {
+    return chosen_records(read_store(path), common.filter());
+  };
   const Comparison comparison =
-      compare_records(read_store(options.before), read_store(options.after), options.compare);
+      compare_records(store(options.before), store(options.after), options.compare);
   const bool on_stdout = options.markdown == "-";
   if (!options.markdown.empty() && !on_stdout)
     write_file(options.markdown, comparison_markdown(comparison));
@@ -24,8 +28,16 @@ int run_compare(const CommonOptions& common, const CompareVerbOptions& options) 
     print_json(comparison_json(comparison));
   else
     print_text(on_stdout ? comparison_markdown(comparison) : comparison_text(comparison));
-  const bool regressed = comparison.num_regressions() > 0;
-  return static_cast<int>(regressed ? ExitCode::kCheckFailed : ExitCode::kSuccess);
+  const bool compared = comparison.num_values > 0;
+  if (!compared)
+    log::warn(fmt::format(
+        "nothing to compare: {} cells in common ({} only before, {} only after), no metric of both",
+        comparison.num_cells,
+        comparison.before_only.size(),
+        comparison.after_only.size()
+    ));
+  const bool passed = compared && comparison.num_regressions() == 0;
+  return static_cast<int>(passed ? ExitCode::kSuccess : ExitCode::kCheckFailed);
 }
 
 void add_compare_verb(CommandLine& line) {
@@ -33,7 +45,9 @@ void add_compare_verb(CommandLine& line) {
   CLI::App* verb = line.add_verb(
       line.app,
       "compare",
-      "what changed between two stores of records; exits with 4 on a regression",
+      "what changed between two stores of records; exits with 4 on a regression, and where they "
+      "have "
+      "nothing in common",
       [&line, options] { return run_compare(line.common, *options); }
   );
   verb->add_option("before", options->before, "folder with records.jsonl, or the file")->required();

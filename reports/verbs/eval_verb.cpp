@@ -74,6 +74,56 @@ std::string key_of(const fs::path& run, Stage stage) {
   return done ? stage_key(done->document) : "";
 }
 
+// Of a run apart from any profile: what its folder and its scores say.
+Record single_record(const SingleRun& single, const Json& score_document, const Scores& means) {
+  const RunSpec& spec = single.spec;
+  Record record;
+  record.profile = "single";
+  record.dataset = spec.dataset;
+  record.cell = {spec.scene, spec.method, spec.options.seed};
+  record.metrics = means;
+  record.train_key = key_of(spec.folder, Stage::kTrain);
+  record.score_key = stage_key(score_document);
+  record.dataset_hash = spec.dataset_hash;
+  record.environment = environment_json();
+  record.not_measured = missing_metrics();
+  record.not_applicable = not_applicable(means, record.not_measured);
+  const Camera& camera = single.scene.test.front().camera;
+  record.resolution = fmt::format("{}x{}", camera.width, camera.height);
+  if (const auto cost = trained_cost(spec)) {
+    record.warnings = cost->warnings;
+    record.notes = cost->notes;
+    record.timings["train"] = cost->seconds;
+  }
+  return record;
+}
+
+// Appends it, or says why not.
+void record_single(const CommonOptions& common, const RunSpec& spec, const Record& record) {
+  const fs::path file = single_records_file(common, spec);
+  if (file.empty()) {
+    log::info(fmt::format(
+        "not recorded: {} is a run of a profile, whose records `glint-bench all` writes",
+        spec.folder.string()
+    ));
+    return;
+  }
+  const auto stored = read_records(file);
+  const Record* earlier = find_record(stored, record.cell);
+  if (earlier && earlier->train_key != record.train_key)
+    log::warn(fmt::format(
+        "{}: replaces the record of another run of {}; train with another --seed to keep both",
+        file.string(),
+        record.cell.text()
+    ));
+  append_record(file, record);
+  log::info(fmt::format(
+      "recorded in {}; tables: glint-bench table --out {}",
+      file.string(),
+      file.parent_path().string()
+  ));
+}
+
 int eval_run(const CommonOptions& common, const std::string& folder) {
   const SingleRun single = open_single_run(folder);
   const MeshProtocol protocol = mesh_protocol_of(single.spec);
@@ -88,13 +138,31 @@ int eval_run(const CommonOptions& common, const std::string& folder) {
     means = eval_stage(single.spec, single.scene, earlier_cost(single.spec), protocol);
     return std::string();
   });
+  record_single(common, single.spec, single_record(single, document, means));
   return print_scores(common, folder, means);
 }
 
 struct PredictionArguments {
   std::string predictions, dataset, method, depth = "planar", axes = "opencv", mesh;
   double max_pixels = 0;
+  bool force = false;
 };
+
+// Errors (kUsage): the store has the cell, and nobody said that it may be replaced.
+void check_new_import(
+    const fs::path& records, const CellKey& cell, const PredictionArguments& arguments
+) {
+  const auto stored = read_records(records);
+  const Record* earlier = find_record(stored, cell);
+  GLINT_CHECK(
+      earlier == nullptr || arguments.force,
+      kUsage,
+      "{}: holds {} already ({}); give another --method or --seed, or --force to replace it",
+      records.string(),
+      cell.text(),
+      earlier && !earlier->imported.empty() ? "imported from " + earlier->imported : "trained here"
+  );
+}
 
 Record record_of(const RunSpec& spec, const Profile& profile, const std::string& predictions) {
   Record record;
@@ -120,7 +188,7 @@ RunSpec spec_of(
   spec.max_pixels = arguments.max_pixels;
   spec.dataset_hash = scene.spec_hash;
   spec.folder = run_folder(
-      common.profile_folder(common.resolved_profile()), {spec.scene, spec.method, spec.options.seed}
+      common.own_folder(common.resolved_profile()), {spec.scene, spec.method, spec.options.seed}
   );
   return spec;
 }
@@ -146,9 +214,13 @@ int eval_predictions(const CommonOptions& common, const PredictionArguments& arg
       Json(arguments.axes).get<NormalAxes>(),
       arguments.mesh};
   const Profile profile = common.resolved_profile();
+  check_new_import(
+      common.records_file(profile), {spec.scene, spec.method, spec.options.seed}, arguments
+  );
   Record record = record_of(spec, profile, arguments.predictions);
   record.warnings = import_predictions(arguments.predictions, scene, spec, options);
-  for (const std::string& note : record.warnings) log::info(note);
+  log::info(record.warnings.front());  // whose renders they are
+  for (std::size_t i = 1; i < record.warnings.size(); ++i) log::warn(record.warnings[i]);
   const Json document = score_document(
       spec.method,
       {content_hash(arguments.predictions, fs::path(common.data) / ".hashes"), ""},
@@ -160,6 +232,8 @@ int eval_predictions(const CommonOptions& common, const PredictionArguments& arg
     record.metrics = eval_stage(spec, scene, {}, profile.mesh_protocol());
     return std::string();
   });
+  if (!record.metrics.contains("psnr") && record.metrics.contains("psnr-8bit"))
+    record.not_measured["psnr"] = "8-bit images";
   record.not_applicable = not_applicable(record.metrics, record.not_measured);
   const Camera& camera = scene.test.front().camera;
   record.resolution = fmt::format("{}x{}", camera.width, camera.height);
@@ -196,6 +270,7 @@ void add_eval_verb(CommandLine& line) {
   verb->add_option("--mesh", arguments->mesh, "PLY of theirs; otherwise looked for");
   verb->add_option("--max-pixels", arguments->max_pixels, "shrink images below this area")
       ->check(CLI::NonNegativeNumber);
+  verb->add_flag("--force", arguments->force, "replace an import of the same name");
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace glint {
 namespace {
 
 struct FigureChoice {
-  std::vector<std::string> methods, crops;
+  std::vector<std::string> crops;
   FigureView shown;
 };
 
@@ -17,7 +17,7 @@ int run_figures(const CommonOptions& common, const FigureChoice& choice) {
   for (const std::string& crop : choice.crops)
     shown.crops.push_back(parse_crop(crop, shown.crops.size()));
   Json json = {{"figures", Json::array()}};
-  for (const fs::path& path : write_figures({folder, load_run_data, choice.methods, shown})) {
+  for (const fs::path& path : write_figures({folder, load_run_data, common.methods, shown})) {
     json["figures"].push_back(path.string());
     if (!common.json) print_text(path.string() + "\n");
   }
@@ -33,10 +33,6 @@ void add_figures_verb(CommandLine& line) {
       "write OUT/PROFILE/figures/*.png and *.pdf",
       [&line, choice] { return run_figures(line.common, *choice); }
   );
-  verb->add_option(
-          "--methods", choice->methods, "globs of the methods to show, such as 2dgs,glint,*/prior"
-  )
-      ->delimiter(',');
   verb->add_option("--scene", choice->shown.scenes, "globs of the scenes to show")->delimiter(',');
   verb->add_option("--view", choice->shown.view, "name of the test view to show");
   verb->add_option(

@@ -15,12 +15,13 @@ std::vector<PlannedCell> planned_cells(
     const CommonOptions& common, const Profile& profile, const std::vector<Record>& records
 ) {
   const SceneIdentifier identify = common.scene_identifier();
+  const fs::path folder = common.own_folder(profile);
   std::map<std::string, SceneIdentity> scenes;  // by name
   std::vector<PlannedCell> cells;
   for (const PlanCell& cell : make_plan(profile, common.filter(), common.set)) {
     if (!scenes.contains(cell.cell.scene)) scenes[cell.cell.scene] = identify(cell.source);
     const Record* record = find_record(records, cell.cell);
-    const fs::path run = run_folder(common.profile_folder(profile), cell.cell);
+    const fs::path run = run_folder(folder, cell.cell);
     cells.push_back({cell, cell_stages(cell, profile, scenes[cell.cell.scene], record, run), record}
     );
   }

@@ -13,7 +13,8 @@ namespace {
 
 int run_report(const CommonOptions& common, bool single_file) {
   const fs::path folder = folder_with_records(common);
-  const fs::path index = write_report(common, folder, result_tables(folder), single_file);
+  const fs::path index =
+      write_report(common, folder, result_tables(folder, {}, common.filter()), single_file);
   if (common.json)
     print_json({{"page", index.string()}});
   else
@@ -24,16 +25,7 @@ int run_report(const CommonOptions& common, bool single_file) {
 }  // namespace
 
 fs::path folder_with_records(const CommonOptions& common) {
-  const fs::path folder = common.profile_folder(common.resolved_profile());
-  GLINT_CHECK(
-      fs::exists(folder / "records.jsonl"),
-      kBadPrediction,
-      "{}: no records.jsonl; run `glint-bench all --profile {} --out {}` first",
-      folder.string(),
-      common.profile,
-      common.out
-  );
-  return folder;
+  return folder_with_records(common.out, load_profile(common.profile).name);
 }
 
 Scene load_run_data(const RunSpec& spec) {
@@ -54,6 +46,7 @@ fs::path write_report(
   options.profile = common.profile;
   options.out = common.out;
   options.data = common.data;
+  options.filter = common.filter();
   options.single_file = single_file;
   options.load = load_run_data;
   return write_page(options, tables);

@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// OUT/PROFILE. Errors (kBadPrediction): no records.jsonl in it.
+// Of the profile, as profile_folder.h says. Errors: as there, and an unknown profile.
 fs::path folder_with_records(const CommonOptions& common);
 
 // The data that a run was scored against. Errors (kBadReference): not there, damaged.

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "glint/core/progress.h"
+
 namespace glint {
 
 namespace {
@@ -28,36 +30,33 @@ std::size_t terminal_width() {
   return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
-void check_ids(
-    const std::vector<std::string>& ids, const std::vector<TableDefinition>& definitions
-) {
-  std::string known;
-  for (const TableDefinition& definition : definitions)
-    known += (known.empty() ? "" : ", ") + definition.id;
+}  // namespace
+
+void check_table_ids(const std::vector<std::string>& ids) {
+  std::vector<std::string> known;
+  for (const TableDefinition& definition : table_definitions()) known.push_back(definition.id);
   for (const std::string& id : ids)
     GLINT_CHECK(
-        std::any_of(
-            definitions.begin(),
-            definitions.end(),
-            [&](const TableDefinition& definition) { return definition.id == id; }
-        ),
+        std::find(known.begin(), known.end(), id) != known.end(),
         kUsage,
         "no table '{}'; tables: {}",
         id,
-        known
+        fmt::join(known, ", ")
     );
 }
 
-}  // namespace
-
-std::vector<Table> result_tables(const fs::path& folder, const std::vector<std::string>& ids) {
-  const auto records = read_records(folder / "records.jsonl");
-  const auto definitions = table_definitions();
-  check_ids(ids, definitions);
+std::vector<Table> result_tables(
+    const fs::path& folder, const std::vector<std::string>& ids, const CellFilter& filter
+) {
+  check_table_ids(ids);
+  const auto records = chosen_records(read_records(folder / "records.jsonl"), filter);
   std::vector<Table> tables;
-  for (const TableDefinition& definition : definitions)
-    if (ids.empty() || std::find(ids.begin(), ids.end(), definition.id) != ids.end())
-      tables.push_back(build_table(definition, records));
+  for (TableDefinition& definition : table_definitions()) {
+    if (!ids.empty() && std::find(ids.begin(), ids.end(), definition.id) == ids.end()) continue;
+    if (!filter.methods.empty()) definition.leave_out.clear();  // they were asked for
+    if (!filter.empty()) keep_rows_with_records(definition, records);
+    tables.push_back(build_table(definition, records));
+  }
   return tables;
 }
 
@@ -67,12 +66,14 @@ void write_tables(const fs::path& folder, const std::vector<Table>& tables) {
 }
 
 void print_tables(const std::vector<Table>& tables) {
+  const std::size_t width = terminal_width();
   for (const Table& table : tables)
     print_text(
         has_measurement(table) || has_failure(table)
-            ? table_terminal(table, {color_terminal(), terminal_width()}) + "\n"
+            ? table_terminal(table, {color_terminal(), width, width == 0}) + "\n"
             : fmt::format("{} ({}): nothing measured yet\n\n", table.title, table.id)
     );
+  if (width == 0) log::info("all columns and notes: --format md, or the files in tables/");
 }
 
 }  // namespace glint

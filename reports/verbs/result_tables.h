@@ -8,14 +8,20 @@
 
 namespace glint {
 
-// From FOLDER/records.jsonl. Empty `ids`: all. Errors (kUsage): an unknown id.
-std::vector<Table> result_tables(const fs::path& folder, const std::vector<std::string>& ids = {});
+// From those of FOLDER/records.jsonl that `filter` chooses; with one, rows without any are left
+// out. Empty `ids`: all tables. Errors (kUsage): check_table_ids(), chosen_records().
+std::vector<Table> result_tables(
+    const fs::path& folder, const std::vector<std::string>& ids = {}, const CellFilter& filter = {}
+);
+
+// Errors (kUsage): an unknown id.
+void check_table_ids(const std::vector<std::string>& ids);
 
 // FOLDER/tables/*.{md,tex,csv,json,html} and all.tex, a LaTeX document with all of them.
 void write_tables(const fs::path& folder, const std::vector<Table>& tables);
 
-// Aligned text, shaded on a terminal and in blocks where it is narrow (COLUMNS). Tables in which
-// nothing is measured are named in one line.
+// Aligned text: shaded on a terminal and no wider than it (COLUMNS); brief where standard output is
+// none. Tables in which nothing is measured are named in one line.
 void print_tables(const std::vector<Table>& tables);
 
 }  // namespace glint

@@ -16,10 +16,22 @@ Scene load_dataset(const fs::path& folder, double max_pixels) {
   return with_exit_code(ExitCode::kBadReference, [&] { return load_scene(folder, options); });
 }
 
+constexpr const char* kSingleProfile = "single";
+
+void check_new_run(const fs::path& folder, bool force) {
+  GLINT_CHECK(
+      force || !fs::exists(folder / "config.json"),
+      kUsage,
+      "{}: holds a run already; --force trains it again, --run names another folder",
+      folder.string()
+  );
+}
+
 }  // namespace
 
 SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& options) {
   find_method(options.method);
+  if (!options.run.empty()) check_new_run(options.run, options.force);
   SingleRun single;
   RunSpec& spec = single.spec;
   spec.method = options.method;
@@ -39,10 +51,11 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
       data_document(spec.dataset_folder, spec.max_pixels, common.data)
   );
   spec.folder = options.run.empty() ? run_folder(
-                                          fs::path(common.out) / "single",
+                                          fs::path(common.out) / kSingleProfile,
                                           {spec.scene, spec.method, spec.options.seed}
                                       )
                                     : fs::path(options.run);
+  check_new_run(spec.folder, options.force);
   return single;
 }
 
@@ -51,6 +64,25 @@ SingleRun open_single_run(const std::string& run_folder) {
   single.spec = read_run_spec(run_folder);
   single.scene = load_dataset(single.spec.dataset_folder, single.spec.max_pixels);
   return single;
+}
+
+fs::path root_of_run(const RunSpec& spec) {
+  const fs::path cell =
+      fs::path("runs") / CellKey{spec.scene, spec.method, spec.options.seed}.text();
+  fs::path root = fs::absolute(spec.folder / "").lexically_normal().parent_path();
+  for (auto part = cell.end(); part != cell.begin();) {
+    if (root.filename() != *--part) return {};
+    root = root.parent_path();
+  }
+  return root;
+}
+
+fs::path single_records_file(const CommonOptions& common, const RunSpec& spec) {
+  const fs::path root = root_of_run(spec);
+  if (root.empty()) return fs::path(common.out) / kSingleProfile / "records.jsonl";
+  for (const Record& record : read_records(root / "records.jsonl"))
+    if (record.profile != kSingleProfile) return {};
+  return root / "records.jsonl";
 }
 
 }  // namespace glint

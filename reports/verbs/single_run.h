@@ -12,9 +12,11 @@ struct SingleRunOptions {
   std::string method = "2dgs";
   std::string run;  // run folder; empty: OUT/single/runs/SCENE/METHOD/SEED
   double max_pixels = 0;
+  bool force = false;  // train again where a run is
 };
 
-// Errors (kUsage): no --dataset, unknown method or field; kBadReference: the dataset.
+// Errors (kUsage): no --dataset, unknown method or field, a run in the folder without `force`;
+// kBadReference: the dataset.
 struct SingleRun {
   RunSpec spec;
   Scene scene;
@@ -22,5 +24,12 @@ struct SingleRun {
 SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& options);
 // The run of a folder that `train` or `all` filled, with its dataset loaded again.
 SingleRun open_single_run(const std::string& run_folder);
+
+// The folder above ROOT/runs/SCENE/METHOD/SEED; empty: the run lies elsewhere.
+fs::path root_of_run(const RunSpec& spec);
+
+// Where the scores of a single run are recorded: ROOT/records.jsonl, else OUT/single/records.jsonl.
+// Empty: ROOT is a profile's, whose records `all` keeps.
+fs::path single_records_file(const CommonOptions& common, const RunSpec& spec);
 
 }  // namespace glint

@@ -70,10 +70,11 @@ std::string status_text(const std::vector<StatusRow>& rows) {
 
 int run_status(const CommonOptions& common) {
   const Profile profile = common.resolved_profile();
-  const auto records = read_records(common.records_file(profile));
+  const fs::path folder = common.own_folder(profile);
+  const auto records = read_records(folder / "records.jsonl");
   std::vector<StatusRow> rows;
   for (const PlannedCell& planned : planned_cells(common, profile, records))
-    rows.push_back(status_of(planned, common.profile_folder(profile)));
+    rows.push_back(status_of(planned, folder));
   if (common.json)
     print_json(status_json(rows));
   else

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
+#include "reports/verbs/report_verb.h"
 #include "reports/verbs/result_tables.h"
 
 namespace glint {
@@ -10,6 +11,7 @@ namespace {
 struct TableVerbOptions {
   std::vector<std::string> ids;
   std::string format = "terminal";
+  bool no_published = false;
 };
 
 std::string table_text(const Table& table, const std::string& format) {
@@ -19,10 +21,14 @@ std::string table_text(const Table& table, const std::string& format) {
   return table_csv(table);
 }
 
+// All tables of all records are written, too; a choice is printed only.
 int run_table(const CommonOptions& common, const TableVerbOptions& options) {
-  const fs::path folder = common.profile_folder(common.resolved_profile());
-  const auto tables = result_tables(folder, options.ids);
-  if (options.ids.empty()) write_tables(folder, tables);
+  check_table_ids(options.ids);
+  const fs::path folder = folder_with_records(common);
+  auto tables = result_tables(folder, options.ids, common.filter());
+  if (options.ids.empty() && common.filter().empty()) write_tables(folder, tables);
+  if (options.no_published)
+    for (Table& table : tables) table = without_published(table);
   if (common.json || options.format == "json") {
     Json json = {{"tables", Json::array()}};
     for (const Table& table : tables) json["tables"].push_back(table_json(table));
@@ -44,7 +50,11 @@ void add_table_verb(CommandLine& line) {
       "print the tables of a profile from its records",
       [&line, options] { return run_table(line.common, *options); }
   );
-  verb->add_option("tables", options->ids, "ids, e.g. table1_photometric; none: all, and written");
+  auto* positional = verb->add_option(
+      "tables", options->ids, "ids, e.g. table1_photometric; none: all, and written"
+  );
+  verb->add_option("--table", options->ids, "the same")->delimiter(',')->excludes(positional);
+  verb->add_flag("--no-published", options->no_published, "measured columns only");
   verb->add_option("--format", options->format, "terminal, md, tex, csv, html or json")
       ->check(CLI::IsMember({"terminal", "md", "tex", "csv", "html", "json"}))
       ->capture_default_str();

@@ -34,7 +34,11 @@ int run_train(
     log::warn("interrupted: " + folder + " is not complete");
     return kInterruptedExit;
   }
-  log::info("next: glint-bench render --run " + folder);
+  log::info(fmt::format(
+      "not in any records yet; next: glint-bench render --run {0}, then eval --run {0}, which "
+      "records it",
+      folder
+  ));
   return 0;
 }
 
@@ -49,6 +53,7 @@ void add_train_verb(CommandLine& line) {
   verb->add_option("--run", options->run, "run folder; else OUT/single/runs/SCENE/METHOD/SEED");
   verb->add_option("--transmission", *transmission, "glint: raster or trace")
       ->check(CLI::IsMember({"raster", "trace"}));
+  verb->add_flag("--force", options->force, "train again in a folder that holds a run");
   verb->add_option("--max-pixels", options->max_pixels, "shrink images below this area")
       ->check(CLI::NonNegativeNumber);
 }

@@ -11,6 +11,7 @@
 
 #include "glint/core/registry.h"
 #include "reports/bench/plan.h"
+#include "reports/records/profile_folder.h"
 #include "reports/records/scene_source.h"
 #include "reports/tables/table_writers.h"
 
@@ -18,19 +19,19 @@ namespace glint {
 
 // Options that every verb has; those a verb has no use for do nothing.
 struct CommonOptions {
-  std::string out = "out";    // results in OUT/PROFILE
+  std::string out = "out";    // results in OUT/PROFILE (profile_folder.h)
   std::string data = "data";  // made and imported scenes
   std::string profile = "ci";
-  std::vector<std::string> only, skip, set;
+  std::vector<std::string> methods, only, skip, set;
   std::optional<std::uint64_t> seed;
   int iterations = 0;  // 0: as the profile says
   std::string device = "auto";
   int threads = 0;  // 0: all cores
   bool json = false, quiet = false;
 
-  fs::path profile_folder(const Profile& p) const { return fs::path(out) / p.name; }
-  fs::path records_file(const Profile& p) const { return profile_folder(p) / "records.jsonl"; }
-  CellFilter filter() const { return {only, skip}; }
+  fs::path own_folder(const Profile& p) const { return own_profile_folder(out, p.name); }
+  fs::path records_file(const Profile& p) const { return own_folder(p) / "records.jsonl"; }
+  CellFilter filter() const { return {only, skip, methods}; }
   SceneLoader scene_loader() const;
   SceneIdentifier scene_identifier() const;
   // The profile with --seed and --iterations applied.

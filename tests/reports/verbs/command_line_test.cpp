@@ -83,14 +83,58 @@ TEST_CASE("damaged records exit with 2") {
   CHECK(run({"table", "--out", folder.path().c_str()}) == 2);
 }
 
-TEST_CASE("plan, status and table work before anything was run") {
+TEST_CASE("plan and status work before anything was run, table exits with 2 and writes nothing") {
   const test::TempFolder folder;
   const char* out = folder.path().c_str();
   CHECK(run({"plan", "--profile", "smoke", "--out", out}) == 0);
   CHECK(run({"plan", "--profile", "smoke", "--out", out, "--json"}) == 0);
   CHECK(run({"status", "--profile", "smoke", "--out", out}) == 0);
-  CHECK(run({"table", "--profile", "smoke", "--out", out}) == 0);
-  CHECK(fs::exists(folder.path() / "smoke/tables/table1_photometric.csv"));
+  CHECK(run({"table", "--profile", "smoke", "--out", out}) == 2);
+  CHECK(fs::is_empty(folder.path()));
+}
+
+TEST_CASE("--out is the folder above the profile's or the profile's own, for every verb") {
+  const test::TempFolder folder;
+  const fs::path own = folder.path() / "smoke";
+  write_file(
+      own / "records.jsonl",
+      R"({"scene": "room_1", "method": "2dgs", "dataset": "glassroom", "profile": "smoke"})"
+      "\n"
+  );
+  for (const std::string& out : {folder.path().string(), own.string()}) {
+    fs::remove_all(own / "tables");
+    fs::remove_all(own / "report");
+    CHECK(run({"table", "--profile", "smoke", "--out", out.c_str()}) == 0);
+    CHECK(run({"report", "--profile", "smoke", "--out", out.c_str()}) == 0);
+    CHECK(run({"plan", "--profile", "smoke", "--out", out.c_str()}) == 0);
+    CHECK(run({"status", "--profile", "smoke", "--out", out.c_str()}) == 0);
+    CHECK(fs::exists(own / "tables/table1_photometric.csv"));
+    CHECK(fs::exists(own / "report/index.html"));
+    CHECK_FALSE(fs::exists(own / "smoke"));
+  }
+  // Without --profile the folder's records are shown; what adds to it wants the right profile.
+  CHECK(run({"table", "--out", own.c_str()}) == 0);
+  CHECK(run({"all", "--out", own.c_str()}) == 1);
+}
+
+TEST_CASE("a choice of methods is printed, not written, and names what there is") {
+  const test::TempFolder folder;
+  const char* out = folder.path().c_str();
+  write_file(
+      folder / "smoke/records.jsonl",
+      R"({"scene": "room_1", "method": "mine", "dataset": "glassroom", "profile": "smoke"})"
+      "\n"
+  );
+  CHECK(run({"table", "--profile", "smoke", "--out", out, "--methods", "mine"}) == 0);
+  CHECK(run({"table", "--profile", "smoke", "--out", out, "--only", "room_1"}) == 0);
+  CHECK_FALSE(fs::exists(folder / "smoke/tables"));
+  CHECK(run({"table", "--profile", "smoke", "--out", out, "--methods", "2dgs"}) == 1);
+  CHECK(run({"table", "--profile", "smoke", "--out", out, "--methods", "nothing"}) == 1);
+  CHECK(run({"table", "--profile", "smoke", "--out", out, "--skip", "mine"}) == 1);
+  CHECK(run({"report", "--profile", "smoke", "--out", out, "--methods", "mine"}) == 0);
+  CHECK(run({"plan", "--profile", "smoke", "--out", out, "--methods", "glint,pgsr"}) == 0);
+  CHECK(run({"plan", "--profile", "smoke", "--out", out, "--methods", "nothing"}) == 1);
+  CHECK(run({"table", "--profile", "smoke", "--out", out, "--table", "summary"}) == 0);
 }
 
 TEST_CASE("a report needs records, and nothing else") {
@@ -139,5 +183,12 @@ TEST_CASE("compare exits with 4 on a regression and with 2 where there are no re
 }
 
 TEST_CASE("an output folder that cannot be written exits with 6") {
-  CHECK(run({"table", "--profile", "smoke", "--out", "/proc/nowhere"}) == 6);
+  const test::TempFolder folder;
+  write_file(
+      folder / "records.jsonl",
+      R"({"scene": "room_1", "method": "2dgs"})"
+      "\n"
+  );
+  const std::string store = folder.path().string();
+  CHECK(run({"compare", store.c_str(), store.c_str(), "--markdown", "/proc/nowhere/x"}) == 6);
 }

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "reports/records/profile_folder.h"
+
+#include <algorithm>
+
+#include "reports/records/records.h"
+
+namespace glint {
+
+namespace {
+
+constexpr const char* kRecordsFile = "records.jsonl";
+
+bool has_records(const fs::path& folder) {
+  std::error_code code;
+  const auto size = fs::file_size(folder / kRecordsFile, code);
+  return !code && size > 0;
+}
+
+// "; out has records of smoke (--profile smoke)"; empty: of none.
+std::string other_profiles(const fs::path& out) {
+  std::vector<std::string> names;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(out, code))
+    if (has_records(entry.path())) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  if (names.empty()) return "";
+  return fmt::format(
+      "; {0} has records of {1}: name the folder, e.g. --out {2}",
+      out.string(),
+      fmt::join(names, ", "),
+      (out / names.front()).string()
+  );
+}
+
+}  // namespace
+
+fs::path profile_folder(const fs::path& out, const std::string& profile) {
+  const fs::path below = out / profile;
+  return !has_records(below) && has_records(out) ? out : below;
+}
+
+fs::path own_profile_folder(const fs::path& out, const std::string& profile) {
+  const fs::path folder = profile_folder(out, profile);
+  if (folder != out) return folder;
+  const auto records = read_records(folder / kRecordsFile);
+  const bool own = std::any_of(records.begin(), records.end(), [&](const Record& record) {
+    return record.profile == profile || record.profile.empty();
+  });
+  GLINT_CHECK(
+      own || records.empty(),
+      kUsage,
+      "--out {}: holds the records of profile {}; give --profile {}, or another --out for profile "
+      "{}",
+      out.string(),
+      records.front().profile,
+      records.front().profile,
+      profile
+  );
+  return folder;
+}
+
+fs::path folder_with_records(const fs::path& out, const std::string& profile) {
+  const fs::path folder = profile_folder(out, profile);
+  if (!has_records(folder)) {
+    // A folder that is named like its profile was meant itself.
+    const bool itself = out.filename() == profile;
+    const fs::path parent = out.has_parent_path() ? out.parent_path() : fs::path(".");
+    throw Error(
+        ExitCode::kBadPrediction,
+        fmt::format(
+            "{}: no records.jsonl; run `glint-bench all --profile {} --out {}` first{}",
+            (itself ? out : folder).string(),
+            profile,
+            (itself ? parent : out).string(),
+            other_profiles(out)
+        )
+    );
+  }
+  return folder;
+}
+
+}  // namespace glint

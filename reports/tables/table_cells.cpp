@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "reports/tables/table_cells.h"
+
+#include <algorithm>
+
+#include "reports/tables/published.h"
+#include "reports/tables/statistics.h"
+
+namespace glint {
+
+namespace {
+
+std::string format_value(double value, const TableColumn& column) {
+  return fmt::format("{:.{}f}", value, column.decimals);
+}
+
+// What a finished run says about why it has no value of the metric; empty: nothing.
+std::string reason_of_absence(const RecordPointers& records, const std::string& metric) {
+  for (const Record* record : records)
+    if (const auto it = record->not_measured.find(metric);
+        record->ok() && it != record->not_measured.end())
+      return it->second;
+  return {};
+}
+
+// Did the run say that there is no such value? Of a region: also where there is the value of whole
+// pictures, but the data have no such region.
+bool says_not_applicable(const Record& record, const std::string& metric) {
+  const std::string whole = metric.substr(0, metric.find('@'));
+  const auto& ids = record.not_applicable;
+  return std::find(ids.begin(), ids.end(), whole) != ids.end() ||
+         (whole != metric && record.metrics.contains(whole) && !record.metrics.contains(metric));
+}
+
+// Failed only where every run did: a finished one without the value says that it is not measured.
+TableCell cell_without_values(const RecordPointers& records, const TableColumn& column) {
+  TableCell cell;
+  if (const std::string reason = reason_of_absence(records, column.metric); !reason.empty()) {
+    cell.status = CellStatus::kUnavailable;
+    cell.text = cell.note = reason;
+    return cell;
+  }
+  const bool finished = std::any_of(records.begin(), records.end(), [](const Record* record) {
+    return record->ok();
+  });
+  const bool applicable = std::none_of(records.begin(), records.end(), [&](const Record* record) {
+    return record->ok() && says_not_applicable(*record, column.metric);
+  });
+  if (!records.empty() && !finished) {
+    cell.status = CellStatus::kFailed;
+    cell.note = failure_note(*records.front());
+  } else if (!applicable) {
+    cell.status = CellStatus::kNotApplicable;
+    cell.note = "the method has no such map, or the data no truth for it";
+  } else {
+    cell.note = finished ? "not measured" : "not built or not run";
+  }
+  return cell;
+}
+
+// The metric of 8-bit images that a column shows where it has no value of its own; empty: none.
+std::string eight_bit_metric(const std::string& metric) {
+  const std::string whole = metric.substr(0, metric.find('@'));
+  return whole == "psnr" ? whole + "-8bit" + metric.substr(whole.size()) : "";
+}
+
+bool has_metric(const RecordPointers& records, const std::string& metric) {
+  return std::any_of(records.begin(), records.end(), [&](const Record* record) {
+    return record->ok() && record->metrics.contains(metric);
+  });
+}
+
+// The records that have a value of the metric, on these scenes or, where there is none, on any.
+struct MeasuredRecords {
+  RecordPointers records;
+  bool apart = false;
+};
+
+MeasuredRecords records_with(
+    const RecordPointers& records, const std::string& metric, const SizedScenes& common
+) {
+  MeasuredRecords all, found;
+  for (const Record* record : records) {
+    if (!record->ok() || !record->metrics.contains(metric)) continue;
+    all.records.push_back(record);
+    if (common.contains(sized_scene(*record))) found.records.push_back(record);
+  }
+  all.apart = true;
+  return found.records.empty() ? all : found;
+}
+
+// Means over scenes of each seed, then over seeds.
+void fill_means(
+    TableCell& cell, const MeasuredRecords& measured, double scale, const std::string& metric
+) {
+  std::map<std::uint64_t, std::vector<double>> scenes_of_seed;
+  for (const Record* record : measured.records) {
+    const double value = record->metrics.at(metric) * scale;
+    scenes_of_seed[record->cell.seed].push_back(value);
+    if (!measured.apart) cell.values[{record->cell.scene, record->cell.seed}] = value;
+  }
+  std::vector<double> seed_means;
+  std::size_t fewest = measured.records.size();
+  for (const auto& [seed, values] : scenes_of_seed) {
+    seed_means.push_back(mean_of(values));
+    fewest = std::min(fewest, values.size());
+  }
+  cell.value = mean_of(seed_means);
+  cell.spread = spread_of(seed_means);
+  cell.num_scenes = static_cast<int>(fewest);
+  cell.num_seeds = static_cast<int>(seed_means.size());
+}
+
+// Why the cell cannot be compared with the others; empty: it can.
+std::string partial_note(
+    const TableCell& cell, const MeasuredRecords& measured, std::size_t expected, bool eight_bit
+) {
+  std::vector<std::string> reasons;
+  if (measured.apart) {
+    SizedScenes scenes;
+    for (const Record* record : measured.records) scenes.insert(sized_scene(*record));
+    reasons.push_back("mean over " + scenes_text(scenes, true) + " only");
+  } else if (cell.num_scenes < static_cast<int>(expected)) {
+    reasons.push_back(fmt::format("mean over {} of {} scenes", cell.num_scenes, expected));
+  }
+  if (eight_bit) reasons.push_back("of 8-bit images (psnr-8bit)");
+  return fmt::format("{}", fmt::join(reasons, ", "));
+}
+
+std::string text_field(const Record& record, const std::string& field) {
+  if (field == "resolution") return record.resolution;
+  const auto it = record.environment.find(field);
+  return it != record.environment.end() && it->is_string() ? it->get<std::string>() : "";
+}
+
+}  // namespace
+
+TableCell measured_cell(
+    const RecordPointers& records, const TableColumn& column, const SizedScenes& common
+) {
+  const std::string other = eight_bit_metric(column.metric);
+  const bool eight_bit = !has_metric(records, column.metric) && has_metric(records, other);
+  const std::string& metric = eight_bit ? other : column.metric;
+  const MeasuredRecords measured = records_with(records, metric, common);
+  if (measured.records.empty()) return cell_without_values(records, column);
+  TableCell cell;
+  cell.apart = measured.apart;
+  fill_means(cell, measured, column.scale, metric);
+  cell.text = format_value(cell.value, column);
+  cell.note = partial_note(cell, measured, common.size(), eight_bit);
+  cell.status = cell.note.empty() ? CellStatus::kOk : CellStatus::kPartial;
+  return cell;
+}
+
+TableCell text_cell(const RecordPointers& records, const TableColumn& column) {
+  std::set<std::string> values;
+  for (const Record* record : records)
+    if (const std::string text = text_field(*record, column.field); record->ok() && !text.empty())
+      values.insert(text);
+  if (values.empty()) return cell_without_values(records, column);
+  TableCell cell;
+  cell.status = CellStatus::kOk;
+  for (const std::string& value : values) cell.text += (cell.text.empty() ? "" : ", ") + value;
+  return cell;
+}
+
+TableCell published_cell(
+    const TableDefinition& definition, const TableColumn& column, const TableRowDefinition& row
+) {
+  TableCell cell;
+  const PublishedValue* value =
+      find_published(definition.paper_table, column.dataset, row.paper_row, column.paper_column);
+  cell.status = value ? CellStatus::kOk : CellStatus::kNotApplicable;
+  if (!value) return cell;
+  cell.value = value->value;
+  cell.text = value->text;
+  cell.note = value->source;
+  return cell;
+}
+
+std::string failure_note(const Record& record) {
+  std::string note = fmt::format(
+      "{} failed ({}: {})", record.cell.text(), record.failure->stage, record.failure->message
+  );
+  std::replace(note.begin(), note.end(), '\n', ' ');
+  return note;
+}
+
+}  // namespace glint

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// One cell of a table from the records of its method and dataset.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reports/tables/common_scenes.h"
+#include "reports/tables/tables.h"
+
+namespace glint {
+
+using RecordPointers = std::vector<const Record*>;
+
+// Over scenes first, then over seeds. `common`: the scenes that the column's means are taken over.
+// Fewer of them make the cell partial; none of them leaves it `apart`, the mean of what there is.
+// Where there is no PSNR but that of 8-bit images, the cell holds that and is partial, too.
+TableCell measured_cell(
+    const RecordPointers& records, const TableColumn& column, const SizedScenes& common
+);
+
+// What the finished records say of `column.field`, each once.
+TableCell text_cell(const RecordPointers& records, const TableColumn& column);
+
+TableCell published_cell(
+    const TableDefinition& definition, const TableColumn& column, const TableRowDefinition& row
+);
+
+// "room_1/tsgs/0 failed (train: ...)", in one line.
+std::string failure_note(const Record& record);
+
+}  // namespace glint
