@@ -17,9 +17,10 @@ struct MapPlaces {
   std::string map;  // id in the table (glint/scene/maps.h)
   std::vector<std::string> places;
 };
-// Own run folders, the layouts of 3DGS, 2DGS and PGSR (test/ours_*/renders), EasyVolcap, EnvGS and
-// GLINT (RENDER, DEPTH, NORMAL; val_depthZ_*.npy), nerfbaselines (color), gsplat
-// (renders/val_*), and plain folders rgb, depth, normal. Adding a layout is adding a line. The image comes first.
+// Own run folders, the layouts of 3DGS, 2DGS and PGSR (test/ours_*/renders), gsplat
+// (renders/val_*), EasyVolcap, EnvGS and GLINT (RENDER, DEPTH, NORMAL; val_depthZ_*.npy),
+// nerfbaselines (color), and plain folders rgb, depth, normal. Adding a layout is adding a line.
+// The image comes first.
 std::vector<MapPlaces> map_places();
 
 // How files were given to views.
