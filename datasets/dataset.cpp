@@ -74,9 +74,11 @@ std::vector<Candidate> surest_loaders(const fs::path& folder) {
   throw Error(
       ExitCode::kBadReference,
       fmt::format(
-          "{}: several loaders know it:{}\nSay which with --loader ({}) of `dataset info`, `check` "
-          "and `pack`, or with the field loader of a profile's scene; other verbs take the file "
-          "that `dataset pack` writes. Or move the files that do not belong to it away",
+          "{}: several loaders know it:{}\nSay which with --loader ({}) of `dataset info`, "
+          "`check`, `pack` and `export`, or with the field loader of a profile's scene; other "
+          "verbs "
+          "take the file that `dataset pack` writes. Or move the files that do not belong to it "
+          "away",
           folder.string(),
           found,
           options
