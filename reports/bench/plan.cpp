@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "glint/core/nearest.h"
 #include "glint/method.h"
 
 namespace glint {
@@ -20,6 +21,16 @@ bool any_matches(const std::vector<std::string>& patterns, const CellKey& cell) 
   return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
     return matches(pattern, cell);
   });
+}
+
+// For a misspelt scene or method of --only.
+std::string hint_for(const Profile& profile, const CellFilter& filter) {
+  std::vector<std::string> known = profile.methods;
+  for (const SceneSource& source : profile.sources()) known.push_back(source.scene);
+  for (const std::string& pattern : filter.only)
+    if (const std::string nearest = nearest_word(pattern, known); !nearest.empty())
+      return fmt::format("; did you mean '{}'?", nearest);
+  return "; scenes and methods: " + comma_list(known);
 }
 
 }  // namespace
@@ -44,15 +55,16 @@ std::vector<PlanCell> make_plan(
   GLINT_CHECK(
       !plan.empty(),
       kUsage,
-      "no cell left: profile {} has {} scenes and {} methods, none passes --only and --skip",
+      "no cell left: profile {} has {} scenes and {} methods, none passes --only and --skip{}",
       profile.name,
       profile.scenes.size(),
-      profile.methods.size()
+      profile.methods.size(),
+      hint_for(profile, filter)
   );
   return plan;
 }
 
-double estimated_seconds(
+std::optional<double> estimated_seconds(
     const PlanCell& cell, const std::vector<Record>& records, const std::vector<std::string>& stages
 ) {
   double sum = 0;
@@ -62,7 +74,7 @@ double estimated_seconds(
       for (const std::string& stage : stages) sum += record.timings.value(stage, 0.0);
       ++count;
     }
-  return count > 0 ? sum / count : 0;
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
 }  // namespace glint

@@ -23,7 +23,8 @@ void add_figures_verb(CommandLine& line) {
       line.app,
       "figures",
       "write OUT/PROFILE/figures/*.png and *.pdf",
-      [&line, methods] { return run_figures(line.common, *methods); }
+      [&line, methods] { return run_figures(line.common, *methods); },
+      kFolderOptions | kThreadsOption
   );
   verb->add_option(
           "--methods", *methods, "globs of the methods to show, such as 2dgs,glint,*/prior"

@@ -42,7 +42,8 @@ void add_table_verb(CommandLine& line) {
       line.app,
       "table",
       "print the tables of a profile from its records",
-      [&line, options] { return run_table(line.common, *options); }
+      [&line, options] { return run_table(line.common, *options); },
+      kFolderOptions
   );
   verb->add_option("tables", options->ids, "ids, e.g. table1_photometric; none: all, and written");
   verb->add_option("--format", options->format, "terminal, md, tex, csv, html or json")
