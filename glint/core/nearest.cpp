@@ -45,7 +45,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   });
   if (begun != known.end()) return *begun;
   std::string nearest;
-  std::size_t best = wanted.size() / 3 + 2;
+  std::size_t best = std::max<std::size_t>(1, (wanted.size() + 1) / 3) + 1;
   for (const std::string& name : known) {
     const std::size_t distance = edit_distance(wanted, lower_case(name));
     if (distance < best && distance < name.size()) best = distance, nearest = name;

@@ -13,7 +13,7 @@ namespace glint {
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 // The first known word that begins with the word (of three letters or more), or else the one with
-// the fewest edits, at most a third of the word's letters and one. Case does not count. Empty: none
+// the fewest edits, about a third of the word's letters at most. Case does not count. Empty: none
 // is near.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 

@@ -201,7 +201,9 @@ int run_command_line(int argc, const char* const* argv) {
 }
 
 void print_json(const Json& json) {
-  print_text(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  Json document = {{"schema", kVerbSchema}};
+  document.update(json);
+  print_text(document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void print_text(std::string_view text) {

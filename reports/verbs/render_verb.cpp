@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/ranges.h>
-
 #include <memory>
 
 #include "glint/core/interrupt.h"
@@ -109,8 +107,9 @@ CameraPath path_of(const RenderArguments& arguments, const Scene& scene) {
 
 void print_path(const CommonOptions& common, const PathFrames& options, const PathResult& result) {
   const fs::path sheets = options.folder / "layers/%04d.png", video = options.folder / "layers.mp4";
-  const std::string command =
-      fmt::format("{}", fmt::join(video_command(sheets, options.path.fps, video), " "));
+  std::string command;  // for a shell
+  for (const std::string& word : video_command(sheets, options.path.fps, video))
+    command += (word.find_first_of("( %") == std::string::npos ? word : "'" + word + "'") + " ";
   if (common.json) {
     print_json(
         {{"folder", options.folder.string()},

@@ -94,7 +94,10 @@ struct Verb {
   void (*add)(CommandLine& line);
 };
 
-// Results go here: one JSON document, or text.
+// Of the JSON that verbs print (docs/JSON.md); grows when a field changes its meaning or goes.
+inline constexpr int kVerbSchema = 1;
+
+// Results go here: one JSON document, or text. Documents open with "schema".
 void print_json(const Json& json);
 void print_text(std::string_view text);
 bool color_terminal();  // standard output is a terminal and NO_COLOR is not set
