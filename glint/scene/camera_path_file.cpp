@@ -79,6 +79,25 @@ double number(const Json& frame, const Json& file, const char* key, const std::s
   return 0;
 }
 
+// Pixels, of any sign: a cropped picture's principal point may lie beside it.
+double coordinate(
+    const Json& frame, const Json& file, const char* key, double otherwise, const std::string& where
+) {
+  for (const Json* json : {&frame, &file})
+    if (const auto it = json->find(key); it != json->end()) {
+      GLINT_CHECK(
+          it->is_number() && std::abs(it->get<double>()) < 1e7,
+          kBadPrediction,
+          "{}: {} is {}, expected a number of pixels",
+          where,
+          key,
+          it->dump()
+      );
+      return it->get<double>();
+    }
+  return otherwise;
+}
+
 struct LensKeys {
   const char *width, *height, *fx, *fy, *cx, *cy;
 };
@@ -113,10 +132,10 @@ Camera read_lens(
   camera.width = size.width, camera.height = size.height;
   camera.fx = fx > 0 ? fx : angle > 0 ? 0.5 * size.width / std::tan(0.5 * angle) : 0;
   GLINT_CHECK(camera.fx > 0, kBadPrediction, "{}: a size, but no focal length {}", where, keys.fx);
-  const double fy = of(keys.fy), cx = of(keys.cx), cy = of(keys.cy);
+  const double fy = of(keys.fy);
   camera.fy = fy > 0 ? fy : camera.fx;
-  camera.cx = cx > 0 ? cx : 0.5 * size.width;
-  camera.cy = cy > 0 ? cy : 0.5 * size.height;
+  camera.cx = coordinate(frame, file, keys.cx, 0.5 * size.width, where);
+  camera.cy = coordinate(frame, file, keys.cy, 0.5 * size.height, where);
   return camera;
 }
 
