@@ -133,6 +133,12 @@ class TwoDgs final : public Method {
     sh_degree_ = 3;
   }
   Json config() const override { return config_to_json(config_); }
+  std::vector<ConfigField> fields() const override { return config_fields(config_); }
+  std::vector<std::string> inputs() const override {
+    std::vector<std::string> inputs;
+    config_.geometry.add_inputs(inputs);
+    return inputs;
+  }
   void check_finite() const override { glint::check_finite(set_.cloud(), "interface"); }
   std::size_t num_surfels() const override { return set_.cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }

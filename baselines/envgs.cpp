@@ -218,6 +218,13 @@ class EnvGs final : public Method {
     base_degree_ = environment_degree_ = 3;
   }
   Json config() const override { return config_to_json(config_); }
+  std::vector<ConfigField> fields() const override { return config_fields(config_); }
+  std::vector<std::string> inputs() const override {
+    std::vector<std::string> inputs;
+    config_.geometry.add_inputs(inputs);
+    config_.perceptual.add_inputs(inputs);
+    return inputs;
+  }
   void check_finite() const override {
     glint::check_finite(base_.cloud(), "interface");
     glint::check_finite(environment_.cloud(), "environment");

@@ -41,6 +41,7 @@ class Pgsr final : public Method {
   void save(const std::string& folder) const override { model_.save(folder); }
   void load(const std::string& folder) override { model_.load(folder); }
   Json config() const override { return config_to_json(config_); }
+  std::vector<ConfigField> fields() const override { return config_fields(config_); }
   void check_finite() const override { glint::check_finite(model_.set().cloud(), "interface"); }
   std::size_t num_surfels() const override { return model_.set().cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }

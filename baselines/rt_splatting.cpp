@@ -211,6 +211,14 @@ class RtSplatting final : public Method {
     sh_degree_ = 3;
   }
   Json config() const override { return config_to_json(config_); }
+  std::vector<ConfigField> fields() const override { return config_fields(config_); }
+  std::vector<std::string> inputs() const override {
+    std::vector<std::string> inputs;
+    config_.geometry.add_inputs(inputs);
+    config_.perceptual.add_inputs(inputs);
+    inputs.push_back(kGlassMasks);
+    return inputs;
+  }
   void check_finite() const override {
     glint::check_finite(set_.cloud(), "interface");
     field_.check_finite();

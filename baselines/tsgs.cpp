@@ -184,6 +184,14 @@ class Tsgs final : public Method {
     load_lobes(folder, json.value("lobes", Json(kNoLobes)));  // older runs have none
   }
   Json config() const override { return config_to_json(config_); }
+  std::vector<ConfigField> fields() const override { return config_fields(config_); }
+  std::vector<std::string> inputs() const override {
+    std::vector<std::string> inputs;
+    if (config_.lambda_normal > 0) inputs.push_back(prior_input("normal"));
+    if (config_.delighted) inputs.push_back(prior_input("delighted"));
+    inputs.push_back(kGlassMasks);
+    return inputs;
+  }
   void check_finite() const override {
     glint::check_finite(model_.set().cloud(), "interface");
     if (lobes_) lobes_->check_finite("lobes");

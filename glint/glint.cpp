@@ -120,6 +120,14 @@ class Glint final : public Method {
     phase_.reflection = config_.with_reflection;
   }
   Json config() const override { return config_to_json(config_); }
+  std::vector<ConfigField> fields() const override { return config_fields(config_); }
+  std::vector<std::string> inputs() const override {
+    std::vector<std::string> inputs;
+    config_.geometry.add_inputs(inputs);
+    if (config_.with_transmission) config_.transmission_losses.add_inputs(inputs);
+    config_.perceptual.add_inputs(inputs);
+    return inputs;
+  }
   void check_finite() const override {
     glint::check_finite(model_.interface.cloud(), "interface");
     glint::check_finite(model_.transmission.cloud(), "transmission");

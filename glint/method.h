@@ -50,6 +50,11 @@ class Method {
   // After initialize(), step() goes on from what is loaded; else it can only be rendered.
   virtual void load(const std::string& folder) = 0;
   virtual Json config() const = 0;
+  // The same with meanings, for `glint-bench methods`: config_fields(config_). Else without.
+  virtual std::vector<ConfigField> fields() const;
+  // What training with this config looks at beside photos, cameras and points, a word or two each:
+  // "depth prior", "glass masks", "LPIPS weights".
+  virtual std::vector<std::string> inputs() const { return {}; }
   // Throws Error naming the parameter array and surfel when a parameter is not finite.
   virtual void check_finite() const = 0;
   virtual std::size_t num_surfels() const = 0;

@@ -19,4 +19,12 @@ Json read_json_object(const std::filesystem::path& path, ExitCode code) {
   });
 }
 
+std::string ConfigField::type() const {
+  if (value.is_string()) return "text";
+  if (value.is_boolean()) return "true or false";
+  if (value.is_number_integer()) return "integer";
+  if (value.is_number()) return "number";
+  return value.is_array() ? "list" : "table";
+}
+
 }  // namespace glint

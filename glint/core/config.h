@@ -16,8 +16,10 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "glint/core/error.h"
+#include "glint/core/nearest.h"
 
 namespace glint {
 
@@ -33,6 +35,27 @@ Json config_to_json(const Config& config) {
   Config copy = config;
   copy.visit([&](const char* name, auto& field, const char*) { json[name] = field; });
   return json;
+}
+
+// A field as people read it.
+struct ConfigField {
+  std::string name;
+  Json value;           // the default, or what a config has there
+  std::string meaning;  // one line
+
+  // "text", "true or false", "integer", "number", "list", "table"
+  std::string type() const;
+};
+
+// The fields in the order of visit().
+template <class Config>
+std::vector<ConfigField> config_fields(const Config& config) {
+  std::vector<ConfigField> fields;
+  Config copy = config;
+  copy.visit([&](const char* name, auto& field, const char* meaning) {
+    fields.push_back({name, field, meaning});
+  });
+  return fields;
 }
 
 namespace detail {
@@ -51,23 +74,31 @@ bool set_field(Field& field, const Json& value) {
 }
 }  // namespace detail
 
-// Sets every field named in `json`. Errors (kUsage): unknown name (the known ones are listed),
-// wrong type. `where` opens the message.
+// Sets every field named in `json`. Errors (kUsage): unknown name (the nearest is named, the known
+// ones are listed), wrong type. `where` opens the message.
 template <class Config>
 void config_from_json(Config& config, const Json& json, std::string_view where) {
   for (const auto& entry : json.items()) {
     const std::string& key = entry.key();
     const Json& value = entry.value();
     bool found = false;
-    std::string known;
+    std::vector<std::string> known;
     config.visit([&](const char* name, auto& field, const char*) {
-      known += (known.empty() ? "" : ", ") + std::string(name);
+      known.emplace_back(name);
       if (key != name) return;
       found = true;
       const bool fits = detail::set_field(field, value);
       GLINT_CHECK(fits, kUsage, "{}: {} cannot be {}", where, key, value.dump());
     });
-    GLINT_CHECK(found, kUsage, "{}: no field '{}'; known fields: {}", where, key, known);
+    GLINT_CHECK(
+        found,
+        kUsage,
+        "{}: no field '{}'; {}known fields: {}",
+        where,
+        key,
+        did_you_mean(key, known),
+        comma_list(known)
+    );
   }
 }
 

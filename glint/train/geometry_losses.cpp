@@ -10,6 +10,13 @@
 
 namespace glint {
 
+std::string prior_input(MapId prior) { return std::string(prior.row().id) + " prior"; }
+
+void GeometryLossConfig::add_inputs(std::vector<std::string>& inputs) const {
+  if (lambda_depth > 0) inputs.push_back(prior_input("depth"));
+  if (lambda_normal > 0) inputs.push_back(prior_input("normal"));
+}
+
 void require_prior(
     const Scene& scene,
     MapId prior,

@@ -39,6 +39,8 @@ struct GeometryLossConfig {
     v("near_consistency", near_consistency, "normal consistency weighs near pixels more");
     v("depth_gradient_scales", depth_gradient_scales, "scales of the depth prior's gradient term");
   }
+  // The priors that these weights look at (Method::inputs).
+  void add_inputs(std::vector<std::string>& inputs) const;
   // Published windows to this run's iterations.
   template <class F>
   void scale(F&& scaled) {
@@ -59,6 +61,9 @@ struct PriorLosses {
 // Which depth of a rasterised set its losses look at: expected (depth_ratio 0 of [Huang24]) or
 // median (1), where the transmittance falls below one half.
 enum class LossDepth { kExpected, kMedian };
+
+// "depth prior", as Method::inputs() names it.
+std::string prior_input(MapId prior);
 
 class GeometryLosses {
  public:

@@ -11,6 +11,8 @@
 
 namespace glint {
 
+inline constexpr const char* kGlassMasks = "glass masks";  // in Method::inputs()
+
 // [H][W][1], 1: glass. Empty: the view has none.
 const Image& glass_mask(const View& view);
 

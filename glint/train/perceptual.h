@@ -35,6 +35,10 @@ struct PerceptualConfig {
     v("lpips_from", lpips_from, "first published iteration of LPIPS");
     v("lpips_unit_range", lpips_unit_range, "its network is fed [0, 1] instead of [-1, 1]");
   }
+  // Of Method::inputs().
+  void add_inputs(std::vector<std::string>& inputs) const {
+    if (lambda_lpips > 0) inputs.emplace_back("LPIPS weights");
+  }
 };
 
 // With VGG16 where its weights are found, otherwise with AlexNet; `note` says which. Null without

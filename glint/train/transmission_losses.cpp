@@ -28,6 +28,12 @@ GeometryLossConfig direct_geometry(const TransmissionLossConfig& config) {
 
 }  // namespace
 
+void TransmissionLossConfig::add_inputs(std::vector<std::string>& inputs) const {
+  if (lambda_transparency <= 0) return;
+  inputs.push_back(prior_input("albedo"));
+  if (guidance == "release") inputs.push_back(prior_input("basecolor"));
+}
+
 std::vector<std::string> TransmissionLosses::set_up(
     const TransmissionLossConfig& config, const Scene& scene, const std::string& method
 ) {

@@ -53,6 +53,8 @@ struct TransmissionLossConfig {
     v("opacity_from", opacity_from, "first published iteration of that");
     v("opacity_until", opacity_until, "last published iteration of that, exclusive");
   }
+  // The priors that guidance looks at (Method::inputs).
+  void add_inputs(std::vector<std::string>& inputs) const;
   template <class F>
   void scale(F&& scaled) {
     for (int* window :

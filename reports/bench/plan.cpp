@@ -1,9 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/plan.h"
 
+#include "glint/core/nearest.h"
 #include "glint/method.h"
 
 namespace glint {
+
+namespace {
+
+// For a misspelt scene or method of --only.
+std::string hint_for(const Profile& profile, const CellFilter& filter) {
+  std::vector<std::string> known = profile.methods;
+  for (const SceneSource& source : profile.sources()) known.push_back(source.scene);
+  for (const std::string& pattern : filter.only)
+    if (const std::string nearest = nearest_word(pattern, known); !nearest.empty())
+      return fmt::format("; did you mean '{}'?", nearest);
+  return "; scenes and methods: " + comma_list(known) +
+         "; a method that the profile does not name is run by --methods";
+}
+
+}  // namespace
 
 std::vector<PlanCell> make_plan(
     const Profile& profile, const CellFilter& filter, const std::vector<std::string>& assignments
@@ -22,16 +38,16 @@ std::vector<PlanCell> make_plan(
   GLINT_CHECK(
       !plan.empty(),
       kUsage,
-      "no cell left: profile {} has {} scenes and {} methods, none passes --only and --skip; "
-      "a method that the profile does not name is run by --methods",
+      "no cell left: profile {} has {} scenes and {} methods, none passes --only and --skip{}",
       profile.name,
       profile.scenes.size(),
-      methods.size()
+      methods.size(),
+      hint_for(profile, filter)
   );
   return plan;
 }
 
-double estimated_seconds(
+std::optional<double> estimated_seconds(
     const PlanCell& cell, const std::vector<Record>& records, const std::vector<std::string>& stages
 ) {
   double sum = 0;
@@ -41,7 +57,7 @@ double estimated_seconds(
       for (const std::string& stage : stages) sum += record.timings.value(stage, 0.0);
       ++count;
     }
-  return count > 0 ? sum / count : 0;
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 // The cells of a profile (scene x method x seed), filtered, and how long each will take.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,8 @@ std::vector<PlanCell> make_plan(
 );
 
 // Seconds that these stages of the cell will take, from the mean of finished cells of the same
-// method; 0: unknown.
-double estimated_seconds(
+// method. Nothing: unknown, none has finished.
+std::optional<double> estimated_seconds(
     const PlanCell& cell, const std::vector<Record>& records, const std::vector<std::string>& stages
 );
 

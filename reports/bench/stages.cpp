@@ -89,13 +89,17 @@ std::map<std::string, double> eval_stage(
     const MeshProtocol& mesh
 ) {
   std::vector<Scores> scores;
-  for (const View& view : scene.test)
+  Progress progress("score", scene.test.size() + 1);  // the meshes last
+  for (const View& view : scene.test) {
     scores.push_back(with_exit_code(ExitCode::kBadPrediction, [&] {
       return score_view(view_folder(spec.folder, view.name), view);
     }));
+    progress.advance(1, view.name);
+  }
   Scores means = mean_scores(scores);
   Json recipe = Json::object();
   if (score_meshes.here()) means.merge(score_meshes(spec, scene, mesh, recipe));
+  progress.advance(1, "meshes");
   means.insert(cost.begin(), cost.end());
   write_metrics(spec, means, scores, scene.test, recipe);
   return means;

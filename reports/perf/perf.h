@@ -53,6 +53,10 @@ struct PerfCases {
 // SIMD and scalar alternate, so a machine that slows down slows both.
 std::vector<PerfRow> run_perf(const PerfOptions& options);
 
+// Seconds of one training step of a method (id and config as create_method takes them) on the scene
+// of the ops: the least of a few, after one to warm up.
+double seconds_of_step(const std::string& method, const Json& config, const PerfOptions& options);
+
 Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows);
 std::string perf_to_text(const PerfOptions& options, const std::vector<PerfRow>& rows);
 

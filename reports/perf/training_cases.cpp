@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
+#include <limits>
 #include <memory>
 
 #include "glint/core/files.h"
@@ -137,6 +140,20 @@ std::vector<PerfCase> training_cases(const PerfOptions& options) {
 }
 
 }  // namespace
+
+double seconds_of_step(const std::string& method, const Json& config, const PerfOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  const PerfCase timed = step_case(method, method, config, options);
+  timed.run();
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < options.runs; ++i) {
+    const auto start = Clock::now();
+    timed.run();
+    synchronize();
+    least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  return least;
+}
 
 GLINT_REGISTER(PerfCases, {"training", training_cases})
 

@@ -40,7 +40,7 @@ Json environment_json() {
       {"date", utc_now()}};
 }
 
-void choose_device(const std::string& requested) {
+void choose_device(const std::string& requested, bool say_why) {
   GLINT_CHECK(
       requested == "auto" || requested == "cpu" || requested == "cuda",
       kUsage,
@@ -57,7 +57,7 @@ void choose_device(const std::string& requested) {
   if (requested == "cpu") return use_cpu();
   if (device.usable)
     gpu::use_cuda();
-  else
+  else if (say_why)
     log::info("on the CPU: " + device.why_not);
 }
 

@@ -12,8 +12,8 @@ namespace glint {
 Json environment_json();
 
 // Where ops run from now on: "cpu", "cuda", or "auto": the GPU where one is usable, else the CPU,
-// with one line that says why. Call before the first scene is loaded. Errors: kEnvironment ("cuda"
-// without a usable device), kUsage (others).
-void choose_device(const std::string& requested);
+// with one line that says why if `say_why`. Call before the first scene is loaded. Errors:
+// kEnvironment ("cuda" without a usable device), kUsage (others).
+void choose_device(const std::string& requested, bool say_why = true);
 
 }  // namespace glint

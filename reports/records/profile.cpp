@@ -4,6 +4,8 @@
 #include <set>
 
 #include "glint/core/files.h"
+#include "glint/core/nearest.h"
+#include "glint/method.h"
 #include "reports/records/embedded.h"
 
 namespace glint {
@@ -13,15 +15,14 @@ namespace {
 std::string profile_text(const std::string& name) {
   const auto it = embedded_files().find(fmt::format("profiles/{}.toml", name));
   if (it != embedded_files().end()) return std::string(it->second);
-  std::string known;
-  for (const std::string& profile : embedded_names("profiles"))
-    known += (known.empty() ? "" : ", ") + profile;
+  const std::vector<std::string> known = embedded_names("profiles");
   GLINT_CHECK(
       fs::is_regular_file(name),
       kUsage,
-      "--profile {}: no such profile or TOML file; profiles: {}",
+      "--profile {}: no such profile or TOML file; {}profiles: {}",
       name,
-      known
+      did_you_mean(name, known),
+      comma_list(known)
   );
   return with_exit_code(ExitCode::kUsage, [&] { return read_file(name); });
 }
@@ -96,7 +97,10 @@ Json method_overrides(
   Json config = profile.overrides.value(method, Json::object());
   for (const std::string& text : assignments) {
     const auto [target, assignment] = split_assignment(text);
-    if (!target.empty() && target != method) continue;
+    if (!target.empty() && target != method) {
+      find_method(target);  // a misspelt one is no method's
+      continue;
+    }
     const std::size_t equals = assignment.find('=');
     Json value = Json::parse(assignment.substr(equals + 1), nullptr, false);
     if (value.is_discarded()) value = assignment.substr(equals + 1);

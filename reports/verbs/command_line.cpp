@@ -6,8 +6,10 @@
 #include <cstdlib>
 #include <new>
 
+#include "glint/core/nearest.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
+#include "reports/records/embedded.h"
 #include "reports/records/environment.h"
 #include "reports/records/revision.h"
 #include "reports/verbs/verb.h"
@@ -16,38 +18,58 @@ namespace glint {
 
 namespace {
 
-void add_common_options(CLI::App& verb, CommonOptions& common) {
-  const char* group = "Common";
-  verb.add_option("--out", common.out, "results lie in OUT/PROFILE; that folder itself does, too")
-      ->capture_default_str()
-      ->group(group);
-  verb.add_option("--data", common.data, "scenes that were made or fetched")
-      ->capture_default_str()
-      ->group(group);
-  verb.add_option("--profile", common.profile, "smoke, ci, small, paper, or a TOML file")
-      ->capture_default_str()
-      ->group(group);
+// Where results and data lie, and which cells: the options of a profile.
+void add_profile_options(CLI::App& verb, CommonOptions& common, CommonOption uses) {
+  if (uses & kOutOption)
+    verb.add_option("--out", common.out, "results lie in OUT/PROFILE; that folder itself does, too")
+        ->capture_default_str();
+  if (uses & kDataOption)
+    verb.add_option("--data", common.data, "scenes that were made or fetched")
+        ->capture_default_str();
+  if (uses & kProfileOption)
+    verb.add_option(
+            "--profile", common.profile, comma_list(embedded_names("profiles")) + ", or a TOML file"
+    )
+        ->capture_default_str();
+  if (!(uses & kCellOptions)) return;
   verb.add_option("--methods", common.methods, "globs of methods, a,b,c; also beyond the profile's")
-      ->delimiter(',')
-      ->group(group);
-  verb.add_option("--only", common.only, "only cells whose scene/method/seed matches a glob")
-      ->group(group);
-  verb.add_option("--skip", common.skip, "no cells that match a glob")->group(group);
-  verb.add_option("--seed", common.seed, "one seed in place of the profile's")->group(group);
-  verb.add_option("--iterations", common.iterations, "training steps in place of the profile's")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
-  verb.add_option("--set", common.set, "config field: name=value or method.name=value")
-      ->group(group);
-  verb.add_option("--device", common.device, "auto, cpu or cuda")
-      ->capture_default_str()
-      ->group(group);
-  verb.add_option("--threads", common.threads, "0: all cores")
-      ->check(CLI::NonNegativeNumber)
-      ->group(group);
-  verb.add_flag("--json", common.json, "one JSON document on standard output")->group(group);
-  verb.add_flag("--quiet", common.quiet, "no progress and no notes on standard error")
-      ->group(group);
+      ->delimiter(',');
+  verb.add_option("--only", common.only, "only cells whose scene/method/seed matches a glob");
+  verb.add_option("--skip", common.skip, "no cells that match a glob");
+}
+
+// How a method is trained.
+void add_training_options(CLI::App& verb, CommonOptions& common, CommonOption uses) {
+  if (uses & kSeedOption) verb.add_option("--seed", common.seed, "one seed, a whole number");
+  if (uses & kIterationsOption)
+    verb.add_option("--iterations", common.iterations, "training steps; else as the profile says")
+        ->check(CLI::PositiveNumber);
+  if (uses & kSetOption)
+    verb.add_option(
+        "--set",
+        common.set,
+        "config field: name=value or method.name=value (`glint-bench methods ID` lists them)"
+    );
+}
+
+void add_machine_options(CLI::App& verb, CommonOptions& common, CommonOption uses) {
+  if (uses & kDeviceOption)
+    verb.add_option("--device", common.device, "auto, cpu or cuda")->capture_default_str();
+  if (uses & kThreadsOption)
+    verb.add_option("--threads", common.threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  if (uses & kJsonOption)
+    verb.add_flag("--json", common.json, "one JSON document on standard output");
+  if (uses & kQuietOption)
+    verb.add_flag("--quiet", common.quiet, "no progress and no notes on standard error");
+}
+
+void add_common_options(CLI::App& verb, CommonOptions& common, CommonOption uses) {
+  const std::string own_group = verb.option_defaults()->get_group();
+  verb.option_defaults()->group("Common");
+  add_profile_options(verb, common, uses);
+  add_training_options(verb, common, uses);
+  add_machine_options(verb, common, uses);
+  verb.option_defaults()->group(own_group);
 }
 
 int report_error(const std::string& message, ExitCode code) {
@@ -55,14 +77,65 @@ int report_error(const std::string& message, ExitCode code) {
   return static_cast<int>(code);
 }
 
+std::vector<std::string> verbs_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(verb->get_name());
+  return names;
+}
+
+// Names without their dashes.
+std::vector<std::string> options_of(const CLI::App& verb) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : verb.get_options())
+    if (option->nonpositional()) names.push_back(option->get_name().substr(2));
+  return names;
+}
+
+// What is wrong with the first word that no verb took; empty: every word was taken, something else
+// is wrong. CLI11 looks for what is missing first and has no suggestions.
+std::string unknown_word(const CLI::App& app) {
+  const CLI::App* verb = &app;
+  std::string name = app.get_name();
+  while (!verb->get_subcommands().empty()) {
+    verb = verb->get_subcommands().front();
+    name += " " + verb->get_name();
+  }
+  const std::vector<std::string> left = app.remaining(true);
+  if (left.empty()) return {};
+  const std::string word = left.front().substr(0, left.front().find('='));
+  const std::vector<std::string> verbs = verbs_of(*verb), options = options_of(*verb);
+  if (!verbs.empty() && !word.starts_with("-"))
+    return fmt::format(
+        "{}: no verb '{}'; {}verbs: {}", name, word, did_you_mean(word, verbs), comma_list(verbs)
+    );
+  const std::string name_of_option =
+      word.substr(std::min(word.find_first_not_of('-'), word.size()));
+  return fmt::format(
+      "{}: {} '{}'; {}options: {}",
+      name,
+      word.starts_with("-") ? "no option" : "no use for",
+      word,
+      did_you_mean(name_of_option, options),
+      comma_list(options)
+  );
+}
+
+// CLI11 prints help and messages; its own exit codes become ours.
+int explain(const CLI::App& app, const CLI::ParseError& error) {
+  const bool asked = error.get_exit_code() == 0;  // --help, --version
+  const std::string unknown = asked ? "" : unknown_word(app);
+  if (unknown.empty()) return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+  return report_error(unknown, ExitCode::kUsage);
+}
+
 int parse_and_run(CommandLine& line, int argc, const char* const* argv) {
   try {
     line.app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // CLI11 prints help and messages; its own codes become ours.
-    return line.app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+    return explain(line.app, error);
   }
-  line.common.apply();
+  line.common.apply(line.uses);
   return line.action();
 }
 
@@ -86,24 +159,32 @@ Profile CommonOptions::resolved_profile() const {
   return resolved;
 }
 
-void CommonOptions::apply() const {
+void CommonOptions::apply(CommonOption uses) const {
   set_quiet(quiet);
   if (threads > 0) set_num_threads(threads);
-  choose_device(device);
+  if (uses & kDeviceOption) choose_device(device, (uses & kDeviceMatters) != 0);
 }
 
 CommandLine::CommandLine() {
+  app.name("glint-bench");
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("glint-bench 0.1.0 ({})", git_revision()));
   for (const auto& [id, verb] : Registry<Verb>::all()) verb.add(*this);
 }
 
 CLI::App* CommandLine::add_verb(
-    CLI::App& parent, const std::string& name, const std::string& help, Action run
+    CLI::App& parent,
+    const std::string& name,
+    const std::string& help,
+    Action run,
+    CommonOption uses
 ) {
   CLI::App* verb = parent.add_subcommand(name, help);
-  add_common_options(*verb, common);
-  verb->callback([this, run = std::move(run)] { action = run; });
+  add_common_options(*verb, common, uses);
+  verb->callback([this, uses, run = std::move(run)] {
+    action = run;
+    this->uses = uses;
+  });
   return verb;
 }
 
@@ -123,7 +204,9 @@ int run_command_line(int argc, const char* const* argv) {
 }
 
 void print_json(const Json& json) {
-  print_text(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  Json document = {{"schema", kVerbSchema}};
+  document.update(json);
+  print_text(document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void print_text(std::string_view text) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <memory>
+#include <set>
 
+#include "glint/core/nearest.h"
 #include "glint/core/progress.h"
 #include "reports/tables/compare.h"
 #include "reports/verbs/verb.h"
@@ -15,12 +18,37 @@ struct CompareVerbOptions {
   CompareOptions compare;
 };
 
+// Every glob names a metric that either store has.
+void check_metrics(const std::vector<Record>& records, const std::vector<std::string>& globs) {
+  std::set<std::string> ids;
+  for (const Record& record : records)
+    for (const auto& [id, value] : record.metrics) ids.insert(id);
+  const auto named = [&](const std::string& glob) {
+    return std::any_of(ids.begin(), ids.end(), [&](const auto& id) {
+      return glob_match(glob, id);
+    });
+  };
+  const std::vector<std::string> known(ids.begin(), ids.end());
+  for (const std::string& glob : globs)
+    GLINT_CHECK(
+        named(glob),
+        kUsage,
+        "--metric {}: neither store has such a metric; {}metrics: {}",
+        glob,
+        did_you_mean(glob, known),
+        comma_list(known)
+    );
+}
+
 int run_compare(const CommonOptions& common, const CompareVerbOptions& options) {
   const auto store = [&](const std::string& path) {
     return chosen_records(read_store(path), common.filter());
   };
-  const Comparison comparison =
-      compare_records(store(options.before), store(options.after), options.compare);
+  const std::vector<Record> before = store(options.before), after = store(options.after);
+  std::vector<Record> both = before;
+  both.insert(both.end(), after.begin(), after.end());
+  check_metrics(both, options.compare.metrics);
+  const Comparison comparison = compare_records(before, after, options.compare);
   const bool on_stdout = options.markdown == "-";
   if (!options.markdown.empty() && !on_stdout)
     write_file(options.markdown, comparison_markdown(comparison));
@@ -46,9 +74,9 @@ void add_compare_verb(CommandLine& line) {
       line.app,
       "compare",
       "what changed between two stores of records; exits with 4 on a regression, and where they "
-      "have "
-      "nothing in common",
-      [&line, options] { return run_compare(line.common, *options); }
+      "have nothing in common",
+      [&line, options] { return run_compare(line.common, *options); },
+      kCellOptions | kJsonOption | kQuietOption
   );
   verb->add_option("before", options->before, "folder with records.jsonl, or the file")->required();
   verb->add_option("after", options->after, "the same, after the change")->required();

@@ -12,6 +12,8 @@ namespace glint {
 
 namespace {
 
+constexpr CommonOption kDatasetOptions = kThreadsOption | kJsonOption | kQuietOption;
+
 struct MakeOptions {
   std::string dataset;
   std::vector<std::string> scenes{"room_1"};
@@ -165,7 +167,8 @@ void add_pack(CommandLine& line, CLI::App& dataset) {
       dataset,
       "pack",
       "a scene in one file, which every verb takes in place of its folder",
-      [&line, options] { return run_pack(line.common, *options); }
+      [&line, options] { return run_pack(line.common, *options); },
+      kDatasetOptions
   );
   pack->add_option("folder", options->folder, "dataset folder")->required();
   pack->add_option("file", options->file, "for example room_1.safetensors")->required();
@@ -188,7 +191,8 @@ void add_make(CommandLine& line, CLI::App& dataset) {
       "render GlassRoom scenes (--seed varies the layout)",
       [&line, options, verb] {
         return run_make(line.common, *options, (*verb)->count("--out") > 0);
-      }
+      },
+      kDatasetOptions | kOutOption | kDataOption | kSeedOption
   );
   CLI::App& make = **verb;
   GlassRoomOptions& room = options->room;
@@ -208,9 +212,13 @@ void add_folder_verb(
     CommandLine& line, CLI::App& dataset, const char* name, const char* help, FolderAction action
 ) {
   auto options = std::make_shared<FolderOptions>();
-  CLI::App* verb = line.add_verb(dataset, name, help, [&line, options, action] {
-    return action(line.common, *options);
-  });
+  CLI::App* verb = line.add_verb(
+      dataset,
+      name,
+      help,
+      [&line, options, action] { return action(line.common, *options); },
+      kDatasetOptions
+  );
   verb->add_option("folder", options->folder, "dataset folder or packed scene")->required();
   add_loader_option(*verb, options->loader);
 }

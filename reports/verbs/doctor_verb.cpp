@@ -111,9 +111,13 @@ int run_doctor(const CommonOptions& common) {
 }
 
 void add_doctor_verb(CommandLine& line) {
-  line.add_verb(line.app, "doctor", "is this machine fit for it", [&line] {
-    return run_doctor(line.common);
-  });
+  line.add_verb(
+      line.app,
+      "doctor",
+      "is this machine fit for it",
+      [&line] { return run_doctor(line.common); },
+      kOutOption | kDeviceOption | kThreadsOption | kJsonOption
+  );
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "reports/bench/stage_documents.h"
 #include "reports/import/import_predictions.h"
 #include "reports/records/environment.h"
+#include "reports/verbs/headline_scores.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {
@@ -50,14 +51,20 @@ MeshProtocol mesh_protocol_of(const RunSpec& spec) {
   return mesh_protocol_for(options);
 }
 
-int print_scores(const CommonOptions& common, const fs::path& folder, const Scores& means) {
+int print_scores(
+    const CommonOptions& common, const fs::path& folder, const Scores& means, bool all
+) {
   if (common.json) {
     print_json({{"run", folder.string()}, {"metrics", means}});
     return 0;
   }
-  std::vector<std::vector<std::string>> rows;
-  for (const auto& [id, value] : means) rows.push_back({id, fmt::format("{:.4f}", value)});
-  print_text(aligned_rows(rows));
+  print_text(all ? all_scores(means) : headline_scores(means));
+  if (!all)
+    log::info(fmt::format(
+        "{} values in all: --all; those of each view: {}",
+        means.size(),
+        (folder / "metrics.json").string()
+    ));
   return 0;
 }
 
@@ -124,8 +131,15 @@ void record_single(const CommonOptions& common, const RunSpec& spec, const Recor
   ));
 }
 
-int eval_run(const CommonOptions& common, const std::string& folder) {
-  const SingleRun single = open_single_run(folder);
+struct EvalArguments {
+  std::string run, predictions, dataset, method, depth = "planar", axes = "opencv", mesh;
+  double max_pixels = 0;
+  bool all = false, force = false;
+};
+
+int eval_run(const CommonOptions& common, const EvalArguments& arguments) {
+  const std::string& folder = arguments.run;
+  const SingleRun single = open_single_run(folder, arguments.dataset);
   const MeshProtocol protocol = mesh_protocol_of(single.spec);
   const Json document = score_document(
       single.spec.method,
@@ -139,18 +153,12 @@ int eval_run(const CommonOptions& common, const std::string& folder) {
     return std::string();
   });
   record_single(common, single.spec, single_record(single, document, means));
-  return print_scores(common, folder, means);
+  return print_scores(common, folder, means, arguments.all);
 }
-
-struct PredictionArguments {
-  std::string predictions, dataset, method, depth = "planar", axes = "opencv", mesh;
-  double max_pixels = 0;
-  bool force = false;
-};
 
 // Errors (kUsage): the store has the cell, and nobody said that it may be replaced.
 void check_new_import(
-    const fs::path& records, const CellKey& cell, const PredictionArguments& arguments
+    const fs::path& records, const CellKey& cell, const EvalArguments& arguments
 ) {
   const auto stored = read_records(records);
   const Record* earlier = find_record(stored, cell);
@@ -176,9 +184,7 @@ Record record_of(const RunSpec& spec, const Profile& profile, const std::string&
   return record;
 }
 
-RunSpec spec_of(
-    const CommonOptions& common, const PredictionArguments& arguments, const Scene& scene
-) {
+RunSpec spec_of(const CommonOptions& common, const EvalArguments& arguments, const Scene& scene) {
   RunSpec spec;
   spec.method = arguments.method;
   spec.dataset_folder = fs::absolute(arguments.dataset);
@@ -193,7 +199,7 @@ RunSpec spec_of(
   return spec;
 }
 
-int eval_predictions(const CommonOptions& common, const PredictionArguments& arguments) {
+int eval_predictions(const CommonOptions& common, const EvalArguments& arguments) {
   GLINT_CHECK(
       !arguments.predictions.empty() && !arguments.dataset.empty(),
       kUsage,
@@ -202,7 +208,8 @@ int eval_predictions(const CommonOptions& common, const PredictionArguments& arg
   GLINT_CHECK(
       !arguments.method.empty() && !Registry<MethodSpec>::all().contains(arguments.method),
       kUsage,
-      "--method '{}': name the method that made these renders, not one of ours; e.g. --method pgsr",
+      "--method '{}': name the method that made these renders, not one of ours; such as --method "
+      "pgsr-official",
       arguments.method
   );
   LoadOptions load;
@@ -239,38 +246,52 @@ int eval_predictions(const CommonOptions& common, const PredictionArguments& arg
   record.resolution = fmt::format("{}x{}", camera.width, camera.height);
   append_record(common.records_file(profile), record);
   log::info("recorded in " + common.records_file(profile).string());
-  return print_scores(common, spec.folder, record.metrics);
+  return print_scores(common, spec.folder, record.metrics, arguments.all);
+}
+
+void add_prediction_options(CLI::App& verb, CLI::Option& predictions, EvalArguments& arguments) {
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    return verb.add_option(name, value, help)->needs(&predictions);
+  };
+  add("--method", arguments.method, "row in tables, e.g. mine");
+  add("--depth-kind", arguments.depth, "of their depth: along z, or along rays")
+      ->check(CLI::IsMember({"planar", "ray"}))
+      ->capture_default_str();
+  add("--normal-axes", arguments.axes, "of their normals")
+      ->check(CLI::IsMember({"opencv", "opengl", "world"}))
+      ->capture_default_str();
+  add("--mesh", arguments.mesh, "PLY of theirs; otherwise looked for");
+  add("--max-pixels", arguments.max_pixels, "shrink images below this area")
+      ->check(CLI::NonNegativeNumber);
 }
 
 void add_eval_verb(CommandLine& line) {
-  auto folder = std::make_shared<std::string>();
-  auto arguments = std::make_shared<PredictionArguments>();
+  auto arguments = std::make_shared<EvalArguments>();
   CLI::App* verb = line.add_verb(
       line.app,
       "eval",
       "score the renders of a run, or those that another program left in a folder",
-      [&line, folder, arguments] {
-        return folder->empty() ? eval_predictions(line.common, *arguments)
-                               : eval_run(line.common, *folder);
-      }
+      [&line, arguments] {
+        return arguments->run.empty() ? eval_predictions(line.common, *arguments)
+                                      : eval_run(line.common, *arguments);
+      },
+      kOutOption | kDataOption | kProfileOption | kSeedOption | kDeviceOption | kThreadsOption |
+          kJsonOption | kQuietOption
   );
-  auto* run = verb->add_option("--run", *folder, "run folder: writes its metrics.json");
+  auto* run = verb->add_option("--run", arguments->run, "run folder: writes its metrics.json");
   auto* predictions = verb->add_option(
       "--predictions", arguments->predictions, "folder with renders of the test views by anyone"
   );
   run->excludes(predictions);
-  verb->add_option("--dataset", arguments->dataset, "of --predictions: folder or packed scene");
-  verb->add_option("--method", arguments->method, "of --predictions: row in tables, e.g. pgsr");
-  verb->add_option("--depth-kind", arguments->depth, "of their depth: along z, or along rays")
-      ->check(CLI::IsMember({"planar", "ray"}))
-      ->capture_default_str();
-  verb->add_option("--normal-axes", arguments->axes, "of their normals")
-      ->check(CLI::IsMember({"opencv", "opengl", "world"}))
-      ->capture_default_str();
-  verb->add_option("--mesh", arguments->mesh, "PLY of theirs; otherwise looked for");
-  verb->add_option("--max-pixels", arguments->max_pixels, "shrink images below this area")
-      ->check(CLI::NonNegativeNumber);
+  verb->add_option(
+      "--dataset",
+      arguments->dataset,
+      "of --predictions: folder or packed scene; of --run: where its data are now, if they have "
+      "moved"
+  );
   verb->add_flag("--force", arguments->force, "replace an import of the same name");
+  verb->add_flag("--all", arguments->all, "print every value, not the ten headlines");
+  add_prediction_options(*verb, *predictions, *arguments);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ void add_figures_verb(CommandLine& line) {
       line.app,
       "figures",
       "write OUT/PROFILE/figures/*.png and *.pdf",
-      [&line, choice] { return run_figures(line.common, *choice); }
+      [&line, choice] { return run_figures(line.common, *choice); },
+      kFolderOptions | kThreadsOption
   );
   verb->add_option("--scene", choice->shown.scenes, "globs of the scenes to show")->delimiter(',');
   verb->add_option("--view", choice->shown.view, "name of the test view to show");

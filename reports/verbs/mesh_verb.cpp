@@ -5,6 +5,7 @@
 #include "reports/bench/mesh_stage.h"
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
+#include "reports/bench/voxel_choice.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {
@@ -12,55 +13,71 @@ namespace glint {
 namespace {
 
 struct MeshArguments {
-  std::string run;
+  std::string run, dataset;
+  double voxel = 0;  // 0: by choose_voxel
   TsdfOptions options;
   bool keep_renders = false;
 };
 
+VoxelChoice voxel_of(const MeshArguments& arguments, const Scene& scene) {
+  if (arguments.voxel <= 0) return choose_voxel(scene);
+  return {arguments.voxel, fmt::format("voxel {} m, as --voxel says", arguments.voxel)};
+}
+
+void print_meshes(const SingleRun& single, const Json& result) {
+  for (const auto& [file, report] : result.at("meshes").items())
+    print_text(fmt::format(
+        "{}: {} triangles from {} training views, {} of {} pieces dropped\n",
+        (single.spec.folder / file).string(),
+        report["triangles"].get<std::size_t>(),
+        report["num_views"].get<std::size_t>(),
+        report["dropped_clusters"].get<std::size_t>(),
+        report["clusters"].get<std::size_t>()
+    ));
+}
+
 int run_mesh(const CommonOptions& common, const MeshArguments& arguments) {
   install_interrupt_handler();
-  const SingleRun single = open_single_run(arguments.run);
+  const SingleRun single = open_single_run(arguments.run, arguments.dataset);
   const auto method = load_trained(single.spec);
   const std::string& run = arguments.run;
   const std::string train_key = stage_key(finished_stage(run, Stage::kTrain, "train").document);
+  const VoxelChoice voxel = voxel_of(arguments, single.scene);
+  TsdfOptions options = arguments.options;
+  options.voxel = voxel.voxel;
   Json result;
-  run_stage(
-      run,
-      Stage::kMesh,
-      mesh_document(single.spec.method, train_key, arguments.options),
-      [&] {
-        result = mesh_stage(
-            single.spec, single.scene, *method, arguments.options, arguments.keep_renders
-        );
-        return std::string();
-      }
-  );
+  run_stage(run, Stage::kMesh, mesh_document(single.spec.method, train_key, options), [&] {
+    result = mesh_stage(single.spec, single.scene, *method, options, arguments.keep_renders);
+    return std::string();
+  });
+  result["voxel_choice"] = voxel.why;
   if (common.json) {
     print_json(result);
     return 0;
   }
-  for (const auto& [file, report] : result.at("meshes").items())
-    print_text(fmt::format(
-        "{}: {} triangles from {} training views, voxel {} m, {} of {} pieces dropped\n",
-        (single.spec.folder / file).string(),
-        report["triangles"].get<std::size_t>(),
-        report["num_views"].get<std::size_t>(),
-        arguments.options.voxel,
-        report["dropped_clusters"].get<std::size_t>(),
-        report["clusters"].get<std::size_t>()
-    ));
+  print_text(voxel.why + "\n");
+  print_meshes(single, result);
   return 0;
 }
 
 void add_mesh_verb(CommandLine& line) {
   auto arguments = std::make_shared<MeshArguments>();
-  CLI::App* verb =
-      line.add_verb(line.app, "mesh", "meshes of both layers of a trained run", [&line, arguments] {
-        return run_mesh(line.common, *arguments);
-      });
+  CLI::App* verb = line.add_verb(
+      line.app,
+      "mesh",
+      "meshes of both layers of a trained run",
+      [&line, arguments] { return run_mesh(line.common, *arguments); },
+      kWorkOptions
+  );
   verb->add_option("--run", arguments->run, "run folder")->required();
+  add_moved_dataset_option(*verb, arguments->dataset);
   TsdfOptions& options = arguments->options;
-  verb->add_option("--voxel", options.voxel, "metres")->capture_default_str();
+  verb->add_option(
+          "--voxel",
+          arguments->voxel,
+          "metres; if not given, a pixel of the training views at the scene's usual depth"
+  )
+      ->check(CLI::PositiveNumber);
   verb->add_option("--truncation", options.truncation_voxels, "voxels")->capture_default_str();
   verb->add_option("--max-depth", options.max_depth, "metres; 0: the bounds' diagonal");
   verb->add_option("--min-cluster", options.min_cluster, "triangles")->capture_default_str();

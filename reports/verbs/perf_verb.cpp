@@ -8,20 +8,20 @@ namespace {
 void add_perf_verb(CommandLine& line) {
   auto options = std::make_shared<PerfOptions>();
   CommonOptions& common = line.common;
-  CLI::App* verb =
-      line.add_verb(line.app, "perf", "time every op and whole training steps", [options, &common] {
-        GLINT_CHECK(
-            common.only.empty() && common.skip.empty(),
-            kUsage,
-            "perf has ops, not cells: choose them with --op GLOB in place of --only and --skip"
-        );
+  CLI::App* verb = line.add_verb(
+      line.app,
+      "perf",
+      "time every op and whole training steps",
+      [options, &common] {
         const std::vector<PerfRow> rows = run_perf(*options);
         if (common.json)
           print_json(perf_to_json(*options, rows));
         else
           print_text(perf_to_text(*options, rows));
         return 0;
-      });
+      },
+      kDeviceOption | kDeviceMatters | kJsonOption | kQuietOption
+  );
   verb->add_option("--width", options->width, "pixels")->check(CLI::PositiveNumber);
   verb->add_option("--height", options->height, "pixels")->check(CLI::PositiveNumber);
   verb->add_option("--surfels", options->surfels, "surfels of the scene")

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <map>
 #include <sstream>
+#include <tuple>
 
 #include "glint/core/progress.h"
+#include "reports/perf/perf.h"
 #include "reports/verbs/planned_cells.h"
 
 namespace glint {
@@ -11,7 +14,43 @@ namespace {
 
 struct PlanRow {
   PlannedCell planned;
-  double seconds = 0;  // estimated, of what is to do; 0: unknown
+  std::optional<double> seconds;  // estimated, of what is to do
+  std::string from;               // "records", "timed steps"; empty: unknown
+};
+
+// Surfels of every set in timed steps: what rooms of that size train to, about one for each pixel
+// and a half of a picture.
+constexpr double kPixelsPerSurfel = 1.5;
+constexpr int kTimedSteps = 2;
+
+// Steps of each method at each image size, timed once; methods of which nothing is known yet. Not
+// what comes behind the training.
+class StepTimer {
+ public:
+  explicit StepTimer(const Profile& profile) : iterations_(profile.iterations) {}
+
+  // Of the cell's training; nothing: its data are a folder's, whose size is not known here.
+  std::optional<double> training_seconds(const PlanCell& cell) {
+    if (!cell.source.made()) return std::nullopt;
+    const Key key{cell.cell.method, cell.source.width, cell.source.height};
+    if (!steps_.contains(key)) steps_[key] = time_step(cell);
+    return steps_[key] * iterations_;
+  }
+
+ private:
+  using Key = std::tuple<std::string, int, int>;
+
+  static double time_step(const PlanCell& cell) {
+    PerfOptions options;
+    options.width = cell.source.width, options.height = cell.source.height;
+    options.surfels = static_cast<std::size_t>(options.width * options.height / kPixelsPerSurfel);
+    options.runs = kTimedSteps;
+    log::info(fmt::format("timing steps of {}", cell.cell.method));
+    return seconds_of_step(cell.cell.method, cell.config, options);
+  }
+
+  int iterations_;
+  std::map<Key, double> steps_;
 };
 
 std::vector<std::string> stages_to_do(const CellStages& stages) {
@@ -21,12 +60,28 @@ std::vector<std::string> stages_to_do(const CellStages& stages) {
   return names;
 }
 
+// From earlier cells of the method where there are any, else from timed steps.
+PlanRow plan_row(const PlannedCell& cell, const std::vector<Record>& records, StepTimer& timer) {
+  PlanRow row{cell, std::nullopt, ""};
+  if (cell.stages.done()) return row;
+  row.seconds = estimated_seconds(cell.cell, records, stages_to_do(cell.stages));
+  if (row.seconds) {
+    row.from = "records";
+  } else if (!cell.stages[Stage::kTrain].done) {
+    row.seconds = timer.training_seconds(cell.cell);
+    if (row.seconds) row.from = "timed steps";
+  }
+  return row;
+}
+
 std::vector<PlanRow> plan_rows(
-    const std::vector<PlannedCell>& cells, const std::vector<Record>& records
+    const std::vector<PlannedCell>& cells,
+    const std::vector<Record>& records,
+    const Profile& profile
 ) {
+  StepTimer timer(profile);
   std::vector<PlanRow> rows;
-  for (const PlannedCell& cell : cells)
-    rows.push_back({cell, estimated_seconds(cell.cell, records, stages_to_do(cell.stages))});
+  for (const PlannedCell& cell : cells) rows.push_back(plan_row(cell, records, timer));
   return rows;
 }
 
@@ -35,7 +90,7 @@ std::vector<std::string> plan_line(const PlanRow& row) {
   for (const Stage stage : kStages)
     line.emplace_back(row.planned.stages[stage].done ? "done" : "to do");
   const bool done = row.planned.stages.done();
-  line.push_back(done ? "" : row.seconds > 0 ? format_duration(row.seconds) : "unknown");
+  line.push_back(done ? "" : row.seconds ? format_duration(*row.seconds) : "unknown");
   return line;
 }
 
@@ -56,11 +111,16 @@ std::string table_text(const std::vector<PlanRow>& rows) {
 
 std::string plan_text(const std::vector<PlanRow>& rows) {
   double left = 0;
-  for (const PlanRow& row : rows) left += row.seconds;
+  bool timed = false;
+  for (const PlanRow& row : rows) {
+    left += row.seconds.value_or(0);
+    timed = timed || row.from == "timed steps";
+  }
   const auto todo = std::count_if(rows.begin(), rows.end(), [](const PlanRow& row) {
     return !row.planned.stages.done();
   });
-  const std::string time = left > 0 ? "about " + format_duration(left) : "time unknown";
+  std::string time = left > 0 ? "about " + format_duration(left) : "time unknown";
+  if (timed) time += " (training alone where nothing has run yet, from timed steps)";
   return table_text(rows) +
          fmt::format(
              "{} of {} cells to run{}\n", todo, rows.size(), todo > 0 ? ", " + time : std::string()
@@ -86,7 +146,8 @@ Json plan_json(const std::vector<PlanRow>& rows) {
          {"seed", row.planned.cell.cell.seed},
          {"state", row.planned.state()},
          {"stages", stages_json(row.planned.stages)},
-         {"estimated_seconds", row.seconds}}
+         {"estimated_seconds", row.seconds ? Json(*row.seconds) : Json()},
+         {"estimated_from", row.from.empty() ? Json() : Json(row.from)}}
     );
   return {{"cells", json}};
 }
@@ -94,7 +155,7 @@ Json plan_json(const std::vector<PlanRow>& rows) {
 int run_plan(const CommonOptions& common) {
   const Profile profile = common.resolved_profile();
   const auto records = read_records(common.records_file(profile));
-  const auto rows = plan_rows(planned_cells(common, profile, records), records);
+  const auto rows = plan_rows(planned_cells(common, profile, records), records, profile);
   if (common.json)
     print_json(plan_json(rows));
   else
@@ -107,7 +168,8 @@ void add_plan_verb(CommandLine& line) {
       line.app,
       "plan",
       "list the cells that `all` would run: which stages are done, and why the others are not",
-      [&line] { return run_plan(line.common); }
+      [&line] { return run_plan(line.common); },
+      kPlanOptions
   );
 }
 

@@ -59,7 +59,8 @@ void add_report_verb(CommandLine& line) {
       line.app,
       "report",
       "write OUT/PROFILE/report/index.html, a page with all results",
-      [&line, single_file] { return run_report(line.common, *single_file); }
+      [&line, single_file] { return run_report(line.common, *single_file); },
+      kFolderOptions | kDataOption | kThreadsOption
   );
   verb->add_flag("--single-file", *single_file, "everything inside index.html");
 }

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "reports/verbs/result_tables.h"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 
 #include "glint/core/progress.h"
+#include "reports/verbs/listing.h"
 
 namespace glint {
 
@@ -19,15 +16,6 @@ bool has_failure(const Table& table) {
     for (const TableCell& cell : row.cells)
       if (cell.status == CellStatus::kFailed) return true;
   return false;
-}
-
-// COLUMNS, or what the terminal says; 0 where standard output is none.
-std::size_t terminal_width() {
-  if (const char* columns = std::getenv("COLUMNS"))
-    if (const long width = std::strtol(columns, nullptr, 10); width > 0)
-      return static_cast<std::size_t>(width);
-  winsize size{};
-  return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
 }  // namespace

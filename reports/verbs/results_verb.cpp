@@ -25,7 +25,8 @@ void add_results_verb(CommandLine& line) {
       line.app,
       "results",
       "write docs/RESULTS.md and the README's table from docs/results/",
-      [root] { return run_results(*root); }
+      [root] { return run_results(*root); },
+      CommonOption{}
   );
   verb->add_option("--root", *root, "the project's folder")->capture_default_str();
 }

@@ -91,7 +91,8 @@ void add_selftest_verb(CommandLine& line) {
       line.app,
       "selftest",
       "score shipped files and compare with values by other software",
-      [&line, arguments] { return run_selftest(line.common, *arguments); }
+      [&line, arguments] { return run_selftest(line.common, *arguments); },
+      kDeviceOption | kThreadsOption | kJsonOption | kQuietOption
   );
   verb->add_option("--export", arguments->export_to, "write the files there and stop");
   verb->add_option("--vectors", arguments->vectors, "a folder like the exported one");

@@ -2,6 +2,7 @@
 #include "reports/verbs/single_run.h"
 
 #include "datasets/dataset.h"
+#include "glint/core/progress.h"
 #include "reports/bench/stage_documents.h"
 
 namespace glint {
@@ -59,10 +60,29 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
   return single;
 }
 
-SingleRun open_single_run(const std::string& run_folder) {
+SingleRun open_single_run(const std::string& run_folder, const std::string& dataset) {
   SingleRun single;
-  single.spec = read_run_spec(run_folder);
-  single.scene = load_dataset(single.spec.dataset_folder, single.spec.max_pixels);
+  RunSpec& spec = single.spec;
+  spec = read_run_spec(run_folder);
+  if (!dataset.empty()) spec.dataset_folder = fs::absolute(dataset);
+  std::error_code code;
+  GLINT_CHECK(
+      !dataset.empty() || fs::exists(spec.dataset_folder, code),
+      kBadReference,
+      "{}: not there, but {} was trained on it; if the data have moved, give --dataset FOLDER",
+      spec.dataset_folder.string(),
+      run_folder
+  );
+  single.scene = load_dataset(spec.dataset_folder, spec.max_pixels);
+  const std::string& hash = single.scene.spec_hash;
+  if (!dataset.empty() && !spec.dataset_hash.empty() && hash != spec.dataset_hash)
+    log::warn(fmt::format(
+        "{} is not what {} was trained on (hash {}, then {})",
+        dataset,
+        run_folder,
+        hash.substr(0, 12),
+        spec.dataset_hash.substr(0, 12)
+    ));
   return single;
 }
 
@@ -83,6 +103,14 @@ fs::path single_records_file(const CommonOptions& common, const RunSpec& spec) {
   for (const Record& record : read_records(root / "records.jsonl"))
     if (record.profile != kSingleProfile) return {};
   return root / "records.jsonl";
+}
+
+void add_moved_dataset_option(CLI::App& verb, std::string& dataset) {
+  verb.add_option(
+      "--dataset",
+      dataset,
+      "where the run's data are now, if they have moved: folder or packed scene"
+  );
 }
 
 }  // namespace glint

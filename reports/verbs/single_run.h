@@ -22,8 +22,14 @@ struct SingleRun {
   Scene scene;
 };
 SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& options);
-// The run of a folder that `train` or `all` filled, with its dataset loaded again.
-SingleRun open_single_run(const std::string& run_folder);
+// The run of a folder that `train` or `all` filled, with its dataset loaded again; from `dataset`
+// (a folder or packed scene) where that is given, since the data may have moved. Other data than
+// the run was trained on come with a warning. Errors (kBadPrediction): no run; kBadReference: the
+// data.
+SingleRun open_single_run(const std::string& run_folder, const std::string& dataset = "");
+
+// --dataset of the verbs that open a run.
+void add_moved_dataset_option(CLI::App& verb, std::string& dataset);
 
 // The folder above ROOT/runs/SCENE/METHOD/SEED; empty: the run lies elsewhere.
 fs::path root_of_run(const RunSpec& spec);

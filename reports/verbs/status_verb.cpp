@@ -83,9 +83,13 @@ int run_status(const CommonOptions& common) {
 }
 
 void add_status_verb(CommandLine& line) {
-  line.add_verb(line.app, "status", "how far a profile is", [&line] {
-    return run_status(line.common);
-  });
+  line.add_verb(
+      line.app,
+      "status",
+      "how far a profile is",
+      [&line] { return run_status(line.common); },
+      kPlanOptions
+  );
 }
 
 }  // namespace

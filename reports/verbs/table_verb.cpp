@@ -48,7 +48,8 @@ void add_table_verb(CommandLine& line) {
       line.app,
       "table",
       "print the tables of a profile from its records",
-      [&line, options] { return run_table(line.common, *options); }
+      [&line, options] { return run_table(line.common, *options); },
+      kFolderOptions
   );
   auto* positional = verb->add_option(
       "tables", options->ids, "ids, e.g. table1_photometric; none: all, and written"

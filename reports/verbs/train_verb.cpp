@@ -45,9 +45,13 @@ int run_train(
 void add_train_verb(CommandLine& line) {
   auto options = std::make_shared<SingleRunOptions>();
   auto transmission = std::make_shared<std::string>();
-  CLI::App* verb = line.add_verb(line.app, "train", "train one method on one dataset", [=, &line] {
-    return run_train(line.common, *options, *transmission);
-  });
+  CLI::App* verb = line.add_verb(
+      line.app,
+      "train",
+      "train one method on one dataset",
+      [=, &line] { return run_train(line.common, *options, *transmission); },
+      kWorkOptions | kOutOption | kDataOption | kSeedOption | kIterationsOption | kSetOption
+  );
   verb->add_option("--dataset", options->dataset, "dataset folder or packed scene")->required();
   verb->add_option("--method", options->method, "method id")->capture_default_str();
   verb->add_option("--run", options->run, "run folder; else OUT/single/runs/SCENE/METHOD/SEED");

@@ -17,7 +17,34 @@
 
 namespace glint {
 
-// Options that every verb has; those a verb has no use for do nothing.
+// Options that several verbs have; each verb says which of them it uses.
+enum CommonOption : unsigned {
+  kOutOption = 1u << 0,
+  kDataOption = 1u << 1,
+  kProfileOption = 1u << 2,
+  kCellOptions = 1u << 3,  // --methods, --only, --skip
+  kSeedOption = 1u << 4,
+  kIterationsOption = 1u << 5,
+  kSetOption = 1u << 6,
+  kDeviceOption = 1u << 7,
+  kThreadsOption = 1u << 8,
+  kJsonOption = 1u << 9,
+  kQuietOption = 1u << 10,
+  kDeviceMatters = 1u << 11,  // says why it runs on the CPU where --device is auto
+  // The cells of a profile, as `all` runs them.
+  kPlanOptions = kOutOption | kDataOption | kProfileOption | kCellOptions | kSeedOption |
+                 kIterationsOption | kSetOption | kDeviceOption | kJsonOption | kQuietOption,
+  // Work that takes a while: methods and networks run.
+  kWorkOptions = kDeviceOption | kDeviceMatters | kThreadsOption | kJsonOption | kQuietOption,
+  // What reads a profile's folder.
+  kFolderOptions = kOutOption | kProfileOption | kCellOptions | kJsonOption | kQuietOption,
+  kAllOptions = kPlanOptions | kWorkOptions
+};
+// Sets of them.
+constexpr CommonOption operator|(CommonOption a, CommonOption b) {
+  return static_cast<CommonOption>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+
 struct CommonOptions {
   std::string out = "out";    // results in OUT/PROFILE (profile_folder.h)
   std::string data = "data";  // made and imported scenes
@@ -36,8 +63,8 @@ struct CommonOptions {
   SceneIdentifier scene_identifier() const;
   // The profile with --seed and --iterations applied.
   Profile resolved_profile() const;
-  // --threads, --quiet and --device take effect. Errors: as choose_device.
-  void apply() const;
+  // --threads, --quiet and, of verbs that have it, --device take effect. Errors: as choose_device.
+  void apply(CommonOption uses) const;
 };
 
 // What main() runs after parsing; returns the exit code.
@@ -48,10 +75,17 @@ struct CommandLine {
   CommonOptions common;
   Action action;
 
+  CommonOption uses{};  // of the chosen verb
+
   CommandLine();
-  // A verb with the common options; `run` becomes the action when the verb was chosen.
+  // A verb with those of the common options that it uses; `run` becomes the action when the verb
+  // was chosen.
   CLI::App* add_verb(
-      CLI::App& parent, const std::string& name, const std::string& help, Action run
+      CLI::App& parent,
+      const std::string& name,
+      const std::string& help,
+      Action run,
+      CommonOption uses = kAllOptions
   );
 };
 
@@ -61,7 +95,10 @@ struct Verb {
   void (*add)(CommandLine& line);
 };
 
-// Results go here: one JSON document, or text.
+// Of the JSON that verbs print (docs/JSON.md); grows when a field changes its meaning or goes.
+inline constexpr int kVerbSchema = 1;
+
+// Results go here: one JSON document, or text. Documents open with "schema".
 void print_json(const Json& json);
 void print_text(std::string_view text);
 bool color_terminal();  // standard output is a terminal and NO_COLOR is not set

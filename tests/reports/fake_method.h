@@ -65,6 +65,7 @@ class FakeMethod final : public Method {
     config_.grey = std::stof(read_file(fs::path(folder) / "interface.ply"));
   }
   Json config() const override { return config_to_json(config_); }
+  std::vector<ConfigField> fields() const override { return config_fields(config_); }
   void check_finite() const override {}
   std::size_t num_surfels() const override { return 7; }
 

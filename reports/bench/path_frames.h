@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// A trained method along a path of cameras: a picture of each map for each frame, all of them side
+// by side, and a video of that.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glint/method.h"
+#include "glint/scene/camera_path_file.h"
+
+namespace glint {
+
+struct PathFrames {
+  fs::path folder;                // paths/<name>/ of a run
+  CameraPath path;                // with its frames a second
+  std::vector<std::string> maps;  // ids; empty: every map that the method renders
+  bool values = false;            // EXR beside the pictures, as in renders/
+};
+
+struct PathResult {
+  std::size_t frames = 0;
+  std::vector<std::string> maps;  // ids, in the order of the table
+  fs::path video;                 // empty: none
+  std::string no_video;           // why
+};
+
+// FOLDER/path.json (the cameras), FOLDER/<map>/0000.png, ... as the page colours them, in one range
+// of depth: the true depths' of the test views, else of eight frames; FOLDER/layers/0000.png with
+// all of them, FOLDER/layers.mp4. What an earlier path left there goes first. Errors: kUsage (a map
+// that the table lacks or the method does not render; something else is in
+// their place); Interrupted.
+PathResult render_path(Method& method, const Scene& scene, const PathFrames& options);
+
+}  // namespace glint

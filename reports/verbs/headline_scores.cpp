@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "reports/verbs/headline_scores.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "metrics/metric.h"
+#include "reports/tables/tables.h"
+#include "reports/verbs/listing.h"
+
+namespace glint {
+
+namespace {
+
+constexpr std::size_t kHeadlines = 10;
+constexpr const char* kHeadlineTable = "summary";
+
+std::vector<TableColumn> headline_columns() {
+  for (const TableDefinition& table : table_definitions())
+    if (table.id == kHeadlineTable) {
+      const std::size_t count = std::min(kHeadlines, table.columns.size());
+      return {table.columns.begin(), table.columns.begin() + static_cast<std::ptrdiff_t>(count)};
+    }
+  return {};
+}
+
+// Costs are no metrics of pictures or meshes.
+std::string unit_of(const std::string& id) {
+  if (const Metric* metric = find_metric(id)) return metric->unit;
+  if (id == "train-minutes") return "min";
+  if (id == "peak-memory") return "MB";
+  return id == "fps" ? "frames/s" : "";
+}
+
+// Numbers end in one column.
+std::string right(const std::string& number) { return fmt::format("{:>10}", number); }
+
+}  // namespace
+
+std::string headline_scores(const std::map<std::string, double>& means) {
+  std::vector<std::vector<std::string>> rows;
+  for (const TableColumn& column : headline_columns()) {
+    const auto found = means.find(column.metric);
+    const std::string value =
+        found == means.end()
+            ? "-"
+            : fmt::format("{:.{}f}", column.scale * found->second, column.decimals);
+    const bool higher = column.order == RankOrder::kHigherFirst;
+    rows.push_back(
+        {column.title, right(value), column.unit, higher ? "higher is better" : "lower is better"}
+    );
+  }
+  return listing(rows);
+}
+
+std::string all_scores(const std::map<std::string, double>& means) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [id, value] : means)
+    rows.push_back({id, right(fmt::format("{:.4f}", value)), unit_of(id)});
+  return listing(rows);
+}
+
+}  // namespace glint

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// The docs name what there is: fields of profiles, verbs that print JSON.
+#include <catch2/catch.hpp>
+
+#include <set>
+#include <sstream>
+
+#include "reports/records/profile.h"
+#include "reports/verbs/verb.h"
+
+using namespace glint;
+
+namespace {
+
+std::string doc(const char* name) {
+  return read_file(fs::path("docs") / name);  // tests run there
+}
+
+// The names in `...` of the first cells of table rows between two headings.
+std::set<std::string> first_cells(const std::string& text) {
+  std::set<std::string> names;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("| `")) continue;
+    std::istringstream cell(line.substr(1, line.find('|', 1) - 1));
+    bool quoted = false;
+    for (std::string part; std::getline(cell, part, '`'); quoted = !quoted)
+      if (quoted) names.insert(part);
+  }
+  return names;
+}
+
+std::string section(const std::string& text, const std::string& heading) {
+  const std::size_t begin = text.find(heading);
+  REQUIRE(begin != std::string::npos);
+  return text.substr(begin, text.find("\n## ", begin + 1) - begin);
+}
+
+template <class Config>
+std::set<std::string> field_names(const Config& config) {
+  std::set<std::string> names;
+  for (const ConfigField& field : config_fields(config)) names.insert(field.name);
+  return names;
+}
+
+// "dataset make" of the program's verbs; those alone that have the option.
+void add_verbs_with(
+    const CLI::App& app,
+    const std::string& option,
+    const std::string& prefix,
+    std::set<std::string>& names
+) {
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    const std::string name = prefix + verb->get_name();
+    if (verb->get_option_no_throw(option) != nullptr) names.insert(name);
+    add_verbs_with(*verb, option, name + " ", names);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("docs/PROFILES.md has every field of a profile, and no other") {
+  const std::string text = doc("PROFILES.md");
+  CHECK(first_cells(section(text, "# Profiles")) == field_names(Profile{}));
+  CHECK(first_cells(section(text, "## Scenes")) == field_names(SceneSource{}));
+  CHECK(first_cells(section(text, "## `[mesh]`")) == field_names(TsdfOptions{}));
+  CHECK(first_cells(section(text, "## `[mesh_metrics]`")) == field_names(MeshProtocol{}));
+}
+
+TEST_CASE("docs/JSON.md has every verb that prints JSON, and no other") {
+  const CommandLine line;
+  std::set<std::string> verbs;
+  add_verbs_with(line.app, "--json", "", verbs);
+  CHECK(verbs.contains("plan"));
+  CHECK(verbs.contains("dataset info"));
+  CHECK(first_cells(doc("JSON.md")) == verbs);
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// A run whose data have moved: `render`, `mesh` and `eval` take --dataset.
+#include <catch2/catch.hpp>
+
+#include "glint/core/progress.h"
+#include "reports/verbs/command_line.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+
+namespace {
+
+int run(std::vector<std::string> words) {
+  words.insert(words.begin(), "glint-bench");
+  std::vector<const char*> arguments;
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  return run_command_line(static_cast<int>(arguments.size()), arguments.data());
+}
+
+}  // namespace
+
+TEST_CASE("data that have moved are named with --dataset") {
+  const test::TempFolder folder;
+  const std::string room = folder / "room", moved = folder / "moved", trained = folder / "run";
+  const auto render = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", "--run", trained, "--quiet"});
+    return run(more);
+  };
+  REQUIRE(
+      run(
+          {"dataset",
+           "make",
+           "glassroom",
+           "--width",
+           "32",
+           "--height",
+           "18",
+           "--views",
+           "4",
+           "--spp",
+           "2",
+           "--out",
+           room,
+           "--quiet"}
+      ) == 0
+  );
+  REQUIRE(
+      run(
+          {"train",
+           "--dataset",
+           room,
+           "--run",
+           trained,
+           "--iterations",
+           "2",
+           "--data",
+           (folder / "data").string(),
+           "--quiet"}
+      ) == 0
+  );
+  REQUIRE(render({}) == 0);
+  fs::rename(room, moved);
+  CHECK(render({}) == 3);
+  CHECK(render({"--dataset", moved}) == 0);
+  CHECK(run({"eval", "--run", trained, "--quiet"}) == 3);
+  CHECK(run({"mesh", "--run", trained, "--quiet"}) == 3);
+  CHECK(render({"--dataset", moved, "--path", "orbit", "--frames", "2"}) == 0);
+  CHECK(fs::exists(fs::path(trained) / "paths/orbit/rgb/0001.png"));
+  CHECK(render({"--dataset", moved, "--path", "spline", "--frames", "2", "--size", "20x10"}) == 0);
+  const std::string file = (fs::path(trained) / "paths/orbit/path.json").string();
+  CHECK(render({"--dataset", moved, "--path", file, "--to", (folder / "again").string()}) == 0);
+  CHECK(render({"--dataset", moved, "--path", file, "--frames", "9"}) == 1);
+  CHECK(render({"--dataset", moved, "--path", "orbit", "--size", "20"}) == 1);
+  CHECK(render({"--dataset", moved, "--frames", "9"}) == 1);
+  CHECK(render({"--dataset", moved, "--path", "orbitt"}) == 1);
+}

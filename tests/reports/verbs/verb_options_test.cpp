@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// What verbs offer, what they answer to misspelt words, and what they print.
+#include <catch2/catch.hpp>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "glint/method.h"
+#include "reports/verbs/command_line.h"
+#include "reports/verbs/verb.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+
+namespace {
+
+// What goes to a stream (1: output, 2: errors) while `body` runs.
+template <class F>
+std::string captured(int stream, F&& body) {
+  const test::TempFolder folder;
+  const std::string file = (folder / "captured").string();
+  std::fflush(stream == 1 ? stdout : stderr);
+  const int kept = ::dup(stream);
+  std::FILE* target = std::fopen(file.c_str(), "w");
+  ::dup2(::fileno(target), stream);
+  body();
+  std::fflush(stream == 1 ? stdout : stderr);
+  ::dup2(kept, stream);
+  ::close(kept);
+  std::fclose(target);
+  return read_file(file);
+}
+
+int run(const std::vector<std::string>& words) {
+  std::vector<const char*> arguments{"glint-bench"};
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  return run_command_line(static_cast<int>(arguments.size()), arguments.data());
+}
+
+std::string errors_of(const std::vector<std::string>& words) {
+  return captured(2, [&] { CHECK(run(words) == 1); });
+}
+
+Json json_of(const std::vector<std::string>& words) {
+  const std::string text = captured(1, [&] { CHECK(run(words) == 0); });
+  return Json::parse(text);
+}
+
+std::vector<std::string> options_of(const std::string& verb) {
+  const CommandLine line;
+  std::vector<std::string> names;
+  for (const CLI::Option* option : line.app.get_subcommand(verb)->get_options())
+    if (option->nonpositional()) names.push_back(option->get_name());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// "depth prior" of "... has no depth prior for 2 of 2 training views".
+void add_missed_priors(const std::string& id, const Scene& scene, std::set<std::string>& missed) {
+  const std::string before = "has no ", behind = " prior";
+  const auto method = create_method(id);
+  method->initialize(scene, {100, 0});
+  for (const std::string& warning : method->warnings()) {
+    const std::size_t begin = warning.find(before), end = warning.find(behind, begin);
+    if (begin == std::string::npos || end == std::string::npos) continue;
+    const std::size_t name = begin + before.size();
+    missed.insert(warning.substr(name, end + behind.size() - name));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a verb has the options that it uses") {
+  using Names = std::vector<std::string>;
+  CHECK(options_of("methods") == Names{"--help", "--json"});
+  CHECK(options_of("results") == Names{"--help", "--root"});
+  CHECK(options_of("doctor") == Names{"--device", "--help", "--json", "--out", "--threads"});
+  CHECK(
+      options_of("status") ==
+      Names{
+          "--data",
+          "--device",
+          "--help",
+          "--iterations",
+          "--json",
+          "--only",
+          "--out",
+          "--profile",
+          "--quiet",
+          "--seed",
+          "--set",
+          "--skip"}
+  );
+}
+
+TEST_CASE("misspelt words are answered with the nearest") {
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{"redner", "--run", "x"}, "no verb 'redner'; did you mean 'render'?"},
+      {{"dataset", "inf", "x"}, "no verb 'inf'; did you mean 'info'?"},
+      {{"render", "--rnu", "x"}, "no option '--rnu'; did you mean 'run'?"},
+      {{"plan", "--iter", "5"}, "did you mean 'iterations'?"},
+      {{"plan", "--profle=ci"}, "no option '--profle'; did you mean 'profile'?"},
+      {{"plan", "--profile", "smok"}, "did you mean 'smoke'?"},
+      {{"plan", "--profile", "smoke", "--only", "rom_1"}, "did you mean 'room_1'?"},
+      {{"plan", "--profile", "smoke", "--set", "2dgs.lamda_ssim=1"}, "did you mean 'lambda_ssim'?"},
+      {{"plan", "--profile", "smoke", "--set", "2gds.lambda_ssim=1"}, "did you mean '2dgs'?"},
+      {{"methods", "glnt"}, "did you mean 'glint'?"}};
+  for (const auto& [words, answer] : cases) {
+    const std::string said = errors_of(words);
+    INFO(said);
+    CHECK(said.find(answer) != std::string::npos);
+  }
+  CHECK(errors_of({"table", "--seed", "3"}).find("no option '--seed'") != std::string::npos);
+  CHECK(errors_of({"render", "surplus"}).find("no use for 'surplus'") != std::string::npos);
+}
+
+TEST_CASE("a misspelt metric is answered with the nearest of the stores") {
+  const test::TempFolder folder;
+  write_file(
+      folder / "records.jsonl",
+      R"({"scene": "room_1", "method": "2dgs", "metrics": {"psnr": 30}})"
+      "\n"
+  );
+  const std::string store = folder.path().string();
+  CHECK(
+      errors_of({"compare", store, store, "--metric", "pnsr"}).find("did you mean 'psnr'?") !=
+      std::string::npos
+  );
+}
+
+TEST_CASE("what prints JSON opens with the schema") {
+  const test::TempFolder folder;
+  const std::string out = folder.path().string();
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"methods", "--json"},
+           {"methods", "2dgs/prior", "--json"},
+           {"status", "--profile", "smoke", "--out", out, "--json"},
+           {"plan", "--profile", "smoke", "--out", out, "--json", "--quiet"}}) {
+    const Json json = json_of(words);
+    CHECK(json.begin().key() == "schema");
+    CHECK(json["schema"] == kVerbSchema);
+  }
+}
+
+TEST_CASE("plan knows nothing of data in folders, and says so with null") {
+  const test::TempFolder folder;
+  write_file(
+      folder / "mine.toml",
+      "methods = [\"2dgs\"]\nscenes = [{scene = \"desk\", folder = \"no/such/folder\"}]\n"
+  );
+  const Json json = json_of(
+      {"plan",
+       "--profile",
+       (folder / "mine.toml").string(),
+       "--out",
+       folder.path().string(),
+       "--json",
+       "--quiet"}
+  );
+  CHECK(json["cells"][0]["estimated_seconds"].is_null());
+  CHECK(json["cells"][0]["estimated_from"].is_null());
+}
+
+TEST_CASE("methods lists every method, and of each the fields with their meaning") {
+  const Json list = json_of({"methods", "--json"});
+  CHECK(list["methods"].size() == Registry<MethodSpec>::all().size());
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
+    INFO(id);
+    const auto method = create_method(id);
+    CHECK(method->fields().size() == method->config().size());
+    for (const ConfigField& field : method->fields()) CHECK_FALSE(field.meaning.empty());
+  }
+  const Json prior = json_of({"methods", "2dgs/prior", "--json"});
+  bool found = false;
+  for (const Json& field : prior["fields"])
+    if (field["name"] == "lambda_depth") {
+      found = true;
+      CHECK(field["default"] == 0);
+      CHECK(field["override"] > 0);
+      CHECK(field["type"] == "number");
+    }
+  CHECK(found);
+}
+
+TEST_CASE("methods want the priors of which they would miss one") {
+  Scene scene;
+  scene.name = "bare";
+  View view;
+  view.camera.width = view.camera.height = 32;
+  view.camera.fx = view.camera.fy = 32;
+  view.camera.cx = view.camera.cy = 16;
+  view.camera.translation_cam_from_world = {0, 0, 2};
+  view.rgb = Image(32, 32, 3, 0.5f);
+  scene.train = {view, view};
+  scene.points.positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {0.1f, 0.1f, 0}};
+  scene.points.colors.assign(4, {0.5f, 0.5f, 0.5f});
+  scene.bounds_min = {-1, -1, -1}, scene.bounds_max = {1, 1, 1};
+  // Guidance of t asks for base colours only where it has albedo.
+  Scene with_albedo = scene;
+  for (View& each : with_albedo.train) each.priors["albedo"] = each.rgb;
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
+    INFO(id);
+    std::set<std::string> missed, wanted;
+    for (const Scene* data : {&scene, &with_albedo}) add_missed_priors(id, *data, missed);
+    for (const std::string& input : create_method(id)->inputs())
+      if (input.ends_with(" prior")) wanted.insert(input);
+    CHECK(missed == wanted);
+  }
+}
