@@ -31,6 +31,8 @@ Scene load_views(const fs::path& dataset, bool all_views, const fs::path& predic
 }  // namespace
 
 bool is_dataset(const fs::path& path) {
+  std::error_code code;
+  if (fs::is_regular_file(path, code)) return path.extension() == ".safetensors";
   const auto& loaders = Registry<LoaderSpec>::all();
   return std::any_of(loaders.begin(), loaders.end(), [&](const auto& loader) {
     return loader.second.match(path).sureness == Sureness::kContents;

@@ -12,7 +12,7 @@
 
 namespace glint {
 
-// A folder or file that a loader is sure of.
+// A folder that a loader is sure of; a file named as packed scenes are, room.safetensors.
 bool is_dataset(const fs::path& path);
 
 class DatasetViews {

@@ -8,7 +8,8 @@
 namespace glint {
 namespace {
 
-const std::vector<std::string> kExtensions = {".png", ".jpg", ".jpeg", ".exr", ".npy"};
+const std::vector<std::string> kExtensions = {
+    ".png", ".jpg", ".jpeg", ".exr", ".npy", ".tif", ".tiff"};
 
 fs::path enter_layout(const fs::path& folder, const FolderLayout& layout) {
   for (const std::string& name : layout.subfolders)
@@ -209,7 +210,7 @@ Pairing pair_paths(const PairingOptions& options) {
       (packed || (!options.all_views && is_dataset(options.reference))))
     return pair_with_dataset(options);
   GLINT_CHECK(
-      fs::is_directory(options.prediction) == folders,
+      fs::is_directory(options.prediction) == (folders || packed),
       kUsage,
       "{} and {}: one is a folder, the other a file; give two files or two folders",
       options.prediction.string(),
@@ -245,7 +246,8 @@ std::vector<NamedFile> list_images(
   GLINT_CHECK(
       !files.empty(),
       kBadReference,
-      "{}: no image{}{}; expected .png, .jpg, .exr or .npy files, or a folder with one per view",
+      "{}: no image{}{}; expected .png, .jpg, .exr, .npy or .tiff files, or a folder with one per "
+      "view",
       inside.string(),
       pattern.empty() ? "" : " matching ",
       pattern
