@@ -18,6 +18,7 @@ struct LoadOptions {
   ImageSize size;           // images resized to this (area average); {0, 0}: as stored
   double max_pixels = 0;    // or: shrink so that width x height stays below; 0: as stored
   int test_every = 8;       // view index % test_every == 0 is a test view (unless the data says)
+  bool test_only = false;   // leave the training views out where that saves reading them
   bool with_truth = true;   // read gt/
   bool with_priors = true;  // read diffrens/
   std::string loader;       // id of the loader to take; empty: the surest

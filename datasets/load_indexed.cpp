@@ -116,6 +116,7 @@ std::vector<View> load_views(const std::vector<ViewSource>& sources, const LoadO
   std::vector<View> views(sources.size());
   std::vector<std::exception_ptr> failures(sources.size());
   parallel_for(sources.size(), 1, [&](std::size_t i) {
+    if (options.test_only && !sources[i].is_test) return;
     try {
       views[i] = load_view(sources[i], options);
     } catch (...) {
@@ -241,11 +242,12 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options) {
   scene.simulated_priors = index.simulated_priors;
   std::vector<View> views = load_views(index.views, options);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (index.views[i].is_train)
+    if (index.views[i].is_train && !options.test_only)
       scene.train.push_back(std::move(views[i]));
     else if (index.views[i].is_test)
       scene.test.push_back(std::move(views[i]));
   }
+  if (options.test_only) return scene;  // nobody starts a training from it
   if (!index.points.empty()) scene.points = read_points(index.points);
   set_extent(scene);
   return scene;

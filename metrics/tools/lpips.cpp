@@ -20,6 +20,7 @@ class LpipsTool final : public MetricTool {
     return "glint-lpips renders/ images/ --weights lpips_alex_v0.1.npz --mask masks/";
   }
   FolderLayout prediction_layout() const override { return {{"renders"}, {"rgb.exr", "rgb.png"}}; }
+  std::string reference_map() const override { return "rgb"; }
   FolderLayout reference_layout() const override {
     return {{"images"}, {"000000.png", "000000.jpg"}};
   }

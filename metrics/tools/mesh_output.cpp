@@ -22,8 +22,11 @@ Json direction_json(const DirectionScores& scores) {
   return json;
 }
 
-Json surface_json(const SurfaceInput& input) {
-  Json json = {{"kind", input.cleaning ? "mesh" : "points"}};
+// What stands for the surface: drawn over a mesh's area, or points of a cloud.
+Json surface_json(const SurfaceInput& input, std::size_t num_samples) {
+  Json json = {{"kind", input.cleaning ? "mesh" : "points"}, {"num_samples", num_samples}};
+  if (const auto* points = std::get_if<SurfacePoints>(&input.surface))
+    json["num_points"] = points->positions.size();
   if (input.cleaning) json["cleaning"] = config_to_json(*input.cleaning);
   if (input.culling) json["culling"] = config_to_json(*input.culling);
   return json;
@@ -33,6 +36,25 @@ void print_direction(const char* name, const DirectionScores& scores, std::ostre
   out << fmt::format("{}: rms {:.6f} m, largest {:.6f} m", name, scores.rms_m, scores.max_m);
   if (scores.clipped > 0) out << fmt::format(", {:.2f} % clipped", 100 * scores.clipped);
   out << fmt::format(", {} samples\n", scores.num_samples);
+}
+
+// Of a point cloud: which of its points were measured, and what is measured to.
+void print_sampling(
+    const char* name,
+    const SurfaceInput& input,
+    std::size_t num_samples,
+    std::uint64_t seed,
+    std::ostream& out
+) {
+  const auto* points = std::get_if<SurfacePoints>(&input.surface);
+  if (points == nullptr) return;
+  const std::size_t count = points->positions.size();
+  const std::string taken = num_samples < count
+                                ? fmt::format("{} of them drawn (seed {})", num_samples, seed)
+                                : "all of them measured";
+  out << fmt::format(
+      "{}: {} points, {}; distances to it: to its nearest point\n", name, count, taken
+  );
 }
 
 void print_cleaning(const char* name, const SurfaceInput& input, std::ostream& out) {
@@ -86,6 +108,9 @@ void print_mesh_text(const MeshReport& report, std::ostream& out) {
   print_scores(mesh_values(report.scores, report.protocol), out);
   print_direction("accuracy", report.scores.accuracy, out);
   print_direction("completeness", report.scores.completeness, out);
+  const std::uint64_t seed = report.protocol.seed;
+  print_sampling("prediction", report.prediction, report.scores.accuracy.num_samples, seed, out);
+  print_sampling("reference", report.reference, report.scores.completeness.num_samples, seed, out);
   print_cleaning("prediction", report.prediction, out);
   print_cleaning("reference", report.reference, out);
   print_culling("prediction", report.prediction, out);
@@ -116,8 +141,8 @@ void print_mesh_json(const MeshReport& report, std::ostream& out) {
       {"completeness", direction_json(report.scores.completeness)}};
   json["protocol"] = config_to_json(report.protocol);
   json["surfaces"] = {
-      {"prediction", surface_json(report.prediction)},
-      {"reference", surface_json(report.reference)}};
+      {"prediction", surface_json(report.prediction, report.scores.accuracy.num_samples)},
+      {"reference", surface_json(report.reference, report.scores.completeness.num_samples)}};
   if (report.color_range_m) json["colors_m"] = {0.0, *report.color_range_m};
   json["curve"] = Json::array();
   for (const ThresholdScores& at : report.curve) json["curve"].push_back(config_to_json(at));

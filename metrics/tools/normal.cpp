@@ -57,6 +57,7 @@ class NormalTool final : public MetricTool {
     return "glint-normal predicted/ data/room_1/gt/normal --axes opengl --csv";
   }
   FolderLayout prediction_layout() const override { return {{"renders"}, {"normal.exr"}}; }
+  std::string reference_map() const override { return "normal"; }
   FolderLayout reference_layout() const override { return {{"gt/normal"}, {}}; }
 
   void add_options(CLI::App& app) override {

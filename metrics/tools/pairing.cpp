@@ -8,7 +8,8 @@
 namespace glint {
 namespace {
 
-const std::vector<std::string> kExtensions = {".png", ".jpg", ".jpeg", ".exr", ".npy"};
+const std::vector<std::string> kExtensions = {
+    ".png", ".jpg", ".jpeg", ".exr", ".npy", ".tif", ".tiff"};
 
 fs::path enter_layout(const fs::path& folder, const FolderLayout& layout) {
   for (const std::string& name : layout.subfolders)
@@ -133,13 +134,59 @@ Pairing match_by_name(const FilesByName& predictions, const FilesByName& referen
   return pairing;
 }
 
+// The glass masks of a packed scene, which has no files of them.
+void add_packed_glass(const PairingOptions& options, Pairing& pairing) {
+  pairing.datasets.push_back(std::make_shared<DatasetViews>(options.glass, true, options.prediction)
+  );
+  const auto views = pairing.datasets.back()->with_map("glass");
+  for (FilePair& pair : pairing.pairs) {
+    const auto found = views.find(pair.name);
+    GLINT_CHECK(
+        found != views.end(),
+        kBadReference,
+        "{}: no glass mask of view '{}'",
+        options.glass.string(),
+        pair.name
+    );
+    pair.glass = options.glass;
+    pair.glass_view = found->second;
+  }
+}
+
 void add_masks(const PairingOptions& options, Pairing& pairing) {
   const MaskFiles masks(options.mask, options.mask_layout);
+  for (FilePair& pair : pairing.pairs) pair.mask = masks.of(pair.name);
+  if (fs::is_regular_file(options.glass) && is_dataset(options.glass))
+    return add_packed_glass(options, pairing);
   const MaskFiles glass(options.glass, options.mask_layout);
-  for (FilePair& pair : pairing.pairs) {
-    pair.mask = masks.of(pair.name);
-    pair.glass = glass.of(pair.name);
-  }
+  for (FilePair& pair : pairing.pairs) pair.glass = glass.of(pair.name);
+}
+
+// Renders against the views of a dataset.
+Pairing pair_with_dataset(const PairingOptions& options) {
+  const FilesByName predictions = with_exit_code(ExitCode::kBadPrediction, [&] {
+    return list_by_name(options.prediction, options.prediction_layout, options.pattern);
+  });
+  const auto dataset =
+      std::make_shared<DatasetViews>(options.reference, options.all_views, options.prediction);
+  const auto views = dataset->with_map(options.reference_map);
+  GLINT_CHECK(
+      !views.empty(),
+      kBadReference,
+      "{}: no {} of its test views",
+      options.reference.string(),
+      options.reference_map
+  );
+  FilesByName references;
+  for (const auto& [name, view] : views)
+    references[name] = fmt::format(
+        "{}: {} of view {}", options.reference.string(), options.reference_map, view->name
+    );
+  Pairing pairing = match_by_name(predictions, references);
+  for (FilePair& pair : pairing.pairs) pair.view = views.at(pair.name);
+  pairing.datasets.push_back(dataset);
+  check_missing(pairing, options);
+  return pairing;
 }
 
 // Folders or globs, their names matched.
@@ -158,8 +205,12 @@ Pairing pair_paths(const PairingOptions& options) {
   check_exists(options.prediction, ExitCode::kBadPrediction, "prediction");
   check_exists(options.reference, ExitCode::kBadReference, "reference");
   const bool folders = fs::is_directory(options.reference);
+  const bool packed = !folders && is_dataset(options.reference);
+  if (fs::is_directory(options.prediction) && !options.reference_map.empty() &&
+      (packed || (!options.all_views && is_dataset(options.reference))))
+    return pair_with_dataset(options);
   GLINT_CHECK(
-      fs::is_directory(options.prediction) == folders,
+      fs::is_directory(options.prediction) == (folders || packed),
       kUsage,
       "{} and {}: one is a folder, the other a file; give two files or two folders",
       options.prediction.string(),
@@ -195,7 +246,8 @@ std::vector<NamedFile> list_images(
   GLINT_CHECK(
       !files.empty(),
       kBadReference,
-      "{}: no image{}{}; expected .png, .jpg, .exr or .npy files, or a folder with one per view",
+      "{}: no image{}{}; expected .png, .jpg, .exr, .npy or .tiff files, or a folder with one per "
+      "view",
       inside.string(),
       pattern.empty() ? "" : " matching ",
       pattern

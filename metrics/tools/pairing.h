@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "glint/core/files.h"
+#include "metrics/tools/dataset_views.h"
 
 namespace glint {
 
@@ -56,6 +57,9 @@ class MaskFiles {
 struct FilePair {
   std::string name;
   fs::path prediction, reference, mask, glass;  // mask, glass: empty when there is none
+  // Of a dataset, in place of the files: its maps are in memory. Null: files.
+  const View* view = nullptr;        // the reference
+  const View* glass_view = nullptr;  // its mask of glass
 };
 
 struct PairingOptions {
@@ -63,17 +67,22 @@ struct PairingOptions {
   fs::path prediction, reference, mask, glass;
   std::string pattern;  // of predictions
   bool allow_missing = false;
+  std::string reference_map = {};  // "rgb", "depth": what datasets are asked for
+  bool all_views = false;          // of a dataset; else its test views
   FolderLayout prediction_layout, reference_layout, mask_layout;
 };
 
 struct Pairing {
-  std::vector<FilePair> pairs;       // in natural order of the names
-  std::vector<std::string> missing;  // names that only one side has
+  std::vector<FilePair> pairs;                                // in natural order of the names
+  std::vector<std::string> missing;                           // names that only one side has
+  std::vector<std::shared_ptr<const DatasetViews>> datasets;  // what the views of pairs lie in
 };
 
-// A mask file serves every pair; a mask folder must have every name. Errors: kUsage (file against
-// folder), kBadPrediction (missing path, names that only one side has unless allow_missing, no
-// common name), kBadReference (missing path, names without mask).
+// A reference or a glass mask that is a dataset (is_dataset) is loaded; with `all_views`, folders
+// that hold images side by side are taken as folders. A mask file serves every pair; a mask folder
+// must have every name. Errors: kUsage (file against folder), kBadPrediction (missing path, names
+// that only one side has unless allow_missing, no common name), kBadReference (missing path, names
+// without mask).
 Pairing pair_files(const PairingOptions& options);
 
 }  // namespace glint

@@ -15,9 +15,10 @@ class PsnrTool final : public MetricTool {
            "(PNG, JPEG) psnr-8bit.";
   }
   std::string example() const override {
-    return "glint-psnr out/ci/runs/room_1/2dgs/0 data/room_1 --allow-missing --json";
+    return "glint-psnr out/ci/runs/room_1/2dgs/0 data/room_1 --json";
   }
   FolderLayout prediction_layout() const override { return {{"renders"}, {"rgb.exr", "rgb.png"}}; }
+  std::string reference_map() const override { return "rgb"; }
   FolderLayout reference_layout() const override {
     return {{"images"}, {"000000.png", "000000.jpg"}};
   }

@@ -19,6 +19,7 @@ class SsimTool final : public MetricTool {
     return "glint-ssim renders/ images/ --variant all --mask masks/";
   }
   FolderLayout prediction_layout() const override { return {{"renders"}, {"rgb.exr", "rgb.png"}}; }
+  std::string reference_map() const override { return "rgb"; }
   FolderLayout reference_layout() const override {
     return {{"images"}, {"000000.png", "000000.jpg"}};
   }

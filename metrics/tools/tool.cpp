@@ -23,14 +23,22 @@ struct ToolOptions {
   PairingOptions pairing;
   bool json = false, csv = false, quiet = false;
   int threads = 0;
+  std::string views = "test";
 };
 
 void add_common_options(CLI::App& app, ToolOptions& options) {
   PairingOptions& pairing = options.pairing;
   app.add_option("PREDICTION", pairing.prediction, "image, folder of images, or run folder")
       ->required();
-  app.add_option("REFERENCE", pairing.reference, "image, folder of images, or dataset folder")
+  app.add_option(
+         "REFERENCE",
+         pairing.reference,
+         "image, folder of images, or dataset (folder or packed): its test views"
+  )
       ->required();
+  app.add_option("--views", options.views, "of a dataset: test or all")
+      ->check(CLI::IsMember({"test", "all"}))
+      ->capture_default_str();
   app.add_option("--mask", pairing.mask, "pixels that count: image, or folder with one per name");
   app.add_option(
       "--glass", pairing.glass, "glass masks: also score the regions glass, glass-border and opaque"
@@ -46,7 +54,9 @@ void add_common_options(CLI::App& app, ToolOptions& options) {
 // The whole image (or the mask), and the glass regions inside it.
 std::vector<Region> load_regions(const LoadedPair& pair) {
   const MaskImage mask = load_mask(pair.files.mask, pair.reference.size());
-  const MaskImage glass = load_mask(pair.files.glass, pair.reference.size());
+  const MaskImage glass = pair.files.glass_view
+                              ? mask_of_map(map_of(*pair.files.glass_view, "glass"))
+                              : load_mask(pair.files.glass, pair.reference.size());
   std::vector<Region> regions = evaluation_regions(glass.empty() ? MaskView{} : MaskView(glass));
   if (mask.empty()) return regions;
   for (Region& region : regions) {
@@ -65,8 +75,10 @@ std::vector<Region> load_regions(const LoadedPair& pair) {
 
 LoadedPair load_pair(const MetricTool& tool, const FilePair& files) {
   LoadedPair pair{files, {}, {}};
-  pair.reference =
-      with_exit_code(ExitCode::kBadReference, [&] { return tool.load_reference(files.reference); });
+  pair.reference = with_exit_code(ExitCode::kBadReference, [&] {
+    return files.view ? map_of(*files.view, tool.reference_map())
+                      : tool.load_reference(files.reference);
+  });
   pair.prediction = with_exit_code(ExitCode::kBadPrediction, [&] {
     return tool.load_prediction(files.prediction);
   });
@@ -158,6 +170,13 @@ ToolReport score_all(const MetricTool& tool, const PairingOptions& options) {
   const Pairing pairing = pair_files(options);
   ToolReport report{
       options.prediction, options.reference, options.mask, options.glass, {}, pairing.missing};
+  if (!pairing.pairs.empty() && pairing.pairs.front().view)
+    log::info(fmt::format(
+        "{} {} views of {}",
+        pairing.pairs.size(),
+        options.all_views ? "of all" : "test",
+        options.reference.string()
+    ));
   if (!pairing.missing.empty())
     log::warn(fmt::format("{} names left out, only on one side", pairing.missing.size()));
   std::unique_ptr<Progress> progress;
@@ -178,6 +197,8 @@ void run(MetricTool& tool, ToolOptions& options, std::ostream& out) {
   if (options.threads > 0) set_num_threads(options.threads);
   options.pairing.prediction_layout = tool.prediction_layout();
   options.pairing.reference_layout = tool.reference_layout();
+  options.pairing.reference_map = tool.reference_map();
+  options.pairing.all_views = options.views == "all";
   options.pairing.mask_layout = mask_layout();
   const ToolReport report = score_all(tool, options.pairing);
   if (options.json)

@@ -44,6 +44,7 @@ class MetricTool {
   virtual std::string example() const = 0;
   virtual FolderLayout prediction_layout() const = 0;
   virtual FolderLayout reference_layout() const = 0;
+  virtual std::string reference_map() const = 0;  // of a dataset's views: "rgb", "depth", "normal"
 
   virtual void add_options(CLI::App&) {}
   // After parsing, before the first pair. Errors: kUsage; kEnvironment for files it needs.

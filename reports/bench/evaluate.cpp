@@ -28,19 +28,19 @@ Image read_map(const fs::path& path, int channels, ImageSize size) {
 
 MapSet read_scored_maps(const fs::path& folder, ImageSize size) {
   MapSet rendered;
-  for (const MapRow& row : maps())
-    if (!row.file.empty()) rendered[row] = read_map(render_file(folder, row), row.channels(), size);
+  const bool eight_bit = is_eight_bit_render(folder);
+  for (const MapRow& row : maps()) {
+    if (row.file.empty()) continue;
+    const fs::path path = eight_bit ? render_file(folder, row) : folder / row.file;
+    rendered[row] = read_map(path, row.channels(), size);
+  }
   GLINT_CHECK(
       rendered.has("rgb"),
       kBadPrediction,
-      "{}: no rgb.exr and no rgb.png; run `glint-bench render` first",
+      "{}: no rgb.exr; run `glint-bench render` first",
       folder.string()
   );
   return rendered;
-}
-
-bool is_eight_bit_render(const fs::path& folder) {
-  return !fs::exists(folder / "rgb.exr") && fs::exists(folder / "rgb.png");
 }
 
 ViewPair view_pair(const MapSet& rendered, const View& view, const MaskImage& glass) {

@@ -19,9 +19,6 @@ using Scores = std::map<std::string, double>;  // metric id -> value; "psnr@glas
 // absent. Errors (kBadPrediction): rgb missing, a file damaged or of another size than the view.
 Scores score_view(const fs::path& folder, const View& view);
 
-// Is the render's image a PNG only, of which no psnr is told (psnr-8bit is)?
-bool is_eight_bit_render(const fs::path& folder);
-
 // What score_view() scores: every map that has a file, and the pair of those and the truth, which
 // borrows all three.
 MapSet read_scored_maps(const fs::path& folder, ImageSize size);

@@ -211,7 +211,12 @@ std::vector<std::string> import_predictions(
   note_absent(folder, found, scene.test.front(), notes);
   note_conventions(found.views.front(), scene.test.front(), options, notes);
   clear_run_folder(spec.folder);
-  write_run_spec(spec, {{"imported", folder.string()}, {"import", config_to_json(options)}});
+  write_run_spec(
+      spec,
+      {{"imported", folder.string()},
+       {"import", config_to_json(options)},
+       {kEightBitField, eight_bit}}
+  );
   for (std::size_t i = 0; i < scene.test.size(); ++i)
     write_render(
         view_folder(spec.folder, scene.test[i].name),

@@ -132,6 +132,14 @@ void write_render(const fs::path& folder, const MapSet& rendered, bool eight_bit
   });
 }
 
+bool is_eight_bit_render(const fs::path& view_folder) {
+  const fs::path run = view_folder.parent_path().parent_path();
+  if (fs::exists(view_folder / "rgb.exr") || !fs::exists(run / "config.json")) return false;
+  const Json json = read_json_object(run / "config.json", ExitCode::kBadPrediction);
+  const auto config = json.find("config");
+  return config != json.end() && config->is_object() && config->value(kEightBitField, false);
+}
+
 fs::path render_file(const fs::path& folder, const MapRow& row) {
   const fs::path stored = folder / row.stored_file(), picture = folder / row.picture;
   return !row.picture.empty() && !fs::exists(stored) && fs::exists(picture) ? picture : stored;

@@ -52,6 +52,11 @@ fs::path view_folder(const fs::path& run, const std::string& view_name);
 // no EXR pretends to hold more.
 void write_render(const fs::path& folder, const MapSet& rendered, bool eight_bit = false);
 
+// In config.json of imported runs: did their images come in integers?
+inline constexpr const char* kEightBitField = "eight_bit";
+// Of a view's folder: is the image a PNG only, as the run says?
+bool is_eight_bit_render(const fs::path& view_folder);
+
 // Where a map of a render lies: its values, or the picture where there is nothing but that.
 fs::path render_file(const fs::path& folder, const MapRow& row);
 

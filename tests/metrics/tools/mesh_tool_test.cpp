@@ -163,6 +163,12 @@ TEST_CASE("glint-mesh measures point clouds, and does not cull them") {
   CHECK(result.json()["metrics"]["mesh-accuracy"].get<double>() == Approx(0.1));
   CHECK(result.json()["metrics"]["mesh-normal"].get<double>() == Approx(1));
   CHECK(result.json()["surfaces"]["prediction"]["kind"] == "points");
+  const std::size_t count = result.json()["surfaces"]["prediction"]["num_points"];
+  CHECK(result.json()["surfaces"]["prediction"]["num_samples"] == count);
+  CHECK_THAT(
+      mesh_tool({pair / "points.ply", pair.ref}).out,
+      Contains(fmt::format("prediction: {} points, all of them measured", count))
+  );
   CHECK(read_point_ply(pair / "c.ply").positions.size() == 2);
   write_nerfstudio(pair / "data", box_room_views(10, {32, 24}));
   write_mesh_ply(pair / "data/gt/mesh.ply", room_mesh());

@@ -65,12 +65,40 @@ struct Case {
 TEST_CASE("The truth in another program's conventions scores as the truth") {
   Case c;
   const auto notes = c.import({DepthConvention::kRay, NormalAxes::kOpengl, {}});
-  CHECK(notes.size() == 1);
+  CHECK(notes.size() == 2);  // whose they are, and that the images have 8 bits
   const auto means = eval_stage(c.spec, test::small_room(), {});
-  CHECK(means.at("psnr") == 100);
+  CHECK(means.at("psnr-8bit") == 100);
   CHECK(means.at("depth-absrel") < 1e-6);
   CHECK(means.at("normal-mae") < 0.01);
   CHECK(fs::exists(c.spec.folder / "strip.png"));
+}
+
+TEST_CASE("A PNG's PSNR is psnr-8bit only, a float image has both") {
+  Case c;
+  c.import({});
+  auto means = eval_stage(c.spec, test::small_room(), {});
+  for (const auto& [id, value] : means) CHECK((id != "psnr" && !id.starts_with("psnr@")));
+  CHECK(means.contains("psnr-8bit"));
+  CHECK(means.contains("ssim-3dgs"));
+  fs::remove_all(c.folder / "theirs/rgb");
+  for (const View& view : test::small_room().test)
+    write_exr(c.folder.path() / "theirs/rgb" / (view.name + ".exr"), view.rgb);
+  c.import({});
+  means = eval_stage(c.spec, test::small_room(), {});
+  CHECK(means.at("psnr") == 100);
+}
+
+TEST_CASE("Maps that the data have and the renders lack are told, with what lies there instead") {
+  Case c;
+  fs::rename(c.folder / "theirs/depth", c.folder / "theirs/depth_colored");
+  fs::remove_all(c.folder / "theirs/normal");
+  const auto notes = c.import({});
+  const std::string all = fmt::format("{}", fmt::join(notes, "; "));
+  CHECK_THAT(
+      all,
+      Catch::Contains("no depth maps read") && Catch::Contains("depth_colored/") &&
+          Catch::Contains("no normal maps read")
+  );
 }
 
 TEST_CASE("Normals in the world's axes come back, too") {

@@ -71,6 +71,14 @@ TEST_CASE("Renders are found in the layouts of the programs that people use") {
        "depth",
        "val_depthZ_0001.npy",
        Matching::kOrder},
+      {{"test/ours_30000/renders/00000.png",
+        "test/ours_30000/renders/00001.png",
+        "test/ours_30000/vis/depth_00000.tiff",
+        "test/ours_30000/vis/depth_00001.tiff"},
+       "depth",
+       "test/ours_30000/vis/depth_00001.tiff",
+       Matching::kOrder},
+      {{"test/rgb/0000.jpg", "test/rgb/0008.jpg"}, "rgb", "test/rgb/0008.jpg", Matching::kName},
       {{"rgb/0000.png", "rgb/0008.png", "normal/0000.npy", "normal/0008.npy", "normal/0009.npy"},
        "normal",
        "normal/0008.npy",
@@ -105,6 +113,19 @@ TEST_CASE("A map of one kind is not taken for another") {
        "renders/0008/depth.exr"}
   );
   CHECK(found.matching.size() == 2);
+}
+
+TEST_CASE("Files that look like a map and are not read are named") {
+  const test::TempFolder folder;
+  for (const char* file :
+       {"rgb/0000.png", "rgb/0008.png", "renders_depth/0000.png", "renders_depth/0008.png"})
+    write_file(folder.path() / file, "x");
+  const PredictionFiles found = find_predictions(folder.path(), kViews);
+  CHECK_FALSE(found.matching.contains("depth"));
+  const auto unread = unread_files(folder.path(), "depth", found);
+  REQUIRE(unread.size() == 2);
+  CHECK(unread[0] == folder / "renders_depth/0000.png");
+  CHECK(unread_files(folder.path(), "normal", found).empty());
 }
 
 TEST_CASE("Folders that do not fit the test views are refused with what is there") {

@@ -179,6 +179,16 @@ TEST_CASE("compare exits with 4 on a regression and with 2 where there are no re
   write_file(none, "\x89PNG\r\n\x1a\n");
   CHECK(run({"compare", before.c_str(), none.c_str()}) == 2);
   CHECK(run({"compare", before.c_str()}) == 1);
+  // Nothing in common: no cell, or no metric.
+  const fs::path other = folder.path() / "other";
+  write_file(
+      other / "records.jsonl",
+      R"({"scene": "room_2", "method": "2dgs", "metrics": {"psnr": 30}})"
+      "\n"
+  );
+  CHECK(run({"compare", before.c_str(), other.c_str()}) == 4);
+  CHECK(run({"compare", before.c_str(), slight.c_str(), "--metric", "nothing"}) == 4);
+  CHECK(run({"compare", before.c_str(), slight.c_str(), "--methods", "2dgs"}) == 0);
   CHECK(run({"compare", before.c_str(), worse.c_str(), "--tolerance", "-1"}) == 1);
 }
 

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Runs and imports apart from `all`: where their numbers land, and what is not overwritten.
+#include <catch2/catch.hpp>
+
+#include <vector>
+
+#include "glint/scene/image_files.h"
+#include "reports/records/records.h"
+#include "reports/verbs/command_line.h"
+#include "tests/support/small_room.h"
+
+using namespace glint;
+
+namespace {
+
+int run(const std::vector<std::string>& words) {
+  std::vector<const char*> arguments{"glint-bench"};
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  arguments.push_back("--quiet");
+  return run_command_line(static_cast<int>(arguments.size()), arguments.data());
+}
+
+std::string room() { return test::small_room_folder().string(); }
+
+}  // namespace
+
+TEST_CASE("a single run lands in the records of OUT/single when it is scored") {
+  const test::TempFolder folder;
+  const std::string out = folder / "out", data = folder / "data", mine = folder / "mine";
+  const std::vector<std::string> train = {
+      "train",
+      "--dataset",
+      room(),
+      "--run",
+      mine,
+      "--iterations",
+      "3",
+      "--out",
+      out,
+      "--data",
+      data};
+  REQUIRE(run(train) == 0);
+  CHECK(run(train) == 1);  // it would be overwritten
+  auto again = train;
+  again.emplace_back("--force");
+  CHECK(run(again) == 0);
+  REQUIRE(run({"render", "--run", mine}) == 0);
+  REQUIRE(run({"eval", "--run", mine, "--out", out}) == 0);
+  const auto records = read_records(folder / "out/single/records.jsonl");
+  REQUIRE(records.size() == 1);
+  CHECK(records[0].cell == CellKey{"room_1", "2dgs", 0});
+  CHECK(records[0].metrics.contains("psnr"));
+  CHECK(records[0].resolution == "64x36");
+  CHECK_FALSE(records[0].train_key.empty());
+  CHECK(run({"table", "--out", (folder / "out/single").string()}) == 0);
+  CHECK(fs::exists(folder / "out/single/tables/summary.md"));
+}
+
+TEST_CASE("a run of a profile is scored without touching the profile's records") {
+  const test::TempFolder folder;
+  const fs::path profile = folder / "out/ci";
+  const std::string cell = profile / "runs/room_1/2dgs/0";
+  REQUIRE(
+      run(
+          {"train",
+           "--dataset",
+           room(),
+           "--run",
+           cell,
+           "--iterations",
+           "3",
+           "--data",
+           folder / "data"}
+      ) == 0
+  );
+  REQUIRE(run({"render", "--run", cell}) == 0);
+  const std::string record =
+      R"({"scene": "room_1", "method": "2dgs", "profile": "ci", "metrics": {"psnr": 1}})"
+      "\n";
+  write_file(profile / "records.jsonl", record);
+  REQUIRE(run({"eval", "--run", cell, "--out", folder / "out"}) == 0);
+  CHECK(read_file(profile / "records.jsonl") == record);
+  CHECK_FALSE(fs::exists(folder / "out/single"));
+}
+
+TEST_CASE("a second import under one name asks for --force; PNGs have psnr-8bit") {
+  const test::TempFolder folder;
+  for (const View& view : test::small_room().test)
+    write_png(folder / "theirs/rgb" / (view.name + ".png"), view.rgb);
+  const std::vector<std::string> import = {
+      "eval",
+      "--predictions",
+      folder / "theirs",
+      "--dataset",
+      room(),
+      "--method",
+      "theirs",
+      "--profile",
+      "smoke",
+      "--out",
+      folder / "out",
+      "--data",
+      folder / "data"};
+  REQUIRE(run(import) == 0);
+  CHECK(run(import) == 1);
+  auto forced = import;
+  forced.emplace_back("--force");
+  CHECK(run(forced) == 0);
+  const auto records = read_records(folder / "out/smoke/records.jsonl");
+  REQUIRE(records.size() == 1);
+  CHECK_FALSE(records[0].metrics.contains("psnr"));
+  CHECK(records[0].metrics.contains("psnr-8bit"));
+  CHECK(records[0].not_measured.at("psnr") == "8-bit images");
+}
