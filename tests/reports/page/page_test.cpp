@@ -129,6 +129,10 @@ TEST_CASE("a store becomes pictures, values, scores, curves and commands of ever
   CHECK(scene["runs"][0]["curve"]["loss"] == Json({0.5}));  // the torn line is left out
 
   CHECK(fs::exists(store.asset("pictures/s0/v0_t_rgb.png")));
+  CHECK(
+      read_file(store.asset("pictures/s0/v0_t_rgb.js")).find("data:image/png;base64,iVBORw0KGgo") !=
+      std::string::npos
+  );
   const Image error = read_image(store.asset("pictures/s0/v1_r0_error.png"), 3);
   CHECK(error.size() == ImageSize{16, 12});
   const Json probe = part(store, "probe_0_1");
