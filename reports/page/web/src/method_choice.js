@@ -37,7 +37,7 @@ export function methodChoice(scene, hidden, changed) {
     const { color, marker } = methodStyle(i);
     return h(
       "label",
-      { class: "method" },
+      { class: "method-line" },
       h("input", {
         type: "checkbox",
         id: `method-${i}`,

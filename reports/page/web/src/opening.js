@@ -1,17 +1,9 @@
 // The picture that the page opens with: a test view, true and by the best methods.
 import { addressOf } from "./address.js";
-import {
-  loadScene,
-  metricText,
-  pictureUrl,
-  report,
-  runKey,
-  runTitle,
-  sceneKey,
-  sceneTitle,
-} from "./data.js";
+import { loadScene, metricText, pictureUrl, report, runKey, sceneKey, sceneTitle } from "./data.js";
 import { h, replace } from "./dom.js";
 import { scoreOf } from "./frames.js";
+import { layersOf, ownerKey, ownerTitle } from "./owner.js";
 import { enlargement, panelCanvas, readablePicture, saveButton } from "./save_png.js";
 
 const kMethods = 4; // beside the truth
@@ -41,18 +33,11 @@ function bestRuns(scene, view) {
     .slice(0, kMethods);
 }
 
-const ownerKey = (owner) => (owner < 0 ? "t" : `r${owner}`);
-
-function hasLayer(scene, view, owner, layer) {
-  const { truth, runs } = scene.views[view];
-  return (owner < 0 ? truth : (runs?.[owner] ?? [])).includes(layer);
-}
-
 function titleOf(scene, view, owner) {
-  if (owner < 0) return "Reference";
+  if (owner < 0) return ownerTitle(scene, owner);
   const score = scoreOf(scene, owner, view, kMetric);
   const quality = score === null ? "" : ` · ${metricText(kMetric, score)} dB`;
-  return `${runTitle(scene, scene.runs[owner])}${quality}`;
+  return `${ownerTitle(scene, owner)}${quality}`;
 }
 
 // What the picture shows: {index, scene, view, owners, layers}; null: nothing was rendered.
@@ -61,10 +46,10 @@ async function content() {
     const scene = await loadScene(index);
     if (scene.views.length === 0) continue;
     const view = openingView(scene);
-    const truth = hasLayer(scene, view, -1, "rgb") ? [-1] : [];
+    const truth = layersOf(scene, view, -1).includes("rgb") ? [-1] : [];
     const owners = [...truth, ...bestRuns(scene, view)];
     const layers = kLayers.filter((layer) =>
-      owners.some((owner) => hasLayer(scene, view, owner, layer)),
+      owners.some((owner) => layersOf(scene, view, owner).includes(layer)),
     );
     if (owners.length > 0) return { index, scene, view, owners, layers };
   }
@@ -73,7 +58,7 @@ async function content() {
 
 function panel({ index, scene, view }, owner, layer, first) {
   const title = titleOf(scene, view, owner);
-  const there = hasLayer(scene, view, owner, layer);
+  const there = layersOf(scene, view, owner).includes(layer);
   const [width, height] = scene.views[view].size;
   const right = owner < 0 ? "truth" : runKey(scene, scene.runs[owner]);
   const link = addressOf("scene", {
@@ -116,7 +101,7 @@ async function pictureCanvas(shown) {
   const scale = enlargement(width);
   const one = async (owner, layer) => {
     const title = layer === layers[0] ? titleOf(scene, view, owner) : layer;
-    if (!hasLayer(scene, view, owner, layer)) return { title, why: "not rendered" };
+    if (!layersOf(scene, view, owner).includes(layer)) return { title, why: "not rendered" };
     const image = await readablePicture(index, view, ownerKey(owner), layer);
     return { title, draw: (context, w, h) => context.drawImage(image, 0, 0, w, h) };
   };

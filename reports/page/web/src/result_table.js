@@ -2,7 +2,8 @@
 import { h } from "./dom.js";
 import { copyButtons, DataTable } from "./table.js";
 
-const kArrows = { higher: " ↑", lower: " ↓", none: "" };
+// Behind a space that does not break: no line has an arrow alone.
+const kArrows = { higher: "\u00a0↑", lower: "\u00a0↓", none: "" };
 const kRankWords = ["", "best", "second", "third"];
 
 // What stands in place of a value; of a metric that needs what is not there ("no weights"), why.

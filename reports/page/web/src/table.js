@@ -104,7 +104,10 @@ export class DataTable {
       return { text: String(text ?? "–"), value: column.value(row), rank: column.rank?.(row) };
     };
     return {
-      columns: this.columns.map(({ title, group }) => ({ title, group })),
+      columns: this.columns.map(({ title, group }) => ({
+        title: title.replaceAll("\u00a0", " "),
+        group,
+      })),
       rows: this.order.map((row) => this.columns.map(cellOf(row))),
     };
   }
