@@ -75,7 +75,7 @@ void add_report_verb(CommandLine& line) {
           form->faces,
           "faces of each mesh at most (default: 300000, in a single file 30000)"
   )
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
 }
 }  // namespace
 

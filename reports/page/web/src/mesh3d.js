@@ -159,12 +159,6 @@ class MeshView {
     this.#look(eye, target, eye.distanceTo(target) || 1);
   }
 
-  // How much of the frame the meshes' box takes; above 1 it is clipped.
-  extent() {
-    const corners = cornersOf(this.box).map((corner) => corner.project(this.camera));
-    return Math.max(...corners.flatMap(({ x, y }) => [Math.abs(x), Math.abs(y)]));
-  }
-
   // Drawn at this moment: WebGL keeps no picture for later.
   picture() {
     this.draw();

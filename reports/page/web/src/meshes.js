@@ -72,7 +72,7 @@ async function openMeshes(meshes) {
 
 function address() {
   const { scene, camera, ...choices } = state;
-  const numbers = camera?.map((x) => Number(x.toFixed(3)));
+  const numbers = camera?.map((x) => Number(x.toFixed(4)));
   return { scene: sceneKey(scene), ...choices, camera: numbers };
 }
 

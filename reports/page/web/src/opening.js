@@ -40,6 +40,8 @@ function titleOf(scene, view, owner) {
   return `${ownerTitle(scene, owner)}${quality}`;
 }
 
+const layerTitle = (scene, layer) => scene.layers.find(({ id }) => id === layer).title;
+
 // What the picture shows: {index, scene, view, owners, layers}; null: nothing was rendered.
 async function content() {
   for (let index = 0; index < report.scenes.length; ++index) {
@@ -78,7 +80,7 @@ function panel({ index, scene, view }, owner, layer, first) {
           { href: link, title: "open in Scenes" },
           h("img", {
             src: pictureUrl(index, view, ownerKey(owner), layer),
-            alt: `${layer}, ${title}`,
+            alt: `${layerTitle(scene, layer)}, ${title}`,
             style: { aspectRatio: `${width} / ${height}` },
           }),
         )
@@ -100,7 +102,7 @@ async function pictureCanvas(shown) {
   const [width, height] = scene.views[view].size;
   const scale = enlargement(width);
   const one = async (owner, layer) => {
-    const title = layer === layers[0] ? titleOf(scene, view, owner) : layer;
+    const title = layer === layers[0] ? titleOf(scene, view, owner) : layerTitle(scene, layer);
     if (!layersOf(scene, view, owner).includes(layer)) return { title, why: "not rendered" };
     const image = await readablePicture(index, view, ownerKey(owner), layer);
     return { title, draw: (context, w, h) => context.drawImage(image, 0, 0, w, h) };

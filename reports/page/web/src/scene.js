@@ -196,8 +196,7 @@ class SceneView {
   showPixel() {
     this.viewer.place();
     showProbe(this.probe, state.scene, state.values, state.pixel, state.pinned);
-    if (state.pinned || this.wasPinned) this.keep();
-    this.wasPinned = state.pinned;
+    this.keep();
   }
 
   showZoom() {

@@ -104,7 +104,8 @@ export class SceneState {
       methods: chosenKeys(scene, this.hiddenRuns),
       outline: this.outline,
       zoom: transform.scale > 1 ? [transform.scale, transform.x, transform.y].map(round) : null,
-      pixel: this.pinned ? this.pixel : null,
+      pixel: this.pixel,
+      held: this.pixel ? this.pinned : null,
       sorted: [this.metric, scene.runs[this.run] ? this.#ownerKey(this.run) : "", this.order],
     };
   }
@@ -125,18 +126,18 @@ export class SceneState {
     this.outline = params.flag("outline", false);
     this.hiddenRuns = hiddenKeys(scene, params.list("methods"));
     this.transform.set(params.numbers("zoom", 3));
-    this.#readPixel(params.numbers("pixel", 2));
+    this.#readPixel(params.numbers("pixel", 2), params.flag("held", false));
     const [metric, run, order] = params.list("sorted") ?? [];
     if (scene.metrics.includes(metric)) this.metric = metric;
     this.run = Math.max(0, this.#ownerOf(run, this.run));
     if (ids(kOrders).includes(order)) this.order = order;
   }
 
-  #readPixel(pixel) {
+  #readPixel(pixel, held) {
     const size = this.scene.views[this.view]?.size;
     if (!pixel || !size) return;
     this.pixel = pixel.map((x, i) => Math.min(size[i] - 1, Math.max(0, Math.floor(x))));
-    this.pinned = true;
+    this.pinned = held;
   }
 
   set(changes) {

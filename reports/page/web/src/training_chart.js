@@ -38,8 +38,8 @@ function drawMark({ ctx }, x, y, color) {
   ctx.stroke();
 }
 
-// What begins or ends, along a vertical line.
-function drawText(plot, x, text, color) {
+// What begins or ends, along a vertical line: from its top, or up to its bottom.
+function drawText(plot, x, text, color, atTop) {
   const { ctx, bbox } = plot;
   ctx.setLineDash([3 * devicePixelRatio, 3 * devicePixelRatio]);
   ctx.lineWidth = devicePixelRatio;
@@ -49,11 +49,13 @@ function drawText(plot, x, text, color) {
   ctx.lineTo(x, bbox.top + bbox.height);
   ctx.stroke();
   ctx.setLineDash([]);
-  ctx.translate(x - 3 * devicePixelRatio, bbox.top + 4 * devicePixelRatio);
+  const edge = 4 * devicePixelRatio;
+  const y = atTop ? bbox.top + edge : bbox.top + bbox.height - edge;
+  ctx.translate(x - 3 * devicePixelRatio, y);
   ctx.rotate(-Math.PI / 2);
   ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
   ctx.fillStyle = color;
-  ctx.textAlign = "right";
+  ctx.textAlign = atTop ? "right" : "left";
   ctx.fillText(text, 0, 0);
 }
 
@@ -79,7 +81,7 @@ function drawMarks(plot, chosen, { by }, linesOf) {
       const left = plot.valToPos(x, "x", true);
       if (chosen.length <= kFewLines) {
         ctx.save();
-        drawText(plot, left, text, color);
+        drawText(plot, left, text, color, i === 0);
         ctx.restore();
       }
       if (value !== null) drawMark(plot, left, plot.valToPos(value, "y", true), color);
