@@ -188,7 +188,7 @@ class Tsgs final : public Method {
   std::vector<std::string> inputs() const override {
     std::vector<std::string> inputs;
     if (config_.lambda_normal > 0) inputs.push_back(prior_input("normal"));
-    if (config_.delighted) inputs.push_back(prior_input("delighted"));
+    if (config_.delighted) inputs.push_back(prior_input(config_.delighted_map()));
     inputs.push_back(kGlassMasks);
     return inputs;
   }

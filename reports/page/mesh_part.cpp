@@ -114,7 +114,10 @@ TriangleMesh with_few_faces(const TriangleMesh& mesh, std::size_t max_faces) {
   float cell = box_of(mesh).longest() / 1024;
   while (coarse.faces.size() > max_faces && cell > 0) {
     coarse = merge_vertices(mesh, cell);
-    cell *= 1.25f;
+    // Faces of a surface go with 1 / cell^2; a little less than that, so as not to lose too many.
+    const double excess = static_cast<double>(coarse.faces.size()) /
+                          static_cast<double>(std::max<std::size_t>(max_faces, 1));
+    cell *= std::max(1.1f, static_cast<float>(0.9 * std::sqrt(excess)));
   }
   return coarse;
 }

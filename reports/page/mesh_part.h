@@ -9,7 +9,8 @@
 
 namespace glint {
 
-inline constexpr std::size_t kPageFaces = 300'000;  // more are merged away
+// Of a mesh on the page; more are merged away. A single file holds every mesh of the profile.
+inline constexpr std::size_t kPageFaces = 300'000, kSingleFileFaces = 30'000;
 
 // Vertices of one cell of a cubic grid become their mean; faces that lose a corner go. `cell` in
 // metres, above 0.

@@ -2,6 +2,7 @@
 #include "reports/page/page.h"
 
 #include "glint/core/progress.h"
+#include "reports/page/mesh_part.h"
 #include "reports/page/page_scenes.h"
 #include "reports/page/page_summary.h"
 #include "reports/records/embedded.h"
@@ -52,7 +53,9 @@ std::string inlined_page(const PageOptions& options, const fs::path& assets) {
   for (const auto& entry : fs::recursive_directory_iterator(assets))
     if (entry.is_regular_file()) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
+  Progress progress("report: into one file", files.size());
   for (const fs::path& file : files) {
+    progress.advance();
     const std::string name = file.lexically_relative(assets).generic_string();
     if (file.extension() == ".png")
       pictures +=
@@ -65,10 +68,10 @@ std::string inlined_page(const PageOptions& options, const fs::path& assets) {
   const std::string styles = fmt::format("<style>{}</style>", inline_text(page_file("report.css")));
   const std::string html = index_html(options, styles, scripts);
   if (html.size() > kLargePageBytes)
-    log::warn(fmt::format(
-        "report: the single file has {} MB and will open slowly; leave out --single-file",
-        html.size() / 1'000'000
-    ));
+    log::warn(
+        "report: so large a file opens slowly; leave out --single-file, or give meshes fewer faces "
+        "(--faces)"
+    );
   return html;
 }
 
@@ -80,9 +83,22 @@ void write_assets(
   const auto records =
       chosen_records(read_records(options.folder / "records.jsonl"), options.filter);
   const auto scenes = page_scenes(records, options.folder);
-  for (std::size_t i = 0; i < scenes.size(); ++i) write_scene(scenes[i], i, options, assets);
+  std::size_t steps = 0;
+  for (const PageScene& scene : scenes) steps += scene_steps(scene);
+  {
+    Progress progress("report", steps);
+    for (std::size_t i = 0; i < scenes.size(); ++i)
+      write_scene(scenes[i], i, options, assets, progress);
+  }
   const Json summary = page_summary(options, tables, records, scenes);
   write_file(assets / "data.js", fmt::format("window.GLINT_REPORT={};\n", script_json(summary)));
+}
+
+std::uintmax_t bytes_below(const fs::path& folder) {
+  std::uintmax_t bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  return bytes;
 }
 
 void remove_folder(const fs::path& folder) {
@@ -106,6 +122,11 @@ void move_folder(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
+std::size_t mesh_faces(const PageOptions& options) {
+  if (options.faces > 0) return options.faces;
+  return options.single_file ? kSingleFileFaces : kPageFaces;
+}
+
 fs::path write_page(const PageOptions& options, const std::vector<Table>& tables) {
   const fs::path report = options.folder / "report", assets = report / "assets";
   const fs::path fresh = report / "assets.new";  // an error leaves the page before as it was
@@ -119,6 +140,12 @@ fs::path write_page(const PageOptions& options, const std::vector<Table>& tables
   else
     move_folder(fresh, assets);
   write_file(report / "index.html", html);
+  log::info(fmt::format(
+      "report: {:.1f} MB in {}, meshes of at most {} faces",
+      static_cast<double>(bytes_below(report)) / 1e6,
+      options.single_file ? "one file" : "a folder",
+      mesh_faces(options)
+  ));
   return report / "index.html";
 }
 

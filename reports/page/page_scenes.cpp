@@ -48,13 +48,36 @@ std::map<std::string, Json> scores_by_view(const Json& scores) {
   return by_view;
 }
 
+constexpr const char* kRunMeshes[] = {"mesh.ply", "mesh_transmission.ply"};
+
+std::size_t run_steps(const fs::path& run) {
+  std::size_t steps = 0;
+  if (fs::is_directory(run / "renders"))
+    for (const auto& entry : fs::directory_iterator(run / "renders"))
+      if (entry.is_directory()) ++steps;
+  for (const char* mesh : kRunMeshes) steps += fs::is_regular_file(run / mesh);
+  return steps;
+}
+
+// Share of the view that is glass; null: its data do not say.
+Json glass_share(const View& view) {
+  const auto mask = view.truth["glass"].values();
+  if (mask.empty()) return nullptr;
+  const auto glass = std::count_if(mask.begin(), mask.end(), [](float g) { return g != 0; });
+  return short_number(static_cast<double>(glass) / static_cast<double>(mask.size()));
+}
+
 // One scene while it is written: what the runs rendered, what is true, where things go.
 class SceneWriter {
  public:
   SceneWriter(
-      const PageScene& scene, std::size_t index, const PageOptions& options, const fs::path& assets
+      const PageScene& scene,
+      std::size_t index,
+      const PageOptions& options,
+      const fs::path& assets,
+      Progress& progress
   )
-      : scene_(scene), index_(index), options_(options), assets_(assets) {
+      : scene_(scene), index_(index), options_(options), assets_(assets), progress_(progress) {
     load_truth();
     for (const PageRun& run : scene_.runs)
       scores_.push_back(scores_by_view(read_scores(run.folder)));
@@ -73,8 +96,7 @@ class SceneWriter {
     for (std::size_t run = 0; run < scene_.runs.size(); ++run)
       json["runs"].push_back(run_json(run));
     json["meshes"] = Json::array();
-    const fs::path data = truth_folder_;
-    add_mesh(data / "gt" / "mesh.ply", "Ground truth", "t0", json["meshes"]);
+    add_mesh(truth_folder_ / "gt" / "mesh.ply", "Ground truth", "t0", json["meshes"]);
     write_part(fmt::format("scene_{}", index_), json);
   }
 
@@ -142,6 +164,7 @@ class SceneWriter {
     for (std::size_t run = 0; run < scene_.runs.size(); ++run) {
       const fs::path folder = view_folder(scene_.runs[run].folder, views_[view]);
       const LayerMaps maps = rendered_layers(folder, truth);
+      if (fs::is_directory(folder)) progress_.advance();
       if (size == ImageSize{} && !maps.empty()) size = maps.begin()->second.size();
       json["runs"].push_back(write_pictures(maps, view, fmt::format("r{}", run)));
       probe["runs"].push_back(probe_values(maps, probe_step(size)));
@@ -150,6 +173,7 @@ class SceneWriter {
     probe["step"] = probe_step(size);
     probe["size"] = json["size"];
     probe["truth"] = probe_values(reference, probe_step(size));
+    json["glass"] = truth ? glass_share(*truth) : Json();
     probe["glass"] = truth ? probe_glass(mask_of_map(truth->truth["glass"])) : Json();
     write_part(fmt::format("probe_{}_{}", index_, view), probe);
     return json;
@@ -160,14 +184,19 @@ class SceneWriter {
     Json ids = Json::array();
     for (const PageLayer& layer : page_layers())
       if (const auto it = maps.find(layer.id); it != maps.end()) {
-        const fs::path folder = assets_ / "pictures" / fmt::format("s{}", index_);
-        write_png(
-            folder / fmt::format("v{}_{}_{}.png", view, owner, layer.id),
-            layer_picture(layer, it->second, scale_)
-        );
+        const std::string name =
+            fmt::format("pictures/s{}/v{}_{}_{}", index_, view, owner, layer.id);
+        write_png(assets_ / (name + ".png"), layer_picture(layer, it->second, scale_));
+        if (!options_.single_file) write_picture_script(name);
         ids.push_back(layer.id);
       }
     return ids;
+  }
+
+  // A page from file:// may show a PNG, but not read it; to save what it shows it loads this.
+  void write_picture_script(const std::string& name) const {
+    const std::string bytes = base64(read_file(assets_ / (name + ".png")));
+    write_part(name, "data:image/png;base64," + bytes);
   }
 
   Json run_json(std::size_t i) const {
@@ -185,12 +214,9 @@ class SceneWriter {
     json["curve"] = curve_of(run);
     json["commands"] = run_commands(run, options_);
     json["meshes"] = Json::array();
-    add_mesh(run.folder / "mesh.ply", "mesh", fmt::format("r{}a", i), json["meshes"]);
+    add_mesh(run.folder / kRunMeshes[0], "mesh", fmt::format("r{}a", i), json["meshes"]);
     add_mesh(
-        run.folder / "mesh_transmission.ply",
-        "mesh behind glass",
-        fmt::format("r{}b", i),
-        json["meshes"]
+        run.folder / kRunMeshes[1], "mesh behind glass", fmt::format("r{}b", i), json["meshes"]
     );
     return json;
   }
@@ -222,9 +248,10 @@ class SceneWriter {
   ) const {
     if (!fs::is_regular_file(path)) return;
     try {
+      progress_.advance(owner.front() == 'r');  // the truth's is no step: no run has it
       const TriangleMesh mesh = read_mesh_ply(path);
       const std::string part = fmt::format("mesh_{}_{}", index_, owner);
-      write_part(part, mesh_json(with_few_faces(mesh, kPageFaces)));
+      write_part(part, mesh_json(with_few_faces(mesh, mesh_faces(options_))));
       meshes.push_back({{"title", title}, {"part", part}, {"faces", mesh.faces.size()}});
     } catch (const Error& error) {
       log::warn(fmt::format("report: shown as missing: {}", error.what()));
@@ -235,6 +262,7 @@ class SceneWriter {
   std::size_t index_;
   const PageOptions& options_;
   fs::path assets_, truth_folder_;
+  Progress& progress_;
   std::optional<Scene> truth_;
   std::string note_;                                 // why there is no reference
   std::vector<std::map<std::string, Json>> scores_;  // of each run
@@ -309,10 +337,20 @@ Json run_commands(const PageRun& run, const PageOptions& options) {
   return commands;
 }
 
+std::size_t scene_steps(const PageScene& scene) {
+  std::size_t steps = 0;
+  for (const PageRun& run : scene.runs) steps += run_steps(run.folder);
+  return steps;
+}
+
 void write_scene(
-    const PageScene& scene, std::size_t index, const PageOptions& options, const fs::path& assets
+    const PageScene& scene,
+    std::size_t index,
+    const PageOptions& options,
+    const fs::path& assets,
+    Progress& progress
 ) {
-  SceneWriter(scene, index, options, assets).write();
+  SceneWriter(scene, index, options, assets, progress).write();
 }
 
 }  // namespace glint

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "glint/core/progress.h"
 #include "reports/page/page.h"
 
 namespace glint {
@@ -28,10 +29,17 @@ std::vector<PageScene> page_scenes(const std::vector<Record>& records, const fs:
 // Commands that repeat a run: {"what", "command"}; without a spec only the one for the cell.
 Json run_commands(const PageRun& run, const PageOptions& options);
 
+// Rendered views and meshes of the runs: what write_scene() advances its progress by.
+std::size_t scene_steps(const PageScene& scene);
+
 // Writes pictures/s<index>/, scene_<index>.js, probe_<index>_<view>.js and mesh_<index>_*.js into
-// `assets`.
+// `assets`; beside each picture its bytes as a script, unless all goes into a single file.
 void write_scene(
-    const PageScene& scene, std::size_t index, const PageOptions& options, const fs::path& assets
+    const PageScene& scene,
+    std::size_t index,
+    const PageOptions& options,
+    const fs::path& assets,
+    Progress& progress
 );
 
 }  // namespace glint

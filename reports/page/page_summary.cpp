@@ -7,6 +7,7 @@
 #include "metrics/metric.h"
 #include "reports/records/revision.h"
 #include "reports/records/script_text.h"
+#include "reports/tables/method_title.h"
 #include "reports/tables/table_writers.h"
 
 namespace glint {
@@ -62,6 +63,14 @@ Json records_json(const std::vector<Record>& records, const std::vector<std::str
     rows.push_back(std::move(row));
   }
   return {{"metrics", ids}, {"rows", std::move(rows)}};
+}
+
+// Method id -> as people read it.
+Json titles_json(const std::vector<Record>& records) {
+  Json titles = Json::object();
+  for (const Record& record : records)
+    titles[record.cell.method] = method_title(record.cell.method);
+  return titles;
 }
 
 Json failures_json(const std::vector<PageScene>& scenes, const PageOptions& options) {
@@ -135,6 +144,8 @@ Json page_summary(
   for (const Table& table : tables) json["tables"].push_back(table_json(table));
   json["metrics"] = metrics_json(ids, tables);
   json["records"] = records_json(records, ids);
+  json["titles"] = titles_json(records);
+  json["mesh_faces"] = mesh_faces(options);
   json["failures"] = failures_json(scenes, options);
   json["environments"] = environments_json(records);
   json["scenes"] = Json::array();

@@ -2,7 +2,9 @@
 #include "reports/pictures/training_curve.h"
 
 #include <cmath>
+#include <map>
 #include <sstream>
+#include <string>
 #include <vector>
 
 #include "reports/records/script_text.h"
@@ -13,11 +15,28 @@ namespace {
 
 struct Step {
   double iteration = 0, seconds = 0, loss = 0, psnr = 0, num_surfels = 0;
+  std::vector<std::string> terms;  // of the loss
 };
+
+// First and last step with something, as indices.
+struct Span {
+  std::size_t first = 0, last = 0;
+};
+
+// What ends in the last of this many parts of a training is taken to last until its end: a term
+// of some views only need not be in the very last step.
+constexpr std::size_t kEndParts = 20;
 
 double number(const Json& json, const char* name) {
   const auto it = json.find(name);
   return it != json.end() && it->is_number() ? it->get<double>() : std::nan("");
+}
+
+std::vector<std::string> term_names(const Json& json) {
+  std::vector<std::string> names;
+  if (const auto terms = json.find("terms"); terms != json.end() && terms->is_object())
+    for (const auto& [name, value] : terms->items()) names.push_back(name);
+  return names;
 }
 
 std::vector<Step> read_steps(const fs::path& log) {
@@ -31,7 +50,8 @@ std::vector<Step> read_steps(const fs::path& log) {
            number(json, "seconds"),
            number(json, "loss"),
            number(json, "psnr"),
-           number(json, "num_surfels")}
+           number(json, "num_surfels"),
+           term_names(json)}
       );
   }
   return steps;
@@ -43,6 +63,44 @@ double mean_of(
   double sum = 0;
   for (std::size_t i = begin; i < end; ++i) sum += steps[i].*field;
   return sum / static_cast<double>(end - begin);
+}
+
+std::map<std::string, Span> term_spans(const std::vector<Step>& steps) {
+  std::map<std::string, Span> spans;
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    for (const std::string& term : steps[i].terms)
+      spans.emplace(term, Span{i, i}).first->second.last = i;
+  return spans;
+}
+
+// Steps whose number of surfels is not that of the step before; first 0: there is none.
+Span surfel_changes(const std::vector<Step>& steps) {
+  Span span;
+  for (std::size_t i = 1; i < steps.size(); ++i)
+    if (steps[i].num_surfels != steps[i - 1].num_surfels &&
+        !std::isnan(steps[i].num_surfels + steps[i - 1].num_surfels))
+      span = {span.first > 0 ? span.first : i, i};
+  return span;
+}
+
+Json training_events(const std::vector<Step>& steps) {
+  Json events = Json::array();
+  const auto add = [&](std::size_t i, const std::string& text) {
+    events.push_back(
+        {{"iteration", short_number(steps[i].iteration)},
+         {"seconds", short_number(steps[i].seconds)},
+         {"text", text}}
+    );
+  };
+  const auto add_span = [&](Span span, const std::string& begins, const std::string& ends) {
+    if (span.first > 0) add(span.first, begins);
+    if (span.last + 1 + steps.size() / kEndParts < steps.size()) add(span.last, ends);
+  };
+  for (const auto& [term, span] : term_spans(steps))
+    add_span(span, term + " loss begins", term + " loss ends");
+  if (const Span span = surfel_changes(steps); span.first > 0)
+    add_span(span, "first change of the number of surfels", "last change of the number of surfels");
+  return events;
 }
 
 }  // namespace
@@ -62,6 +120,7 @@ Json training_curve(const fs::path& log, std::size_t points) {
     curve["psnr"].push_back(short_number(mean_of(steps, begin, end, &Step::psnr)));
     curve["num_surfels"].push_back(short_number(last.num_surfels));
   }
+  curve["events"] = training_events(steps);
   return curve;
 }
 

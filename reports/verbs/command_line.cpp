@@ -18,58 +18,60 @@ namespace glint {
 
 namespace {
 
+// Every verb takes every common option, so that one command line serves several verbs; its help
+// shows those that it uses.
+class CommonOptionAdder {
+ public:
+  CommonOptionAdder(CLI::App& verb, CommonOption uses) : verb_(verb), uses_(uses) {}
+
+  template <class T>
+  CLI::Option* option(CommonOption needed, const char* name, T& value, const std::string& help)
+      const {
+    return verb_.add_option(name, value, help)->group(group_of(needed));
+  }
+  void flag(CommonOption needed, const char* name, bool& value, const std::string& help) const {
+    verb_.add_flag(name, value, help)->group(group_of(needed));
+  }
+
+ private:
+  const char* group_of(CommonOption needed) const { return uses_ & needed ? "Common" : ""; }
+
+  CLI::App& verb_;
+  CommonOption uses_;
+};
+
 // Where results and data lie, and which cells: the options of a profile.
-void add_profile_options(CLI::App& verb, CommonOptions& common, CommonOption uses) {
-  if (uses & kOutOption)
-    verb.add_option("--out", common.out, "results lie in OUT/PROFILE; that folder itself does, too")
-        ->capture_default_str();
-  if (uses & kDataOption)
-    verb.add_option("--data", common.data, "scenes that were made or fetched")
-        ->capture_default_str();
-  if (uses & kProfileOption)
-    verb.add_option(
-            "--profile", common.profile, comma_list(embedded_names("profiles")) + ", or a TOML file"
-    )
-        ->capture_default_str();
-  if (!(uses & kCellOptions)) return;
-  verb.add_option("--methods", common.methods, "globs of methods, a,b,c; also beyond the profile's")
-      ->delimiter(',');
-  verb.add_option("--only", common.only, "only cells whose scene/method/seed matches a glob");
-  verb.add_option("--skip", common.skip, "no cells that match a glob");
+void add_profile_options(const CommonOptionAdder& add, CommonOptions& common) {
+  const char* out = "results lie in OUT/PROFILE; that folder itself does, too";
+  add.option(kOutOption, "--out", common.out, out)->capture_default_str();
+  add.option(kDataOption, "--data", common.data, "scenes that were made or fetched")
+      ->capture_default_str();
+  const std::string profiles = comma_list(embedded_names("profiles")) + ", or a TOML file";
+  add.option(kProfileOption, "--profile", common.profile, profiles)->capture_default_str();
+  const char* methods = "globs of methods, a,b,c; also beyond the profile's";
+  add.option(kCellOptions, "--methods", common.methods, methods)->delimiter(',');
+  const char* only = "only cells whose scene/method/seed matches a glob";
+  add.option(kCellOptions, "--only", common.only, only);
+  add.option(kCellOptions, "--skip", common.skip, "no cells that match a glob");
 }
 
 // How a method is trained.
-void add_training_options(CLI::App& verb, CommonOptions& common, CommonOption uses) {
-  if (uses & kSeedOption) verb.add_option("--seed", common.seed, "one seed, a whole number");
-  if (uses & kIterationsOption)
-    verb.add_option("--iterations", common.iterations, "training steps; else as the profile says")
-        ->check(CLI::PositiveNumber);
-  if (uses & kSetOption)
-    verb.add_option(
-        "--set",
-        common.set,
-        "config field: name=value or method.name=value (`glint-bench methods ID` lists them)"
-    );
+void add_training_options(const CommonOptionAdder& add, CommonOptions& common) {
+  add.option(kSeedOption, "--seed", common.seed, "one seed, a whole number");
+  const char* iterations = "training steps; else as the profile says";
+  add.option(kIterationsOption, "--iterations", common.iterations, iterations)
+      ->check(CLI::PositiveNumber);
+  const char* set =
+      "config field: name=value or method.name=value (`glint-bench methods ID` lists them)";
+  add.option(kSetOption, "--set", common.set, set);
 }
 
-void add_machine_options(CLI::App& verb, CommonOptions& common, CommonOption uses) {
-  if (uses & kDeviceOption)
-    verb.add_option("--device", common.device, "auto, cpu or cuda")->capture_default_str();
-  if (uses & kThreadsOption)
-    verb.add_option("--threads", common.threads, "0: all cores")->check(CLI::NonNegativeNumber);
-  if (uses & kJsonOption)
-    verb.add_flag("--json", common.json, "one JSON document on standard output");
-  if (uses & kQuietOption)
-    verb.add_flag("--quiet", common.quiet, "no progress and no notes on standard error");
-}
-
-void add_common_options(CLI::App& verb, CommonOptions& common, CommonOption uses) {
-  const std::string own_group = verb.option_defaults()->get_group();
-  verb.option_defaults()->group("Common");
-  add_profile_options(verb, common, uses);
-  add_training_options(verb, common, uses);
-  add_machine_options(verb, common, uses);
-  verb.option_defaults()->group(own_group);
+void add_machine_options(const CommonOptionAdder& add, CommonOptions& common) {
+  add.option(kDeviceOption, "--device", common.device, "auto, cpu or cuda")->capture_default_str();
+  add.option(kThreadsOption, "--threads", common.threads, "0: all cores")
+      ->check(CLI::NonNegativeNumber);
+  add.flag(kJsonOption, "--json", common.json, "one JSON document on standard output");
+  add.flag(kQuietOption, "--quiet", common.quiet, "no progress and no notes on standard error");
 }
 
 int report_error(const std::string& message, ExitCode code) {
@@ -84,11 +86,12 @@ std::vector<std::string> verbs_of(const CLI::App& app) {
   return names;
 }
 
-// Names without their dashes.
+// Those that help shows, without their dashes.
 std::vector<std::string> options_of(const CLI::App& verb) {
   std::vector<std::string> names;
   for (const CLI::Option* option : verb.get_options())
-    if (option->nonpositional()) names.push_back(option->get_name().substr(2));
+    if (option->nonpositional() && !option->get_group().empty())
+      names.push_back(option->get_name().substr(2));
   return names;
 }
 
@@ -180,7 +183,10 @@ CLI::App* CommandLine::add_verb(
     CommonOption uses
 ) {
   CLI::App* verb = parent.add_subcommand(name, help);
-  add_common_options(*verb, common, uses);
+  const CommonOptionAdder add(*verb, uses);
+  add_profile_options(add, common);
+  add_training_options(add, common);
+  add_machine_options(add, common);
   verb->callback([this, uses, run = std::move(run)] {
     action = run;
     this->uses = uses;

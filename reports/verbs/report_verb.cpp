@@ -11,12 +11,12 @@ namespace glint {
 
 namespace {
 
-int run_report(const CommonOptions& common, bool single_file) {
+int run_report(const CommonOptions& common, const PageForm& form) {
   const fs::path folder = folder_with_records(common);
   const fs::path index =
-      write_report(common, folder, result_tables(folder, {}, common.filter()), single_file);
+      write_report(common, folder, result_tables(folder, {}, common.filter()), form);
   if (common.json)
-    print_json({{"page", index.string()}});
+    print_json({{"page", index.string()}, {"index_bytes", fs::file_size(index)}});
   else
     print_text(index.string() + "\n");
   return 0;
@@ -39,7 +39,7 @@ fs::path write_report(
     const CommonOptions& common,
     const fs::path& folder,
     const std::vector<Table>& tables,
-    bool single_file
+    const PageForm& form
 ) {
   PageOptions options;
   options.folder = folder;
@@ -47,22 +47,29 @@ fs::path write_report(
   options.out = common.out;
   options.data = common.data;
   options.filter = common.filter();
-  options.single_file = single_file;
+  options.single_file = form.single_file;
+  options.faces = form.faces;
   options.load = load_run_data;
   return write_page(options, tables);
 }
 
 namespace {
 void add_report_verb(CommandLine& line) {
-  auto single_file = std::make_shared<bool>(false);
+  auto form = std::make_shared<PageForm>();
   CLI::App* verb = line.add_verb(
       line.app,
       "report",
       "write OUT/PROFILE/report/index.html, a page with all results",
-      [&line, single_file] { return run_report(line.common, *single_file); },
+      [&line, form] { return run_report(line.common, *form); },
       kFolderOptions | kDataOption | kThreadsOption
   );
-  verb->add_flag("--single-file", *single_file, "everything inside index.html");
+  verb->add_flag("--single-file", form->single_file, "everything inside index.html");
+  verb->add_option(
+          "--faces",
+          form->faces,
+          "faces of each mesh at most (default: 300000, in a single file 30000)"
+  )
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
 }
 }  // namespace
 

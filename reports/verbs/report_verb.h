@@ -13,12 +13,17 @@ fs::path folder_with_records(const CommonOptions& common);
 // The data that a run was scored against. Errors (kBadReference): not there, damaged.
 Scene load_run_data(const RunSpec& spec);
 
+struct PageForm {
+  bool single_file = false;
+  std::size_t faces = 0;  // of each mesh at most; 0: as PageOptions
+};
+
 // FOLDER/report/index.html; returns its path. Errors: as write_page.
 fs::path write_report(
     const CommonOptions& common,
     const fs::path& folder,
     const std::vector<Table>& tables,
-    bool single_file = false
+    const PageForm& form = {}
 );
 
 }  // namespace glint

@@ -80,6 +80,7 @@ Json other_value(const Json& value) {
       {"expected", "median"},
       {"median", "expected"},
       {"real", "off"},
+      {"delighted", "basecolor"},
       {"point-to-triangle", "point-to-point"},
       {"", "x"}};
   if (value.is_boolean()) return !value.get<bool>();

@@ -132,7 +132,7 @@ TEST_CASE("Of gsplat's pictures, truth beside render, the render counts") {
   };
   CHECK_THAT(fmt::format("{}", fmt::join(import(), "; ")), Catch::Contains("right halves"));
   const Image render =
-      read_image(view_folder(c.spec.folder, test::small_room().test[1].name) / "rgb.exr", 3);
+      read_image(view_folder(c.spec.folder, test::small_room().test[1].name) / "rgb.png", 3);
   CHECK(render.size() == test::small_room().test[1].camera.size());
   CHECK(render.at(5, 5, 1) == 64.0f / 255);
   // Twice the width without the truth is another size.

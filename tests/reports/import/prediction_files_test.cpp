@@ -22,68 +22,69 @@ PredictionFiles find_in(const std::vector<std::string>& files) {
   return found;
 }
 
+struct Layout {
+  std::vector<std::string> files;
+  std::string map, second;  // file of the second view
+  Matching matching;
+};
+const Layout kLayouts[] = {
+    {{"renders/0000/rgb.exr",
+      "renders/0000/rgb.png",
+      "renders/0008/rgb.exr",
+      "renders/0008/rgb.png"},
+     "rgb",
+     "renders/0008/rgb.exr",
+     Matching::kName},
+    {{"test/ours_7000/renders/00000.png",
+      "test/ours_30000/renders/00000.png",
+      "test/ours_30000/renders/00001.png"},
+     "rgb",
+     "test/ours_30000/renders/00001.png",
+     Matching::kOrder},
+    {{"RENDER/frame0000_camera0000.png", "RENDER/frame0000_camera0008.png"},
+     "rgb",
+     "RENDER/frame0000_camera0008.png",
+     Matching::kOrder},
+    {{"color/0000.png", "color/0008.png", "gt-color/0000.png"},
+     "rgb",
+     "color/0008.png",
+     Matching::kName},
+    {{"renders/val_0000.png",
+      "renders/val_0000_normal_29999.png",
+      "renders/val_0001.png",
+      "renders/val_0001_normals_from_depth_29999.png"},
+     "rgb",
+     "renders/val_0001.png",
+     Matching::kOrder},
+    {{"renders/val_step29999_0000.png", "renders/val_step29999_0001.png"},
+     "rgb",
+     "renders/val_step29999_0001.png",
+     Matching::kOrder},
+    {{"rgb/0000.png", "rgb/0008.png", "gt-rgb/0000.png", "gt-rgb/0008.png"},
+     "rgb",
+     "rgb/0008.png",
+     Matching::kName},
+    {{"0000.png", "0008.png", "val_depthZ_0000.npy", "val_depthZ_0001.npy"},
+     "depth",
+     "val_depthZ_0001.npy",
+     Matching::kOrder},
+    {{"test/ours_30000/renders/00000.png",
+      "test/ours_30000/renders/00001.png",
+      "test/ours_30000/vis/depth_00000.tiff",
+      "test/ours_30000/vis/depth_00001.tiff"},
+     "depth",
+     "test/ours_30000/vis/depth_00001.tiff",
+     Matching::kOrder},
+    {{"test/rgb/0000.jpg", "test/rgb/0008.jpg"}, "rgb", "test/rgb/0008.jpg", Matching::kName},
+    {{"rgb/0000.png", "rgb/0008.png", "normal/0000.npy", "normal/0008.npy", "normal/0009.npy"},
+     "normal",
+     "normal/0008.npy",
+     Matching::kName}};
+
 }  // namespace
 
 TEST_CASE("Renders are found in the layouts of the programs that people use") {
-  struct Layout {
-    std::vector<std::string> files;
-    std::string map, second;  // file of the second view
-    Matching matching;
-  };
-  const Layout layouts[] = {
-      {{"renders/0000/rgb.exr",
-        "renders/0000/rgb.png",
-        "renders/0008/rgb.exr",
-        "renders/0008/rgb.png"},
-       "rgb",
-       "renders/0008/rgb.exr",
-       Matching::kName},
-      {{"test/ours_7000/renders/00000.png",
-        "test/ours_30000/renders/00000.png",
-        "test/ours_30000/renders/00001.png"},
-       "rgb",
-       "test/ours_30000/renders/00001.png",
-       Matching::kOrder},
-      {{"RENDER/frame0000_camera0000.png", "RENDER/frame0000_camera0008.png"},
-       "rgb",
-       "RENDER/frame0000_camera0008.png",
-       Matching::kOrder},
-      {{"color/0000.png", "color/0008.png", "gt-color/0000.png"},
-       "rgb",
-       "color/0008.png",
-       Matching::kName},
-      {{"renders/val_0000.png",
-        "renders/val_0000_normal_29999.png",
-        "renders/val_0001.png",
-        "renders/val_0001_normals_from_depth_29999.png"},
-       "rgb",
-       "renders/val_0001.png",
-       Matching::kOrder},
-      {{"renders/val_step29999_0000.png", "renders/val_step29999_0001.png"},
-       "rgb",
-       "renders/val_step29999_0001.png",
-       Matching::kOrder},
-      {{"rgb/0000.png", "rgb/0008.png", "gt-rgb/0000.png", "gt-rgb/0008.png"},
-       "rgb",
-       "rgb/0008.png",
-       Matching::kName},
-      {{"0000.png", "0008.png", "val_depthZ_0000.npy", "val_depthZ_0001.npy"},
-       "depth",
-       "val_depthZ_0001.npy",
-       Matching::kOrder},
-      {{"test/ours_30000/renders/00000.png",
-        "test/ours_30000/renders/00001.png",
-        "test/ours_30000/vis/depth_00000.tiff",
-        "test/ours_30000/vis/depth_00001.tiff"},
-       "depth",
-       "test/ours_30000/vis/depth_00001.tiff",
-       Matching::kOrder},
-      {{"test/rgb/0000.jpg", "test/rgb/0008.jpg"}, "rgb", "test/rgb/0008.jpg", Matching::kName},
-      {{"rgb/0000.png", "rgb/0008.png", "normal/0000.npy", "normal/0008.npy", "normal/0009.npy"},
-       "normal",
-       "normal/0008.npy",
-       Matching::kName}};
-  for (const Layout& layout : layouts) {
+  for (const Layout& layout : kLayouts) {
     INFO(layout.files.front());
     const PredictionFiles found = find_in(layout.files);
     CHECK(found.views.at(1).at(layout.map) == fs::path(layout.second));

@@ -2,47 +2,16 @@
 // of a single file, folder for screenshots. Every console error and every request that leaves the
 // folder fails the test.
 import assert from "node:assert/strict";
-import { mkdirSync } from "node:fs";
-import { pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
-
-const [folderPage, singlePage, shots] = process.argv.slice(2);
-mkdirSync(shots, { recursive: true });
-
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM,
-  args: [
-    "--no-sandbox",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-  ],
-});
-
-async function openPage(file, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, ...options });
-  const page = await context.newPage();
-  const problems = [];
-  page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
-  page.on("pageerror", (error) => problems.push(String(error)));
-  page.on("request", (request) => {
-    if (!/^(file|data|blob):/.test(request.url())) problems.push(`request: ${request.url()}`);
-  });
-  await page.goto(pathToFileURL(file).href);
-  await page.waitForSelector("main table");
-  return { page, problems, close: () => context.close() };
-}
-
-const shot = (page, name) => page.screenshot({ path: `${shots}/${name}.png` });
-const openView = async (page, name, selector) => {
-  await page.click(`nav a[href="#${name}"]`);
-  await page.waitForSelector(selector);
-};
-const textOf = (page, selector) => page.locator(selector).first().innerText();
+import {
+  browser,
+  folderPage,
+  openPage,
+  openView,
+  shot,
+  singlePage,
+  textOf,
+} from "./browser_page.mjs";
+import { copied, testAddresses, testCopies, testPictures } from "./browser_sharing.mjs";
 
 async function testSummary(page) {
   const table = page.locator("#table-table1_photometric");
@@ -67,12 +36,56 @@ async function testSummary(page) {
   await page.keyboard.press("p");
 }
 
+// The picture, then the headline, before anything else.
+async function testOpening(page) {
+  await page.waitForSelector("#opening img");
+  const sections = await page.locator("main section").evaluateAll((all) => all.map(({ id }) => id));
+  assert.deepEqual(sections.slice(0, 2), ["opening", "table-summary"]);
+  assert.equal(await page.locator("#opening figcaption").count(), 3, "reference, two methods");
+  assert.match(await textOf(page, "#opening figcaption"), /^Reference/);
+  const loaded = await page
+    .locator("#opening img")
+    .evaluateAll((all) => Promise.all(all.map((img) => img.decode().then(() => img.naturalWidth))));
+  assert.ok(loaded.length >= 3 && loaded.every((width) => width > 0), "its pictures are there");
+}
+
+// Columns and rows without anything fold away and come back.
+async function testFolds(page) {
+  const ablation = page.locator("#table-table3_ablation");
+  const rows = ablation.locator("tbody tr");
+  assert.deepEqual(await rows.locator("th").allInnerTexts(), ["Full model"]);
+  const fold = ablation.locator("tfoot .fold");
+  assert.match(await fold.innerText(), /Show 6 rows that were not run: w\/o/);
+  await fold.click();
+  assert.equal(await rows.count(), 7);
+  await fold.click();
+  assert.equal(await rows.count(), 1);
+  const empty = await page.evaluate(() =>
+    window.GLINT_REPORT.tables.map(({ id, columns, rows }) => {
+      const words = ["missing", "unavailable", "not applicable"];
+      const has = (column) => rows.some(({ cells }) => !words.includes(cells[column.id].status));
+      return { id, empty: columns.filter((column) => !has(column)).length, all: columns.length };
+    }),
+  );
+  for (const { id, empty: count, all } of empty) {
+    const table = page.locator(`#table-${id}`);
+    const heads = table.locator("thead tr:last-child th");
+    assert.equal(await heads.count(), 1 + all - count, `${id}: no column without a value`);
+    if (count === 0) continue;
+    const button = table.locator("section > .fold, :scope > .fold");
+    assert.match(await button.innerText(), new RegExp(`Show ${count} empty column`));
+    await button.click();
+    assert.equal(await heads.count(), 1 + all, `${id}: all columns`);
+    await button.click();
+  }
+}
+
 async function testScene(page) {
   await openView(page, "scene", ".viewer img");
   assert.equal(await page.locator("#injected").count(), 0, "names never become elements");
-  assert.match(await textOf(page, ".label.right"), /^glint/);
-  await page.selectOption("#right-owner", { label: "2dgs" });
-  assert.match(await textOf(page, ".label.right"), /^2dgs/);
+  assert.match(await textOf(page, ".label.right"), /^GLINT/);
+  await page.selectOption("#right-owner", { label: "2DGS" });
+  assert.match(await textOf(page, ".label.right"), /^2DGS/);
 
   const divider = page.locator("input.handle");
   const clip = () =>
@@ -103,6 +116,8 @@ async function testProbe(page) {
   assert.match(rows[3], /missing/);
   await page.mouse.click(pane.x + pane.width * 0.6, pane.y + pane.height * 0.4);
   assert.match(await textOf(page, ".probe-title"), /held/);
+  const csv = await copied(page, page.locator(".probe-panel [data-format=csv]"));
+  assert.match(csv, /^Method,RGB,Error,.*\nReference,/, "the values can be copied");
   await page.locator("main").focus();
   await page.keyboard.press("ArrowRight");
   assert.match(await textOf(page, ".probe-title"), /^Pixel 29, 11/);
@@ -154,6 +169,18 @@ async function testModesAndLayers(page) {
   await shot(page, "scene_slider");
 }
 
+// The number of colours near the border of a picture, below its labels.
+function borderColors(page, png) {
+  return page.evaluate(async (source) => {
+    const { data, width, height } = await window.pixelsOfPng(source);
+    const at = (x, y) => data.slice(4 * (y * width + x), 4 * (y * width + x) + 3).join();
+    const border = new Set();
+    for (let x = 12; x < width - 12; ++x) border.add(at(x, height - 12));
+    for (let y = 50; y < height - 12; ++y) border.add(at(12, y)).add(at(width - 12, y));
+    return border.size;
+  }, png);
+}
+
 async function testMeshes(page) {
   const stage = page.locator("#stage3d canvas");
   const picture = async () => {
@@ -161,22 +188,56 @@ async function testMeshes(page) {
     await page.waitForTimeout(300);
     return (await stage.screenshot()).toString("base64");
   };
-  await openView(page, "meshes", "#stage3d canvas");
+  await openView(page, "meshes", "#stage3d[data-ready] canvas");
+  const labels = await page.locator("#stage3d .label").allInnerTexts();
+  assert.match(labels[0], /^(GLINT|2DGS): mesh/, "a method");
+  assert.equal(labels[1], "Ground truth", "beside the truth");
   const whole = await picture();
-  await page.locator("#cut").fill("50");
-  assert.notEqual(await picture(), whole, "the cut changes the picture");
-  await page.getByLabel("beside").selectOption({ index: 2 });
-  await page.waitForFunction(() => document.querySelectorAll("#stage3d .label").length === 2);
-  const both = await picture();
+  assert.equal(await borderColors(page, whole), 1, "nothing reaches the frame");
   await shot(page, "meshes");
+  await page.locator("#cut").fill("50");
+  const both = await picture();
+  assert.notEqual(both, whole, "the cut changes the picture");
+  await page.selectOption("#mesh-right", "none");
+  await page.waitForFunction(() => document.querySelectorAll("#stage3d .label").length === 1);
+  const one = await picture();
   await page.locator("#cut").fill("100");
-  assert.notEqual(await picture(), both, "two meshes are drawn and cut");
+  assert.notEqual(await picture(), one, "one mesh is drawn and cut");
+  await page.locator("#cut").fill("0");
+  await page.selectOption("#mesh-right", "truth");
+}
+
+const chartPicture = async (page, name) => {
+  await page.waitForTimeout(100);
+  return (await page.locator(`#chart-${name} canvas`).screenshot()).toString("base64");
+};
+
+async function testCurves(page) {
+  await openView(page, "curves", ".u-over");
+  assert.equal(await page.locator(".uplot").count(), 3);
+  const key = await page.locator(".method-list").innerText();
+  assert.match(key, /2DGS[^]*GLINT/, "titles, not ids");
+  const before = await chartPicture(page, "loss");
+  await page.locator("#smooth").fill("30");
+  const smooth = await chartPicture(page, "loss");
+  assert.notEqual(smooth, before, "smoothing changes the line");
+  assert.equal(await page.locator("#chart-loss .u-series.raw").count(), 2, "raw lines stay");
+  await page.locator("#marks").uncheck();
+  assert.notEqual(await chartPicture(page, "loss"), smooth, "marks are drawn");
+  await page.locator("#marks").check();
+  await page.locator("#marks-list summary").click();
+  assert.match(await textOf(page, "#marks-list"), /GLINT: \d+: .* loss begins/);
+  assert.match(await textOf(page, "#marks-list"), /logs do not say when opacities were reset/);
+  await shot(page, "curves");
+  await page.locator("#method-0").uncheck();
+  assert.equal(await page.locator("#chart-loss .u-series:not(.raw)").count(), 2, "x and GLINT");
+  await page.getByRole("button", { name: "None" }).click();
+  assert.match(await textOf(page, "#chart-loss"), /No method is chosen/);
+  await page.getByRole("button", { name: "All", exact: true }).click();
 }
 
 async function testOthers(page) {
-  await openView(page, "curves", ".u-over");
-  assert.equal(await page.locator(".uplot").count(), 3);
-  await shot(page, "curves");
+  await testCurves(page);
   await testMeshes(page);
   await openView(page, "records", "#record-filter");
   await page.fill("#record-filter", "failed");
@@ -205,6 +266,7 @@ async function testKeyboard(page) {
   const before = await theme();
   await page.keyboard.press("d");
   assert.notEqual(await theme(), before);
+  await page.keyboard.press("d");
 }
 
 async function run(name, file, body, options) {
@@ -217,18 +279,25 @@ async function run(name, file, body, options) {
 
 try {
   await run("a folder", folderPage, async (page) => {
+    await testOpening(page);
     await shot(page, "summary");
+    await testFolds(page);
     await testSummary(page);
+    await testCopies(page);
     await testScene(page);
     await testProbe(page);
     await testModesAndLayers(page);
     await testOthers(page);
     await testKeyboard(page);
+    await testPictures(page, "folder");
+    await testAddresses(page, folderPage);
   });
   await run("a single file", singlePage, async (page) => {
     await testScene(page);
     await testProbe(page);
     await openView(page, "meshes", "#stage3d canvas");
+    assert.match(await textOf(page, "main"), /merged to 30,000 faces/);
+    await testPictures(page, "single");
   });
   await run(
     "dark and narrow",

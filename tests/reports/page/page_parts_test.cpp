@@ -178,3 +178,21 @@ TEST_CASE("a curve averages neighbours and keeps the last step") {
   write_file(folder / "torn.jsonl", R"({"iterat)");
   CHECK(training_curve(folder / "torn.jsonl").is_null());
 }
+
+TEST_CASE("a curve says where loss terms and changes of the surfels begin and end") {
+  const test::TempFolder folder;
+  for (int i = 0; i < 100; ++i) {
+    Json step = {{"iteration", 10 * i}, {"seconds", i}, {"num_surfels", i < 30 ? 5 : 7}};
+    step["terms"]["photometric"] = 1;
+    if (i >= 40 && i % 2 == 0) step["terms"]["normal"] = 1;  // not in the last step, but lasting
+    if (i < 20) step["terms"]["warm-up"] = 1;
+    append_line(folder / "log.jsonl", step.dump());
+  }
+  const Json events = training_curve(folder / "log.jsonl")["events"];
+  REQUIRE(events.size() == 4);
+  CHECK(events[0] == Json({{"iteration", 400}, {"seconds", 40}, {"text", "normal loss begins"}}));
+  CHECK(events[1]["text"] == "warm-up loss ends");
+  CHECK(events[1]["iteration"] == 190.0);
+  CHECK(events[2]["text"] == "first change of the number of surfels");
+  CHECK(events[3]["iteration"] == 300.0);
+}

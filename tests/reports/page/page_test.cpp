@@ -9,10 +9,12 @@
 
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/ply.h"
 #include "reports/page/page_scenes.h"
 #include "reports/page/page_summary.h"
 #include "reports/pictures/depth_scale.h"
 #include "reports/pictures/layers.h"
+#include "reports/tables/method_title.h"
 #include "tests/reports/fake_method.h"
 #include "tests/support/temp_folder.h"
 
@@ -129,6 +131,10 @@ TEST_CASE("a store becomes pictures, values, scores, curves and commands of ever
   CHECK(scene["runs"][0]["curve"]["loss"] == Json({0.5}));  // the torn line is left out
 
   CHECK(fs::exists(store.asset("pictures/s0/v0_t_rgb.png")));
+  CHECK(
+      read_file(store.asset("pictures/s0/v0_t_rgb.js")).find("data:image/png;base64,iVBORw0KGgo") !=
+      std::string::npos
+  );
   const Image error = read_image(store.asset("pictures/s0/v1_r0_error.png"), 3);
   CHECK(error.size() == ImageSize{16, 12});
   const Json probe = part(store, "probe_0_1");
@@ -251,6 +257,45 @@ TEST_CASE("a single file needs nothing beside it") {
       std::string::npos
   );
   CHECK(page.find("GLINT_MESH_VIEW") != std::string::npos);
+}
+
+TEST_CASE("meshes of a page have as many faces as were asked for, fewer in a single file") {
+  Store store;
+  store.add(record_of("room_1", "fake"));
+  write_run(store.options.folder, record_of("room_1", "fake"));
+  TriangleMesh fan;  // in steps, so that neighbours can be merged
+  for (int i = 0; i < 1000; ++i)
+    fan.vertices.push_back({std::sqrt(static_cast<float>(i)), i % 2 ? 0.1f : 0.0f, 0});
+  for (int i = 0; i + 2 < 1000; ++i) fan.faces.push_back({i, i + 1, i + 2});
+  write_mesh_ply(store.options.folder / "runs/room_1/fake/0/mesh.ply", fan);
+  store.write();
+  CHECK(part(store, "mesh_0_r0a")["faces"] == 998);
+  CHECK(assigned(store.asset("data.js"))["mesh_faces"] == 300'000);
+  store.options.faces = 100;
+  store.write();
+  CHECK(part(store, "mesh_0_r0a")["faces"].get<int>() <= 100);
+  CHECK(part(store, "scene_0")["runs"][0]["meshes"][0]["faces"] == 998);  // what the run has
+  store.options.faces = 0;
+  store.options.single_file = true;
+  CHECK(mesh_faces(store.options) == 30'000);
+}
+
+TEST_CASE("a view says how much of it is glass, and methods have their titles") {
+  Store store;
+  store.options.load = [](const RunSpec&) {
+    Scene scene = fake_scene("room_1");
+    Image glass(16, 12, 1);
+    for (int x = 0; x < 8; ++x) glass.at(x, 0) = 1;
+    scene.test[0].truth["glass"] = glass;
+    return scene;
+  };
+  store.add(record_of("room_1", "fake"));
+  write_run(store.options.folder, record_of("room_1", "fake"));
+  store.write();
+  const Json views = part(store, "scene_0")["views"];
+  CHECK(views[0]["glass"].get<double>() == Approx(8.0 / (16 * 12)).epsilon(1e-3));
+  CHECK(views[1]["glass"].is_null());
+  CHECK(assigned(store.asset("data.js"))["titles"] == Json({{"fake", method_title("fake")}}));
 }
 
 TEST_CASE("a page that is written again keeps nothing of the one before") {

@@ -187,7 +187,8 @@ TEST_CASE("compare exits with 4 on a regression and with 2 where there are no re
       "\n"
   );
   CHECK(run({"compare", before.c_str(), other.c_str()}) == 4);
-  CHECK(run({"compare", before.c_str(), slight.c_str(), "--metric", "nothing"}) == 4);
+  CHECK(run({"compare", before.c_str(), slight.c_str(), "--metric", "nothing"}) == 1);  // misspelt
+  CHECK(run({"compare", before.c_str(), slight.c_str(), "--methods", "glint"}) == 4);
   CHECK(run({"compare", before.c_str(), slight.c_str(), "--methods", "2dgs"}) == 0);
   CHECK(run({"compare", before.c_str(), worse.c_str(), "--tolerance", "-1"}) == 1);
 }

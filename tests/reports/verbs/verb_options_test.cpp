@@ -53,7 +53,8 @@ std::vector<std::string> options_of(const std::string& verb) {
   const CommandLine line;
   std::vector<std::string> names;
   for (const CLI::Option* option : line.app.get_subcommand(verb)->get_options())
-    if (option->nonpositional()) names.push_back(option->get_name());
+    if (option->nonpositional() && !option->get_group().empty())
+      names.push_back(option->get_name());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -73,7 +74,7 @@ void add_missed_priors(const std::string& id, const Scene& scene, std::set<std::
 
 }  // namespace
 
-TEST_CASE("a verb has the options that it uses") {
+TEST_CASE("a verb shows the options that it uses, and takes the common ones of all others") {
   using Names = std::vector<std::string>;
   CHECK(options_of("methods") == Names{"--help", "--json"});
   CHECK(options_of("results") == Names{"--help", "--root"});
@@ -86,6 +87,7 @@ TEST_CASE("a verb has the options that it uses") {
           "--help",
           "--iterations",
           "--json",
+          "--methods",
           "--only",
           "--out",
           "--profile",
@@ -94,6 +96,10 @@ TEST_CASE("a verb has the options that it uses") {
           "--set",
           "--skip"}
   );
+  const std::string listed = captured(1, [] {
+    CHECK(run({"methods", "--seed", "3", "--only", "x", "--threads", "1"}) == 0);
+  });
+  CHECK_THAT(listed, Catch::Contains("glint"));
 }
 
 TEST_CASE("misspelt words are answered with the nearest") {

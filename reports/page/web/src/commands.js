@@ -1,20 +1,12 @@
 // What failed and why; and the commands that repeat everything.
-import { loadScene, report, runTitle, sceneTitle } from "./data.js";
-import { h, replace, select } from "./dom.js";
+import { keepAddress } from "./address.js";
+import { copyButton } from "./copy.js";
+import { loadScene, report, runTitle, sceneKey, sceneOfAddress } from "./data.js";
+import { h, replace } from "./dom.js";
 import { setViewKeys } from "./keys.js";
+import { sceneChoice } from "./scene_choice.js";
 
-function copyButton(text) {
-  const button = h("button", { type: "button", class: "copy", onclick: copy }, "Copy");
-  async function copy() {
-    try {
-      await navigator.clipboard.writeText(text);
-      button.textContent = "Copied";
-    } catch {
-      button.textContent = "Select it by hand";
-    }
-  }
-  return button;
-}
+let sceneIndex = 0;
 
 const commandBlock = (text) =>
   h("div", { class: "command" }, h("code", {}, text), copyButton(text));
@@ -79,7 +71,7 @@ function runCard(scene, run) {
   );
 }
 
-export async function showCommands(container, index = 0) {
+export async function showCommands(container, from) {
   setViewKeys([]);
   const table = report.command.replace("glint-bench report", "glint-bench table");
   const whole = h(
@@ -90,18 +82,18 @@ export async function showCommands(container, index = 0) {
     commandBlock(report.command),
   );
   if (report.scenes.length === 0) return replace(container, whole);
-  const shown = Math.min(Number(index) || 0, report.scenes.length - 1);
-  const scene = await loadScene(shown);
-  const choice = select(
-    "Scene",
-    report.scenes.map((_, i) => [i, sceneTitle(i)]),
-    shown,
-    (i) => (location.hash = `#commands/${i}`),
-  );
+  if (from) sceneIndex = sceneOfAddress(from, sceneIndex);
+  const scene = await loadScene(sceneIndex);
+  const open = (index) => {
+    sceneIndex = index;
+    keepAddress("commands", { scene: sceneKey(index) }, true);
+    showCommands(container);
+  };
   replace(
     container,
     whole,
-    h("div", { class: "bar" }, choice),
+    h("div", { class: "bar" }, sceneChoice(sceneIndex, open)),
     scene.runs.map((run) => runCard(scene, run)),
   );
+  keepAddress("commands", { scene: sceneKey(sceneIndex) });
 }

@@ -1,226 +1,284 @@
 // Training by iteration and by time; quality against what it costs.
-import uPlot from "uplot";
-import { loadScene, metricInfo, metricTitle, report, runTitle, sceneTitle } from "./data.js";
-import { h, replace, segmented, select } from "./dom.js";
+import { keepAddress } from "./address.js";
+import { chartCanvas, startCharts, stopCharts } from "./charts.js";
+import { costChart, costPoints } from "./cost_chart.js";
+import {
+  loadScene,
+  metricInfo,
+  metricTitle,
+  report,
+  runKey,
+  runTitle,
+  sceneKey,
+  sceneOfAddress,
+  sceneTitle,
+} from "./data.js";
+import { checkbox, h, replace, segmented, select } from "./dom.js";
 import { setViewKeys } from "./keys.js";
-import { methodStyle } from "./styles.js";
+import { chosenKeys, hiddenKeys, methodChoice } from "./method_choice.js";
+import { saveButton } from "./save_png.js";
+import { sceneChoice } from "./scene_choice.js";
+import { marksOf, trainingChart } from "./training_chart.js";
 
-const state = { scene: 0, by: "iteration", cost: "train-minutes", metric: "psnr" };
-const kHeight = 300;
+const kMaxSmooth = 30; // percent of the points
+const start = () => ({
+  by: "iteration",
+  cost: "train-minutes",
+  metric: "psnr",
+  smooth: 8,
+  marks: true,
+  hidden: new Set(),
+  range: null,
+});
+const state = { scene: 0, ...start() };
 const kCosts = ["train-minutes", "num-surfels", "fps", "peak-memory"];
-let charts = [];
+const kBy = { iteration: "iteration", time: "seconds" };
 
-const cssColor = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-
-function axis(label, size) {
-  const grid = { stroke: cssColor("--line"), width: 1 };
-  return {
-    label,
-    stroke: cssColor("--quiet"),
-    grid,
-    ticks: grid,
-    font: "12px system-ui, sans-serif",
-    labelFont: "12px system-ui, sans-serif",
-    size,
-    labelSize: 22,
-  };
-}
-
-function chart(parent, options, data) {
-  const width = Math.max(280, parent.clientWidth);
-  charts.push({ parent, plot: new uPlot({ width, height: kHeight, ...options }, data, parent) });
-}
-
-function lineSeries(label, index) {
-  const { color, dash, marker } = methodStyle(index);
-  return {
-    label: `${marker} ${label}`,
-    stroke: color,
-    dash,
-    width: 2,
-    points: { show: false },
-    spanGaps: true,
-  };
-}
-
-// One chart of `field` for all runs that have a curve.
-function showCurve(parent, scene, field, title) {
-  const runs = scene.runs.map((run, i) => ({ run, i })).filter(({ run }) => run.curve);
-  if (runs.length === 0) {
-    replace(parent, h("p", { class: "note" }, "No training log in any run folder: missing."));
-    return;
-  }
-  const data = uPlot.join(runs.map(({ run }) => [run.curve[state.by], run.curve[field]]));
-  const xLabel = state.by === "iteration" ? "iteration" : "seconds of training";
-  chart(
-    parent,
+function keep(scene, push = false) {
+  const { by, cost, metric, smooth, marks, hidden, range } = state;
+  const chosen = chosenKeys(scene, hidden);
+  keepAddress(
+    "curves",
     {
-      title,
-      scales: { x: { time: false } },
-      axes: [axis(xLabel, 34), axis(title, 56)],
-      series: [{ label: xLabel }, ...runs.map(({ run, i }) => lineSeries(runTitle(scene, run), i))],
-      cursor: { drag: { x: true, y: false } },
-      legend: {
-        markers: { dash: (plot, i) => (plot.series[i].dash?.length ? "dashed" : "solid") },
-      },
+      scene: sceneKey(state.scene),
+      by: by === "seconds" ? "time" : by,
+      smooth,
+      marks,
+      quality: metric,
+      cost,
+      methods: chosen,
+      range: range?.map((x) => Number(x.toPrecision(5))),
     },
-    data,
+    push,
   );
 }
 
-// A marker of the series' own shape instead of uPlot's circle.
-function drawMarker(marker, color) {
-  return (plot, series) => {
-    const { ctx } = plot;
-    ctx.save();
-    ctx.fillStyle = color;
-    ctx.font = `${15 * devicePixelRatio}px system-ui, sans-serif`;
-    ctx.textAlign = "center";
-    ctx.textBaseline = "middle";
-    plot.data[series].forEach((value, i) => {
-      if (value === null || value === undefined) return;
-      ctx.fillText(
-        marker,
-        plot.valToPos(plot.data[0][i], "x", true),
-        plot.valToPos(value, "y", true),
-      );
-    });
-    ctx.restore();
-  };
+function readState(params, scene) {
+  Object.assign(state, start());
+  state.by = kBy[params.choice("by", Object.keys(kBy), "iteration")];
+  state.smooth = params.number("smooth", 0, kMaxSmooth, state.smooth);
+  state.marks = params.flag("marks", true);
+  state.metric = params.choice("quality", qualities(), state.metric);
+  state.cost = params.choice("cost", costs(), state.cost);
+  state.hidden = hiddenKeys(scene, params.list("methods"));
+  state.range = params.numbers("range", 2);
 }
 
-// Records of the scene as {title, x, y}.
-function pointsOf(sceneIndex, scene) {
-  const { metrics, rows } = report.records;
-  const { dataset, name } = report.scenes[sceneIndex];
-  const first = 8; // columns before the metrics
-  const x = metrics.indexOf(state.cost) + first;
-  const y = metrics.indexOf(state.metric) + first;
-  return scene.runs
-    .map((run, index) => {
-      const row = rows.find(
-        (r) => r[0] === dataset && r[1] === name && r[2] === run.method && r[3] === run.seed,
-      );
-      return { title: runTitle(scene, run), index, x: row?.[x], y: row?.[y] };
-    })
-    .filter(({ x: cost, y: quality }) => typeof cost === "number" && typeof quality === "number");
-}
+const costs = () => kCosts.filter((id) => report.records.metrics.includes(id));
 
-function showCost(parent, sceneIndex, scene) {
-  const points = pointsOf(sceneIndex, scene);
-  if (points.length === 0) {
-    replace(
-      parent,
-      h("p", { class: "note" }, `No run has both ${state.cost} and ${state.metric}: missing.`),
-    );
-    return;
-  }
-  const series = points.map(({ title, index }) => {
-    const { color, marker } = methodStyle(index);
-    return {
-      label: `${marker} ${title}`,
-      stroke: color,
-      paths: () => null,
-      points: { show: drawMarker(marker, color) },
-    };
+const qualities = () =>
+  report.records.metrics.filter(
+    (id) => !id.includes("@") && metricInfo(id).direction !== "none" && !kCosts.includes(id),
+  );
+
+function smoothSlider(changed) {
+  const shown = h("output", {}, `${state.smooth} %`);
+  const slider = h("input", {
+    type: "range",
+    id: "smooth",
+    min: "0",
+    max: String(kMaxSmooth),
+    value: String(state.smooth),
+    title: "each point is the mean over this share of the training around it; raw lines are faint",
+    oninput: () => {
+      state.smooth = Number(slider.value);
+      shown.textContent = `${state.smooth} %`;
+      changed();
+    },
   });
-  const margin = (plot, low, high) => {
-    const room = 0.08 * (high - low || Math.abs(high) || 1);
-    return [low - room, high + room];
-  };
-  chart(
-    parent,
-    {
-      title: `${metricTitle(state.metric)} against ${metricTitle(state.cost)}`,
-      scales: { x: { time: false, range: margin }, y: { range: margin } },
-      axes: [axis(metricTitle(state.cost), 34), axis(metricTitle(state.metric), 56)],
-      series: [{ label: state.cost }, ...series],
-    },
-    uPlot.join(points.map(({ x, y }) => [[x], [y]])),
+  return h("label", { class: "field" }, h("span", {}, "Smoothed over"), slider, shown);
+}
+
+// What each mark stands for.
+function marksList(scene, chosen) {
+  const items = chosen
+    .map(({ run }) => ({ run, marks: marksOf(run.curve?.events, "iteration") }))
+    .filter(({ marks }) => marks.length > 0)
+    .map(({ run, marks }) =>
+      h(
+        "li",
+        {},
+        h("strong", {}, `${runTitle(scene, run)}: `),
+        marks.map(({ x, text }) => `${x}: ${text}`).join(" · "),
+      ),
+    );
+  return h(
+    "details",
+    { class: "card", id: "marks-list" },
+    h("summary", {}, "What begins and ends, by iteration"),
+    h("ul", { class: "notes" }, items),
+    h(
+      "p",
+      { class: "note" },
+      "Read from the logs: the first and last step with a loss term, and with another number of surfels. The logs do not say when opacities were reset, so that is not marked.",
+    ),
   );
 }
 
-function resize() {
-  for (const { parent, plot } of charts)
-    if (parent.isConnected)
-      plot.setSize({ width: Math.max(280, parent.clientWidth), height: kHeight });
+// A card whose chart is drawn again when a choice changes.
+class ChartCard {
+  constructor(id, title, draw) {
+    Object.assign(this, { title, draw, body: h("div"), heading: h("h2") });
+    const save = saveButton(
+      () => chartCanvas(this.plot, this.title(), this.keys),
+      () => [report.profile, sceneTitle(state.scene), id],
+    );
+    this.save = save;
+    this.element = h(
+      "div",
+      { class: "card chart", id: `chart-${id}` },
+      h("div", { class: "card-head" }, this.heading, save),
+      this.body,
+    );
+  }
+
+  show(scene, chosen) {
+    this.heading.textContent = this.title();
+    replace(this.body);
+    const drawn = this.draw(this.body, scene, chosen);
+    this.save.hidden = !drawn.plot;
+    if (drawn.plot) Object.assign(this, drawn);
+    else replace(this.body, h("p", { class: "note" }, drawn));
+  }
+}
+
+const keysOf = (scene, chosen) =>
+  chosen.map(({ run, index }) => ({ index, title: runTitle(scene, run) }));
+
+function trainingCard(id, field, title, onRange) {
+  return new ChartCard(
+    id,
+    () => title,
+    (body, scene, chosen) => {
+      const logged = chosen.filter(({ run }) => run.curve);
+      if (chosen.length === 0) return "No method is chosen.";
+      if (logged.length === 0) return "No training log in any run folder: missing.";
+      const plot = trainingChart(body, scene, logged, field, title, state, onRange);
+      return { plot, keys: keysOf(scene, logged) };
+    },
+  );
+}
+
+function costCard() {
+  const { title } = {
+    title: () => `${metricTitle(state.metric)} against ${metricTitle(state.cost)}`,
+  };
+  return new ChartCard("cost", title, (body, scene, chosen) => {
+    const points = costPoints(state.scene, scene, chosen, state.cost, state.metric);
+    if (chosen.length === 0) return "No method is chosen.";
+    if (points.length === 0) return `No run has both ${state.cost} and ${state.metric}: missing.`;
+    return { plot: costChart(body, points, state.cost, state.metric), keys: points };
+  });
+}
+
+function controls(again, redraw, open) {
+  return h(
+    "div",
+    { class: "bar" },
+    sceneChoice(state.scene, open),
+    segmented(
+      "Horizontal axis",
+      [
+        ["iteration", "by iteration"],
+        ["seconds", "by time"],
+      ],
+      state.by,
+      (by) => again({ by, range: null }),
+    ),
+    smoothSlider(redraw),
+    checkbox("Mark what begins and ends", state.marks, (marks) => again({ marks }), "marks"),
+    select(
+      "Quality",
+      qualities().map((id) => [id, metricTitle(id)]),
+      state.metric,
+      (metric) => again({ metric }),
+      "quality",
+    ),
+    select(
+      "against",
+      costs().map((id) => [id, metricTitle(id)]),
+      state.cost,
+      (cost) => again({ cost }),
+      "cost",
+    ),
+  );
 }
 
 function stop() {
-  charts.forEach(({ plot }) => plot.destroy());
-  charts = [];
-  window.removeEventListener("resize", resize);
+  stopCharts();
 }
 
-export async function showCurves(container, index = state.scene) {
+export async function showCurves(container, from) {
   stop();
+  setViewKeys([]);
+  if (report.scenes.length === 0) {
+    replace(container, h("p", { class: "card" }, "No records yet: nothing to show."));
+    return stop;
+  }
+  if (from) state.scene = sceneOfAddress(from, state.scene);
+  const scene = await loadScene(state.scene);
+  if (from?.params) readState(from.params, scene);
+  const onRange = (range) => {
+    if (String(range) === String(state.range)) return;
+    state.range = range;
+    keep(scene);
+    redraw();
+  };
+  const cards = [
+    trainingCard("loss", "loss", "Training loss", onRange),
+    trainingCard("psnr", "psnr", "PSNR of training views (dB)", onRange),
+    costCard(),
+  ];
+  const below = h("div");
+  const redraw = () => {
+    const chosen = scene.runs
+      .map((run, index) => ({ run, index }))
+      .filter(({ run }) => !state.hidden.has(runKey(scene, run)));
+    stopCharts();
+    cards.forEach((card) => card.show(scene, chosen));
+    replace(below, marksList(scene, chosen));
+    startCharts();
+    keep(scene);
+  };
+  const head = h("div");
   const again = (changes) => {
     Object.assign(state, changes);
-    showCurves(container);
+    fill();
+  };
+  const open = (index) => {
+    Object.assign(state, { scene: index, range: null });
+    loadScene(index).then((other) => (keep(other, true), showCurves(container)));
+  };
+  const fill = () => {
+    replace(
+      head,
+      controls(again, redraw, open),
+      methodChoice(scene, state.hidden, fill),
+      h(
+        "p",
+        { class: "note" },
+        "Drag across a chart to enlarge a stretch, double-click for all. Loss and PSNR are of single training views, so they scatter.",
+      ),
+    );
+    redraw();
   };
   setViewKeys([
     {
       keys: ["t"],
       help: "by iteration or by time",
-      run: () => again({ by: state.by === "iteration" ? "seconds" : "iteration" }),
+      run: () => again({ by: state.by === "iteration" ? "seconds" : "iteration", range: null }),
     },
   ]);
-  if (report.scenes.length === 0) {
-    replace(container, h("p", { class: "card" }, "No records yet: nothing to show."));
-    return stop;
-  }
-  state.scene = Math.min(Number(index) || 0, report.scenes.length - 1);
-  const scene = await loadScene(state.scene);
-  const [loss, psnr, cost] = ["loss", "psnr", "cost"].map((name) =>
-    h("div", { class: "card chart", id: `chart-${name}` }),
-  );
-  const measured = report.records.metrics;
-  const quality = measured.filter(
-    (id) => !id.includes("@") && metricInfo(id).direction !== "none" && !kCosts.includes(id),
-  );
   replace(
     container,
+    head,
     h(
       "div",
-      { class: "bar" },
-      select(
-        "Scene",
-        report.scenes.map((_, i) => [i, sceneTitle(i)]),
-        state.scene,
-        (i) => (location.hash = `#curves/${i}`),
-      ),
-      segmented(
-        "Horizontal axis",
-        [
-          ["iteration", "by iteration"],
-          ["seconds", "by time"],
-        ],
-        state.by,
-        (by) => again({ by }),
-      ),
-      select(
-        "Quality",
-        quality.map((id) => [id, metricTitle(id)]),
-        state.metric,
-        (metric) => again({ metric }),
-      ),
-      select(
-        "against",
-        kCosts.filter((id) => measured.includes(id)).map((id) => [id, metricTitle(id)]),
-        state.cost,
-        (c) => again({ cost: c }),
-      ),
+      { class: "charts" },
+      cards.map((card) => card.element),
     ),
-    h(
-      "p",
-      { class: "note" },
-      "Drag across a chart to enlarge a stretch, double-click for all. Click a name to hide its line. Loss and PSNR are of single training views, so they scatter.",
-    ),
-    h("div", { class: "charts" }, loss, psnr, cost),
+    below,
   );
-  showCurve(loss, scene, "loss", "training loss");
-  showCurve(psnr, scene, "psnr", "PSNR of training views (dB)");
-  showCost(cost, state.scene, scene);
-  window.addEventListener("resize", resize);
+  fill();
   return stop;
 }

@@ -28,8 +28,11 @@ export async function loadPart(name) {
 
 export const loadScene = (index) => loadPart(`scene_${index}`);
 
+export const picturePath = (scene, view, owner, layer) =>
+  `pictures/s${scene}/v${view}_${owner}_${layer}`;
+
 export function pictureUrl(scene, view, owner, layer) {
-  const path = `pictures/s${scene}/v${view}_${owner}_${layer}.png`;
+  const path = `${picturePath(scene, view, owner, layer)}.png`;
   return window.GLINT_ASSETS?.[path] ?? `assets/${path}`;
 }
 
@@ -65,15 +68,41 @@ export function metricText(id, value) {
   return value.toFixed(metricInfo(id).decimals);
 }
 
-// "glint", or "glint · seed 1" where the scene has several seeds of a method.
+export const methodTitle = (id) => report.titles[id] ?? id;
+
+const hasSeeds = (scene, run) =>
+  scene.runs.filter((other) => other.method === run.method).length > 1;
+
+// "GLINT", or "GLINT · seed 1" where the scene has several seeds of a method.
 export function runTitle(scene, run) {
-  const seeds = scene.runs.filter((other) => other.method === run.method).length;
-  return seeds > 1 ? `${run.method} · seed ${run.seed}` : run.method;
+  const title = methodTitle(run.method);
+  return hasSeeds(scene, run) ? `${title} · seed ${run.seed}` : title;
 }
+
+// The same in the address: "glint", "glint:1".
+export const runKey = (scene, run) =>
+  hasSeeds(scene, run) ? `${run.method}:${run.seed}` : run.method;
+// -1: no such run.
+export const runOfKey = (scene, key) => scene.runs.findIndex((run) => runKey(scene, run) === key);
 
 const severalDatasets = new Set(report.scenes.map(({ dataset }) => dataset)).size > 1;
 
 export function sceneTitle(index) {
   const { name, dataset } = report.scenes[index];
   return severalDatasets ? `${dataset} / ${name}` : name;
+}
+
+// The same in the address.
+export function sceneKey(index) {
+  const { name, dataset } = report.scenes[index];
+  return severalDatasets ? `${dataset}/${name}` : name;
+}
+
+// The scene that an address names, or `current`.
+export function sceneOfAddress({ argument, params } = {}, current) {
+  const last = report.scenes.length - 1;
+  const named = report.scenes.findIndex((_, i) => sceneKey(i) === params?.get("scene"));
+  if (named >= 0) return named;
+  const index = argument ? Number(argument) || 0 : params ? 0 : current;
+  return Math.min(Math.max(0, index), last);
 }

@@ -1,5 +1,7 @@
-// The page: header, views by the address's fragment ("#scene/0"), theme, keys.
+// The page: header, views by the address's fragment ("#scene?map=depth"), theme, keys.
+import { dropAddress, readAddress, writeAddress } from "./address.js";
 import { showCommands, showFailures } from "./commands.js";
+import { copyButton } from "./copy.js";
 import { showCurves } from "./curves.js";
 import { report } from "./data.js";
 import { h, replace } from "./dom.js";
@@ -24,8 +26,9 @@ let stopView = null;
 let opening = 0;
 
 async function openView() {
-  const [name, argument] = location.hash.slice(1).split("/");
-  const [id, , show] = kViews.find(([key]) => key === name) ?? kViews[0];
+  dropAddress();
+  const address = readAddress();
+  const [id, , show] = kViews.find(([key]) => key === address.view) ?? kViews[0];
   const mine = ++opening;
   stopView?.();
   stopView = null;
@@ -35,7 +38,7 @@ async function openView() {
   });
   main.dataset.view = id;
   try {
-    const stop = await show(main, argument);
+    const stop = await show(main, address);
     if (mine === opening) stopView = stop ?? null;
     else stop?.();
   } catch (error) {
@@ -100,6 +103,10 @@ function header() {
     h(
       "div",
       { class: "tools" },
+      copyButton(() => (writeAddress(), location.href), "Copy link", {
+        title: "opens exactly what is shown now",
+        id: "link",
+      }),
       h(
         "button",
         { type: "button", id: "theme", title: "light or dark (d)", onclick: switchTheme },

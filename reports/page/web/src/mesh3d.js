@@ -25,6 +25,29 @@ import { codes16, unpack } from "./data.js";
 const kFrontColor = 0xb8c4d4;
 const kBackColor = 0xd98324;
 const kFieldOfView = 45;
+const kHome = new Vector3(0.6, -1, 0.7).normalize(); // from the middle of the mesh to the eye
+const kMargin = 1.05;
+
+const cornersOf = ({ min, max }) =>
+  [...Array(8).keys()].map(
+    (i) => new Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z),
+  );
+
+// How far the eye must be from the middle of a box, in the direction `to`, to see all its corners.
+function fittingDistance(box, to, up, aspect) {
+  const center = box.getCenter(new Vector3());
+  const right = up.clone().cross(to).normalize();
+  const top = to.clone().cross(right);
+  const tan = Math.tan((kFieldOfView * Math.PI) / 360);
+  let distance = 0;
+  for (const corner of cornersOf(box)) {
+    corner.sub(center);
+    const beside = Math.abs(corner.dot(right)) / (tan * aspect);
+    const above = Math.abs(corner.dot(top)) / tan;
+    distance = Math.max(distance, corner.dot(to) + kMargin * Math.max(beside, above));
+  }
+  return distance || 1;
+}
 
 async function geometryOf(data) {
   const codes = codes16(await unpack(data.position));
@@ -82,7 +105,10 @@ class MeshView {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
-    this.watcher = new ResizeObserver(() => this.draw());
+    this.controls.addEventListener("start", () => (this.atHome = false));
+    this.controls.addEventListener("end", () => this.onMove?.());
+    // The whole mesh stays in a frame that changes, until the reader chose a view.
+    this.watcher = new ResizeObserver(() => (this.atHome ? this.home() : this.draw()));
     this.watcher.observe(stage);
   }
 
@@ -105,18 +131,38 @@ class MeshView {
 
   home() {
     const center = this.box.getCenter(new Vector3());
-    const radius = this.box.getSize(new Vector3()).length() / 2 || 1;
     const aspect = this.stage.clientWidth / this.scenes.length / this.stage.clientHeight || 1;
-    const fitted = (0.9 * radius) / Math.sin((kFieldOfView * Math.PI) / 360);
-    const distance = fitted / Math.min(1, aspect / 1.3);
+    const distance = fittingDistance(this.box, kHome, this.camera.up, aspect);
+    this.#look(center.clone().addScaledVector(kHome, distance), center, distance);
+    this.atHome = true;
+    this.onMove?.();
+  }
+
+  #look(eye, target, distance) {
     this.camera.near = distance / 500;
-    this.camera.far = distance * 10;
-    this.camera.position
-      .copy(center)
-      .addScaledVector(new Vector3(0.6, -1, 0.7).normalize(), distance);
-    this.controls.target.copy(center);
+    this.camera.far = distance * 10 + this.box.getSize(new Vector3()).length();
+    this.camera.position.copy(eye);
+    this.controls.target.copy(target);
     this.controls.update();
     this.draw();
+  }
+
+  // [x, y, z of the eye, then of what it looks at]; null: the whole mesh.
+  get view() {
+    if (this.atHome) return null;
+    return [...this.camera.position, ...this.controls.target];
+  }
+
+  set view(numbers) {
+    const [eye, target] = [0, 3].map((i) => new Vector3(...numbers.slice(i, i + 3)));
+    this.atHome = false;
+    this.#look(eye, target, eye.distanceTo(target) || 1);
+  }
+
+  // Drawn at this moment: WebGL keeps no picture for later.
+  picture() {
+    this.draw();
+    return this.renderer.domElement;
   }
 
   // `share` of the box along the axis is cut away.
@@ -140,13 +186,19 @@ class MeshView {
     sphere.phi = Math.min(Math.PI - 0.01, Math.max(0.01, sphere.phi + polar));
     const turned = new Vector3().setFromSpherical(sphere);
     this.camera.position.set(turned.x, -turned.z, turned.y).add(this.controls.target);
+    this.#moved();
+  }
+
+  #moved() {
+    this.atHome = false;
     this.controls.update();
+    this.draw();
+    this.onMove?.();
   }
 
   approach(factor) {
     this.camera.position.sub(this.controls.target).multiplyScalar(factor).add(this.controls.target);
-    this.controls.update();
-    this.draw();
+    this.#moved();
   }
 
   draw() {

@@ -1,18 +1,35 @@
 // Meshes of a scene in 3D: one or two beside each other under one camera, with a cut plane.
-import { loadPart, loadScene, loadScript, report, runTitle, sceneTitle } from "./data.js";
+import { keepAddress } from "./address.js";
+import {
+  loadPart,
+  loadScene,
+  loadScript,
+  report,
+  runKey,
+  runTitle,
+  sceneKey,
+  sceneOfAddress,
+  sceneTitle,
+} from "./data.js";
 import { checkbox, h, replace, segmented, select } from "./dom.js";
 import { setViewKeys } from "./keys.js";
+import { drawText, newCanvas, saveButton } from "./save_png.js";
+import { sceneChoice } from "./scene_choice.js";
 
-const state = {
-  scene: 0,
-  left: 0,
-  right: -1,
+const kTitle = 28; // pixels of the line above a saved picture
+
+const start = () => ({
+  left: "",
+  right: "",
   axis: "x",
   cut: 0,
   flipped: false,
   wire: false,
   backs: false,
-};
+  camera: null,
+});
+// left, right: keys of meshes; "" chooses one, "none" shows none.
+const state = { scene: 0, ...start() };
 const kAxes = [
   ["x", "x"],
   ["y", "y"],
@@ -20,19 +37,67 @@ const kAxes = [
 ];
 let view3d = null;
 
-// {title, part, faces} of the truth and every run.
+// {key, title, part, faces} of the truth and every run.
 function meshesOf(scene) {
   const ofRuns = scene.runs.flatMap((run) =>
-    run.meshes.map((mesh) => ({ ...mesh, title: `${runTitle(scene, run)}: ${mesh.title}` })),
+    run.meshes.map((mesh) => ({
+      ...mesh,
+      key: runKey(scene, run) + (mesh.part.endsWith("b") ? "~behind" : ""),
+      method: run.method,
+      title: `${runTitle(scene, run)}: ${mesh.title}`,
+    })),
   );
-  return [...scene.meshes, ...ofRuns];
+  return [...scene.meshes.map((mesh) => ({ ...mesh, key: "truth" })), ...ofRuns];
 }
 
+// A method beside the truth, where nothing that is there is chosen.
+function choose(meshes) {
+  const there = (key) => meshes.some((mesh) => mesh.key === key);
+  const truth = meshes.find(({ key }) => key === "truth");
+  const ofRuns = meshes.filter(({ key }) => key !== "truth");
+  const best = ofRuns.find(({ method }) => method === "glint") ?? ofRuns[0];
+  if (!there(state.left)) state.left = (best ?? truth).key;
+  if (state.right !== "none" && !there(state.right))
+    state.right = truth && state.left !== "truth" ? "truth" : "none";
+}
+
+const chosenMeshes = (meshes) =>
+  [state.left, state.right].map((key) => meshes.find((mesh) => mesh.key === key)).filter(Boolean);
+
 async function openMeshes(meshes) {
-  const wanted = [state.left, state.right].filter((i) => i >= 0 && i < meshes.length);
   return Promise.all(
-    wanted.map(async (i) => ({ title: meshes[i].title, data: await loadPart(meshes[i].part) })),
+    chosenMeshes(meshes).map(async ({ title, part }) => ({ title, data: await loadPart(part) })),
   );
+}
+
+function address() {
+  const { scene, camera, ...choices } = state;
+  const numbers = camera?.map((x) => Number(x.toFixed(4)));
+  return { scene: sceneKey(scene), ...choices, camera: numbers };
+}
+
+const keep = () => keepAddress("meshes", address());
+
+function readState(params) {
+  Object.assign(state, start());
+  state.left = params.get("left", "");
+  state.right = params.get("right", "");
+  state.axis = params.choice("axis", ["x", "y", "z"], "x");
+  state.cut = params.number("cut", 0, 100, 0);
+  for (const flag of ["flipped", "wire", "backs"]) state[flag] = params.flag(flag, false);
+  state.camera = params.numbers("camera", 6);
+}
+
+// Titles above what the 3D view shows.
+function meshCanvas(meshes) {
+  const titles = chosenMeshes(meshes).map(({ title }) => title);
+  const picture = view3d.picture();
+  const { canvas, context } = newCanvas(picture.width, picture.height + kTitle);
+  titles.forEach((title, i) =>
+    drawText(context, title, 8 + (i * picture.width) / titles.length, kTitle / 2, { bold: true }),
+  );
+  context.drawImage(picture, 0, kTitle);
+  return canvas;
 }
 
 function stop() {
@@ -42,11 +107,12 @@ function stop() {
 
 function applyCut() {
   view3d?.cut(state.axis, state.cut / 100, state.flipped);
+  keep();
 }
 
 function controls(meshes, again) {
-  const choices = meshes.map(({ title, faces }, i) => [
-    i,
+  const choices = meshes.map(({ key, title, faces }) => [
+    key,
     `${title} (${faces.toLocaleString("en")} faces)`,
   ]);
   const cut = h("input", {
@@ -68,9 +134,17 @@ function controls(meshes, again) {
     h(
       "div",
       { class: "bar" },
-      select("Mesh", choices, state.left, (i) => setCut({ left: Number(i) })),
-      select("beside", [[-1, "none"], ...choices], state.right, (i) =>
-        setCut({ right: Number(i) }),
+      select("Mesh", choices, state.left, (left) => setCut({ left }), "mesh-left"),
+      select(
+        "beside",
+        [["none", "none"], ...choices],
+        state.right,
+        (right) => setCut({ right }),
+        "mesh-right",
+      ),
+      saveButton(
+        () => meshCanvas(meshes),
+        () => [sceneTitle(state.scene), "meshes", state.left],
       ),
     ),
     h(
@@ -127,6 +201,11 @@ async function show3d(stage, meshes) {
   await loadScript("mesh3d", () => window.GLINT_MESH_VIEW !== undefined);
   try {
     view3d = await window.GLINT_MESH_VIEW.open(stage, opened, state);
+    if (state.camera) view3d.view = state.camera;
+    view3d.onMove = () => {
+      state.camera = view3d.view;
+      keep();
+    };
     applyCut();
     stage.dataset.ready = "true";
   } catch (error) {
@@ -137,7 +216,7 @@ async function show3d(stage, meshes) {
   }
 }
 
-export async function showMeshes(container, index = state.scene) {
+export async function showMeshes(container, from) {
   stop();
   const again = () => showMeshes(container);
   setViewKeys([]);
@@ -145,20 +224,16 @@ export async function showMeshes(container, index = state.scene) {
     replace(container, h("p", { class: "card" }, "No records yet: nothing to show."));
     return stop;
   }
-  state.scene = Math.min(Number(index) || 0, report.scenes.length - 1);
+  if (from) state.scene = sceneOfAddress(from, state.scene);
+  if (from?.params) readState(from.params);
   const scene = await loadScene(state.scene);
   const meshes = meshesOf(scene);
-  if (state.left >= meshes.length) Object.assign(state, { left: 0, right: -1 });
-  const bar = h(
-    "div",
-    { class: "bar" },
-    select(
-      "Scene",
-      report.scenes.map((_, i) => [i, sceneTitle(i)]),
-      state.scene,
-      (i) => (location.hash = `#meshes/${i}`),
-    ),
-  );
+  const open = (index) => {
+    Object.assign(state, { scene: index, camera: null });
+    keepAddress("meshes", address(), true);
+    again();
+  };
+  const bar = h("div", { class: "bar" }, sceneChoice(state.scene, open));
   if (meshes.length === 0) {
     replace(
       container,
@@ -171,6 +246,7 @@ export async function showMeshes(container, index = state.scene) {
     );
     return stop;
   }
+  choose(meshes);
   setViewKeys(meshKeys(again));
   const stage = h(
     "div",
@@ -188,7 +264,7 @@ export async function showMeshes(container, index = state.scene) {
       h(
         "p",
         { class: "note" },
-        "Drag to turn, wheel to approach, right drag to shift. Backs of faces are left out, or orange. Large meshes are merged to 300,000 faces for this view.",
+        `Drag to turn, wheel to approach, right drag to shift. Backs of faces are left out, or orange. Large meshes are merged to ${report.mesh_faces.toLocaleString("en")} faces for this view.`,
       ),
     ),
   );

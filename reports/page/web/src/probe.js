@@ -1,6 +1,7 @@
 // Values under the pointer, of all methods.
 import { codes16, loadPart, runTitle, unpack } from "./data.js";
 import { h, replace } from "./dom.js";
+import { copyButtons } from "./table.js";
 
 // Layers of one value a pixel; colours and errors have columns of their own.
 const valueLayers = (scene) => scene.layers.filter(({ decimals }) => decimals !== undefined);
@@ -76,6 +77,17 @@ function probeRow(scene, title, value) {
   );
 }
 
+// The table of an element, for copies.
+function modelOf(element, title) {
+  const texts = (row) => [...row.cells].map((cell) => cell.textContent);
+  const [head, ...rows] = [...element.querySelectorAll("tr")];
+  return {
+    title,
+    columns: texts(head).map((text) => ({ title: text || "Method" })),
+    rows: rows.map((row) => texts(row).map((text) => ({ text }))),
+  };
+}
+
 // The table below the pictures. `pixel`: [x, y] or null.
 export function showProbe(container, scene, values, pixel, pinned) {
   if (!values || !pixel) {
@@ -92,6 +104,7 @@ export function showProbe(container, scene, values, pixel, pinned) {
   const [x, y] = pixel;
   const coarse = values.step > 1 ? `, every ${values.step} pixels` : "";
   const glass = values.glass?.[y * values.width + x] ? " · glass" : "";
+  const title = `Pixel ${x}, ${y}${coarse}${glass}`;
   const titles = [
     "",
     "RGB",
@@ -100,7 +113,12 @@ export function showProbe(container, scene, values, pixel, pinned) {
   ];
   replace(
     container,
-    h("p", { class: "probe-title" }, `Pixel ${x}, ${y}${coarse}${glass}${pinned ? " · held" : ""}`),
+    h(
+      "div",
+      { class: "card-head" },
+      h("p", { class: "probe-title" }, `${title}${pinned ? " · held" : ""}`),
+      pinned && copyButtons(() => modelOf(container, title)),
+    ),
     h(
       "div",
       { class: "table-scroll" },

@@ -1,27 +1,20 @@
 // One scene: views by error, pictures of every method, values under the pointer.
-import { loadScene, report, runTitle, sceneTitle } from "./data.js";
+import { keepAddress } from "./address.js";
+import { loadScene, report, runKey, runTitle, sceneOfAddress } from "./data.js";
 import { checkbox, h, replace, segmented, select } from "./dom.js";
 import { showFrames, sortedViews } from "./frames.js";
 import { setViewKeys } from "./keys.js";
 import { legend } from "./legend.js";
 import { showProbe, ViewValues } from "./probe.js";
-import { SceneState } from "./scene_state.js";
-import { ownerTitle, Viewer } from "./viewer.js";
+import { saveButton } from "./save_png.js";
+import { sceneChoice } from "./scene_choice.js";
+import { sceneCanvas, sceneWords } from "./scene_png.js";
+import { kModes, SceneState } from "./scene_state.js";
+import { ownerTitle } from "./owner.js";
+import { Viewer } from "./viewer.js";
 
 const state = new SceneState();
-const kModes = [
-  ["slider", "Slider", "two pictures and a divider (s)"],
-  ["flicker", "Flicker", "two pictures in turn (f)"],
-  ["grid", "Grid", "all methods (g)"],
-];
-
 const step = (list, current, by) => list[(list.indexOf(current) + by + list.length) % list.length];
-
-function sceneChoice() {
-  const scenes = report.scenes.map((_, i) => [i, sceneTitle(i)]);
-  const open = (index) => (location.hash = `#scene/${index}`);
-  return select("Scene", scenes, state.index, open, "scene-choice");
-}
 
 function ownerChoices(scene) {
   return [-1, ...scene.runs.map((_, i) => i)].map((owner) => [owner, ownerTitle(scene, owner)]);
@@ -36,14 +29,20 @@ function layersThere(scene) {
 }
 
 function methodChecks() {
-  const toggle = (i) => (on) => {
-    if (on) state.hiddenRuns.delete(i);
-    else state.hiddenRuns.add(i);
+  const toggle = (key) => (on) => {
+    if (on) state.hiddenRuns.delete(key);
+    else state.hiddenRuns.add(key);
     state.set({});
   };
-  const checks = state.scene.runs.map((run, i) =>
-    checkbox(runTitle(state.scene, run), !state.hiddenRuns.has(i), toggle(i), `shown-${i}`),
-  );
+  const checks = state.scene.runs.map((run, i) => {
+    const key = runKey(state.scene, run);
+    return checkbox(
+      runTitle(state.scene, run),
+      !state.hiddenRuns.has(key),
+      toggle(key),
+      `shown-${i}`,
+    );
+  });
   return h("div", { class: "checks", role: "group", "aria-label": "Methods" }, checks);
 }
 
@@ -91,6 +90,10 @@ function controls() {
       zoomButtons(),
       checkbox("Glass outline", state.outline, (on) => state.set({ outline: on }), "outline"),
       state.mode === "grid" ? methodChecks() : sideChoices(),
+      saveButton(
+        () => sceneCanvas(state),
+        () => sceneWords(state),
+      ),
     ),
   );
 }
@@ -106,7 +109,16 @@ class SceneView {
     state.transform.listeners.add(() => this.showZoom());
     state.onChange = () => this.update();
     state.moveProbe = (dx, dy) => this.moveProbe(dx, dy);
+    state.onKeep = () => this.keep();
     state.viewer = this.viewer;
+  }
+
+  keep() {
+    keepAddress("scene", state.address());
+  }
+
+  choice() {
+    return sceneChoice(state.index, (index) => openScene(this.container, index));
   }
 
   show() {
@@ -119,7 +131,7 @@ class SceneView {
       views.length > 0
         ? h("div", { class: "scene-layout" }, this.frames, column)
         : [
-            h("div", { class: "bar" }, sceneChoice()),
+            h("div", { class: "bar" }, this.choice()),
             h("p", { class: "card" }, "No view of this scene was rendered: missing."),
           ],
     );
@@ -128,7 +140,7 @@ class SceneView {
 
   update() {
     const focused = document.activeElement?.closest("[data-value], [data-view], [id]");
-    showFrames(this.frames, state, sceneChoice());
+    showFrames(this.frames, state, this.choice());
     replace(this.controls, controls());
     replace(this.legend, legend(state.layer, state.scene.depth_from_truth));
     this.viewer.show();
@@ -184,11 +196,13 @@ class SceneView {
   showPixel() {
     this.viewer.place();
     showProbe(this.probe, state.scene, state.values, state.pixel, state.pinned);
+    this.keep();
   }
 
   showZoom() {
     const output = this.controls.querySelector(".zoom");
     if (output) output.textContent = `${state.transform.scale.toFixed(1)}×`;
+    this.keep();
   }
 }
 
@@ -255,14 +269,23 @@ function sceneKeys() {
   ];
 }
 
-export async function showScene(container, index = Math.max(0, state.index)) {
+async function openScene(container, index) {
+  state.open(index, await loadScene(index));
+  keepAddress("scene", state.address(), true);
+  showScene(container);
+}
+
+export async function showScene(container, from) {
   if (report.scenes.length === 0) {
     setViewKeys([]);
     replace(container, h("p", { class: "card" }, "No records yet: nothing to show."));
     return () => {};
   }
-  const shown = Math.min(Number(index) || 0, report.scenes.length - 1);
-  state.open(shown, await loadScene(shown));
+  const current = Math.max(0, state.index);
+  const index = from ? sceneOfAddress(from, current) : current;
+  const scene = await loadScene(index);
+  if (from?.params) state.read(from.params, index, scene);
+  else state.open(index, scene);
   const view = new SceneView(container);
   setViewKeys(state.scene.views.length > 0 ? sceneKeys() : []);
   view.show();

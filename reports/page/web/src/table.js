@@ -1,5 +1,7 @@
 // Tables whose columns sort, rendered a stretch at a time so that 10,000 rows open at once.
+import { copyButton } from "./copy.js";
 import { h, replace } from "./dom.js";
+import { tableCsv, tableLatex, tableMarkdown } from "./table_text.js";
 
 const kChunk = 100; // rows added whenever the end comes near
 
@@ -34,14 +36,20 @@ function groupRow(columns) {
   );
 }
 
-// columns: {title, group, value(row), cell(row) -> node or text, className, firstSign}. Missing values sort last
-// in either direction. `firstSign`: -1 sorts descending at the first click.
+// columns: {key, title, group, value(row), cell(row) -> node or text, className, firstSign,
+// text(row), rank(row)}. Missing values sort last in either direction. `firstSign`: -1 sorts
+// descending at the first click; `text` and `rank` (1: best): of copies, where they differ from the
+// cell. `sorted`: {key, sign}; onSort gets the same. `foot`: a last line over all columns.
 export class DataTable {
-  constructor({ columns, rows, label, emptyText = "Nothing here." }) {
+  constructor({ columns, rows, label, emptyText = "Nothing here.", sorted, onSort, foot }) {
     this.columns = columns;
     this.rows = rows;
     this.emptyText = emptyText;
-    this.sorted = { column: -1, sign: 1 };
+    this.onSort = onSort;
+    this.sorted = {
+      column: columns.findIndex(({ key }) => key !== undefined && key === sorted?.key),
+      sign: sorted?.sign ?? 1,
+    };
     this.heads = columns.map((column, index) => this.#head(column, index));
     this.body = h("tbody");
     this.end = h("div", { class: "table-end", "aria-hidden": "true" });
@@ -53,6 +61,7 @@ export class DataTable {
         { "aria-label": label, "aria-rowcount": String(rows.length) },
         h("thead", {}, groupRow(columns), h("tr", {}, this.heads)),
         this.body,
+        foot && h("tfoot", {}, h("tr", {}, h("td", { colSpan: columns.length }, foot))),
       ),
       this.end,
     );
@@ -60,6 +69,7 @@ export class DataTable {
       if (entries.some((entry) => entry.isIntersecting)) this.#grow();
     });
     this.watcher.observe(this.end);
+    this.#showDirection();
     this.show(rows);
   }
 
@@ -73,12 +83,33 @@ export class DataTable {
     const again = this.sorted.column === index;
     const first = this.columns[index].firstSign ?? 1;
     this.sorted = { column: index, sign: again ? -this.sorted.sign : first };
+    this.#showDirection();
+    this.onSort?.({ key: this.columns[index].key, sign: this.sorted.sign });
+    this.show(this.rows);
+  }
+
+  #showDirection() {
+    const { column, sign } = this.sorted;
     this.heads.forEach((head, i) => {
       head.removeAttribute("aria-sort");
-      if (i === index)
-        head.setAttribute("aria-sort", this.sorted.sign > 0 ? "ascending" : "descending");
+      if (i === column) head.setAttribute("aria-sort", sign > 0 ? "ascending" : "descending");
     });
-    this.show(this.rows);
+  }
+
+  // What is shown, for copies: see table_text.js.
+  model() {
+    const cellOf = (row) => (column) => {
+      const shown = column.text ?? column.cell;
+      const text = shown ? shown(row) : column.value(row);
+      return { text: String(text ?? "–"), value: column.value(row), rank: column.rank?.(row) };
+    };
+    return {
+      columns: this.columns.map(({ title, group }) => ({
+        title: title.replaceAll("\u00a0", " "),
+        group,
+      })),
+      rows: this.order.map((row) => this.columns.map(cellOf(row))),
+    };
   }
 
   show(rows) {
@@ -118,4 +149,23 @@ export class DataTable {
       }),
     );
   }
+}
+
+const kWriters = [
+  ["LaTeX", tableLatex],
+  ["CSV", tableCsv],
+  ["Markdown", tableMarkdown],
+];
+
+// Buttons that copy what `modelOf` gives: {title, caption, notes, columns, rows}.
+export function copyButtons(modelOf) {
+  const hint = "the table as it is shown: its order, without what is folded away";
+  return h(
+    "div",
+    { class: "copies", role: "group", "aria-label": "Copy the table" },
+    h("span", { class: "note" }, "Copy as"),
+    kWriters.map(([name, write]) =>
+      copyButton(() => write(modelOf()), name, { title: hint, "data-format": name.toLowerCase() }),
+    ),
+  );
 }

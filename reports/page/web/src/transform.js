@@ -15,6 +15,11 @@ export class Transform {
     this.changed();
   }
 
+  // [scale, x, y] of an address; null: as it is.
+  set(values) {
+    if (values) this.#moveTo(Math.min(kMaxScale, Math.max(1, values[0])), values[1], values[2]);
+  }
+
   changed() {
     this.listeners.forEach((listener) => listener(this));
   }

@@ -1,23 +1,12 @@
 // Pictures of one view side by side, one over the other, or in turn, with one zoom for all.
-import { metricText, pictureUrl, runTitle } from "./data.js";
+import { metricText, pictureUrl } from "./data.js";
 import { h, replace } from "./dom.js";
 import { scoreOf } from "./frames.js";
 import { outlineElement } from "./outline.js";
+import { ownerKey, ownerTitle, shownLayer, whyMissing } from "./owner.js";
 import { watchPointer } from "./transform.js";
 
 const kFlickerMs = 800;
-
-// Owner -1 is the reference, others are indices of runs.
-export const ownerKey = (owner) => (owner < 0 ? "t" : `r${owner}`);
-export const ownerTitle = (scene, owner) =>
-  owner < 0 ? "Reference" : runTitle(scene, scene.runs[owner]);
-
-function whyMissing(scene, owner, layer) {
-  if (owner < 0) return scene.note || "no reference for this layer";
-  const run = scene.runs[owner];
-  if (!run.ok) return `run failed: ${run.failure}`;
-  return layer.id === "error" || layer.id === "angle" ? "cannot be compared" : "not rendered";
-}
 
 export class Viewer {
   constructor(state, onPixel) {
@@ -56,18 +45,9 @@ export class Viewer {
     return [width || 16, height || 9];
   }
 
-  // The layer that is shown of an owner; of the reference its image where it has no such layer.
-  #layerOf(owner) {
-    const { scene, view, layer } = this.state;
-    const entry = scene.views[view];
-    const there = owner < 0 ? entry.truth : (entry.runs?.[owner] ?? []);
-    if (there.includes(layer.id)) return layer;
-    return owner < 0 ? scene.layers.find(({ id }) => id === "rgb" && there.includes(id)) : null;
-  }
-
   #picture(owner) {
     const { scene, view, index, layer } = this.state;
-    const shown = this.#layerOf(owner);
+    const shown = shownLayer(this.state, owner);
     if (!shown)
       return h(
         "div",
@@ -98,7 +78,7 @@ export class Viewer {
   #label(owner, side) {
     const { scene, view, metric, layer } = this.state;
     const score = owner < 0 ? null : scoreOf(scene, owner, view, metric);
-    const shown = this.#layerOf(owner);
+    const shown = shownLayer(this.state, owner);
     return h(
       "span",
       { class: `label ${side ?? ""}` },
@@ -170,6 +150,7 @@ export class Viewer {
     this.upper.style.clipPath = `inset(0 0 0 ${this.state.split}%)`;
     this.line.style.left = `${this.state.split}%`;
     this.handle.value = String(this.state.split);
+    this.state.onKeep();
   }
 
   moveDivider(step) {
