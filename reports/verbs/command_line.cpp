@@ -132,6 +132,18 @@ int explain(const CLI::App& app, const CLI::ParseError& error) {
   return report_error(unknown, ExitCode::kUsage);
 }
 
+// Common options that a verb takes and does not use.
+void warn_of_unused(const CLI::App& app) {
+  for (const CLI::App* verb : app.get_subcommands()) {
+    for (const CLI::Option* option : verb->get_options())
+      if (option->get_group().empty() && option->count() > 0)
+        log::warn(fmt::format(
+            "{}: --{} changes nothing here", verb->get_name(), option->get_lnames().front()
+        ));
+    warn_of_unused(*verb);
+  }
+}
+
 int parse_and_run(CommandLine& line, int argc, const char* const* argv) {
   try {
     line.app.parse(argc, argv);
@@ -139,6 +151,7 @@ int parse_and_run(CommandLine& line, int argc, const char* const* argv) {
     return explain(line.app, error);
   }
   line.common.apply(line.uses);
+  warn_of_unused(line.app);
   return line.action();
 }
 

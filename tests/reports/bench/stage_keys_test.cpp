@@ -81,6 +81,7 @@ Json other_value(const Json& value) {
       {"median", "expected"},
       {"real", "off"},
       {"delighted", "basecolor"},
+      {"basecolor", "delighted"},
       {"point-to-triangle", "point-to-point"},
       {"", "x"}};
   if (value.is_boolean()) return !value.get<bool>();

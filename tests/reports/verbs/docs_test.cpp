@@ -43,7 +43,7 @@ std::set<std::string> field_names(const Config& config) {
   return names;
 }
 
-// "dataset make" of the program's verbs; those alone that have the option.
+// "dataset make" of the program's verbs; those alone that show the option.
 void add_verbs_with(
     const CLI::App& app,
     const std::string& option,
@@ -52,7 +52,8 @@ void add_verbs_with(
 ) {
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
     const std::string name = prefix + verb->get_name();
-    if (verb->get_option_no_throw(option) != nullptr) names.insert(name);
+    const CLI::Option* found = verb->get_option_no_throw(option);
+    if (found != nullptr && !found->get_group().empty()) names.insert(name);
     add_verbs_with(*verb, option, name + " ", names);
   }
 }

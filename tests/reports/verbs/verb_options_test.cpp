@@ -96,10 +96,10 @@ TEST_CASE("a verb shows the options that it uses, and takes the common ones of a
           "--set",
           "--skip"}
   );
-  const std::string listed = captured(1, [] {
-    CHECK(run({"methods", "--seed", "3", "--only", "x", "--threads", "1"}) == 0);
+  const std::string said = captured(2, [] {
+    CHECK(run({"methods", "glint", "--seed", "3"}) == 0);
   });
-  CHECK_THAT(listed, Catch::Contains("glint"));
+  CHECK(said == "warning: methods: --seed changes nothing here\n");
 }
 
 TEST_CASE("misspelt words are answered with the nearest") {
@@ -119,7 +119,6 @@ TEST_CASE("misspelt words are answered with the nearest") {
     INFO(said);
     CHECK(said.find(answer) != std::string::npos);
   }
-  CHECK(errors_of({"table", "--seed", "3"}).find("no option '--seed'") != std::string::npos);
   CHECK(errors_of({"render", "surplus"}).find("no use for 'surplus'") != std::string::npos);
 }
 
