@@ -58,12 +58,6 @@ TableCell cell_without_values(const RecordPointers& records, const TableColumn& 
   return cell;
 }
 
-// The metric of 8-bit images that a column shows where it has no value of its own; empty: none.
-std::string eight_bit_metric(const std::string& metric) {
-  const std::string whole = metric.substr(0, metric.find('@'));
-  return whole == "psnr" ? whole + "-8bit" + metric.substr(whole.size()) : "";
-}
-
 bool has_metric(const RecordPointers& records, const std::string& metric) {
   return std::any_of(records.begin(), records.end(), [&](const Record* record) {
     return record->ok() && record->metrics.contains(metric);
@@ -134,6 +128,11 @@ std::string text_field(const Record& record, const std::string& field) {
 }
 
 }  // namespace
+
+std::string eight_bit_metric(const std::string& metric) {
+  const std::string whole = metric.substr(0, metric.find('@'));
+  return whole == "psnr" ? whole + "-8bit" + metric.substr(whole.size()) : "";
+}
 
 TableCell measured_cell(
     const RecordPointers& records, const TableColumn& column, const SizedScenes& common

@@ -19,6 +19,9 @@ TableCell measured_cell(
     const RecordPointers& records, const TableColumn& column, const SizedScenes& common
 );
 
+// The metric of 8-bit images that stands in a column without a value of its own; empty: none.
+std::string eight_bit_metric(const std::string& metric);
+
 // What the finished records say of `column.field`, each once.
 TableCell text_cell(const RecordPointers& records, const TableColumn& column);
 

@@ -85,7 +85,7 @@ std::string key_of(const fs::path& run, Stage stage) {
 Record single_record(const SingleRun& single, const Json& score_document, const Scores& means) {
   const RunSpec& spec = single.spec;
   Record record;
-  record.profile = "single";
+  record.profile = kSingleProfile;
   record.dataset = spec.dataset;
   record.cell = {spec.scene, spec.method, spec.options.seed};
   record.metrics = means;
@@ -184,7 +184,20 @@ Record record_of(const RunSpec& spec, const Profile& profile, const std::string&
   return record;
 }
 
-RunSpec spec_of(const CommonOptions& common, const EvalArguments& arguments, const Scene& scene) {
+// Imports stand beside single runs where --out is the folder of such.
+Profile import_profile(const CommonOptions& common) {
+  if (!holds_single_runs(common.out)) return common.resolved_profile();
+  Profile profile;
+  profile.name = kSingleProfile;
+  return profile;
+}
+
+RunSpec spec_of(
+    const CommonOptions& common,
+    const Profile& profile,
+    const EvalArguments& arguments,
+    const Scene& scene
+) {
   RunSpec spec;
   spec.method = arguments.method;
   spec.dataset_folder = fs::absolute(arguments.dataset);
@@ -193,9 +206,8 @@ RunSpec spec_of(const CommonOptions& common, const EvalArguments& arguments, con
   spec.options.seed = common.seed.value_or(0);
   spec.max_pixels = arguments.max_pixels;
   spec.dataset_hash = scene.spec_hash;
-  spec.folder = run_folder(
-      common.own_folder(common.resolved_profile()), {spec.scene, spec.method, spec.options.seed}
-  );
+  spec.folder =
+      run_folder(common.own_folder(profile), {spec.scene, spec.method, spec.options.seed});
   return spec;
 }
 
@@ -215,12 +227,12 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
   LoadOptions load;
   load.max_pixels = arguments.max_pixels;
   const Scene scene = load_scene(arguments.dataset, load);
-  const RunSpec spec = spec_of(common, arguments, scene);
+  const Profile profile = import_profile(common);
+  const RunSpec spec = spec_of(common, profile, arguments, scene);
   const ImportOptions options{
       Json(arguments.depth).get<DepthConvention>(),
       Json(arguments.axes).get<NormalAxes>(),
       arguments.mesh};
-  const Profile profile = common.resolved_profile();
   check_new_import(
       common.records_file(profile), {spec.scene, spec.method, spec.options.seed}, arguments
   );

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "metrics/metric.h"
-#include "reports/tables/tables.h"
+#include "reports/tables/table_cells.h"
 #include "reports/verbs/listing.h"
 
 namespace glint {
@@ -42,14 +42,20 @@ std::string right(const std::string& number) { return fmt::format("{:>10}", numb
 std::string headline_scores(const std::map<std::string, double>& means) {
   std::vector<std::vector<std::string>> rows;
   for (const TableColumn& column : headline_columns()) {
-    const auto found = means.find(column.metric);
+    auto found = means.find(column.metric);
+    const bool exact = found != means.end();
+    if (!exact) found = means.find(eight_bit_metric(column.metric));
+    const bool eight_bit = !exact && found != means.end();
     const std::string value =
         found == means.end()
             ? "-"
             : fmt::format("{:.{}f}", column.scale * found->second, column.decimals);
     const bool higher = column.order == RankOrder::kHigherFirst;
     rows.push_back(
-        {column.title, right(value), column.unit, higher ? "higher is better" : "lower is better"}
+        {column.title + (eight_bit ? " of 8-bit images" : ""),
+         right(value),
+         column.unit,
+         higher ? "higher is better" : "lower is better"}
     );
   }
   return listing(rows);

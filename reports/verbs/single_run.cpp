@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reports/verbs/single_run.h"
 
+#include <algorithm>
+
 #include "datasets/dataset.h"
 #include "glint/core/progress.h"
 #include "reports/bench/stage_documents.h"
@@ -16,8 +18,6 @@ Scene load_dataset(const fs::path& folder, double max_pixels) {
   options.max_pixels = max_pixels;
   return with_exit_code(ExitCode::kBadReference, [&] { return load_scene(folder, options); });
 }
-
-constexpr const char* kSingleProfile = "single";
 
 void check_new_run(const fs::path& folder, bool force) {
   GLINT_CHECK(
@@ -95,6 +95,13 @@ fs::path root_of_run(const RunSpec& spec) {
     root = root.parent_path();
   }
   return root;
+}
+
+bool holds_single_runs(const fs::path& folder) {
+  const auto records = read_records(folder / "records.jsonl");
+  return !records.empty() && std::all_of(records.begin(), records.end(), [](const Record& record) {
+    return record.profile == kSingleProfile;
+  });
 }
 
 fs::path single_records_file(const CommonOptions& common, const RunSpec& spec) {

@@ -34,6 +34,11 @@ void add_moved_dataset_option(CLI::App& verb, std::string& dataset);
 // The folder above ROOT/runs/SCENE/METHOD/SEED; empty: the run lies elsewhere.
 fs::path root_of_run(const RunSpec& spec);
 
+inline constexpr const char* kSingleProfile = "single";  // in records of runs apart from profiles
+
+// Does the folder have records, all of single runs?
+bool holds_single_runs(const fs::path& folder);
+
 // Where the scores of a single run are recorded: ROOT/records.jsonl, else OUT/single/records.jsonl.
 // Empty: ROOT is a profile's, whose records `all` keeps.
 fs::path single_records_file(const CommonOptions& common, const RunSpec& spec);

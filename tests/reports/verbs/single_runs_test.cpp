@@ -7,6 +7,7 @@
 #include "glint/scene/image_files.h"
 #include "reports/records/records.h"
 #include "reports/verbs/command_line.h"
+#include "reports/verbs/headline_scores.h"
 #include "tests/support/small_room.h"
 
 using namespace glint;
@@ -81,6 +82,41 @@ TEST_CASE("a run of a profile is scored without touching the profile's records")
   REQUIRE(run({"eval", "--run", cell, "--out", folder / "out"}) == 0);
   CHECK(read_file(profile / "records.jsonl") == record);
   CHECK_FALSE(fs::exists(folder / "out/single"));
+}
+
+TEST_CASE("an import stands beside single runs where --out is their folder") {
+  const test::TempFolder folder;
+  for (const View& view : test::small_room().test)
+    write_png(folder / "theirs/rgb" / (view.name + ".png"), view.rgb);
+  write_file(
+      folder / "single/records.jsonl",
+      R"({"scene": "room_1", "method": "2dgs", "profile": "single", "metrics": {"psnr": 20}})"
+      "\n"
+  );
+  const std::string theirs = folder / "theirs", single = folder / "single", data = folder / "data";
+  REQUIRE(
+      run(
+          {"eval",
+           "--predictions",
+           theirs,
+           "--dataset",
+           room(),
+           "--method",
+           "theirs",
+           "--out",
+           single,
+           "--data",
+           data}
+      ) == 0
+  );
+  const auto records = read_records(folder / "single/records.jsonl");
+  REQUIRE(records.size() == 2);
+  CHECK(records[1].profile == "single");
+}
+
+TEST_CASE("headlines show the PSNR of 8-bit images under its name") {
+  CHECK(headline_scores({{"psnr-8bit", 21}}).find("PSNR of 8-bit images") != std::string::npos);
+  CHECK(headline_scores({{"psnr", 21}, {"psnr-8bit", 21}}).find("8-bit") == std::string::npos);
 }
 
 TEST_CASE("a second import under one name asks for --force; PNGs have psnr-8bit") {
