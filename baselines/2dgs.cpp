@@ -108,7 +108,7 @@ class TwoDgs final : public Method {
     if (settings_.with_distortion) add_distortion(out, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     set_.backward(gradient_);
-    set_.update(iteration + 1);
+    note_reset(set_.update(iteration + 1), "", stats);
     stats.num_surfels = set_.cloud().size();
     return stats;
   }

@@ -175,9 +175,12 @@ class EnvGs final : public Method {
     geometry_.add(view, iteration, *base_output_, transport_.buffer().depth, dL_dbase_, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     backward(view.camera);
-    base_.update(iteration + 1);
+    note_reset(base_.update(iteration + 1), "base", stats);
     bootstrap_.update(iteration + 1, base_);
-    if (with_environment_) environment_.update(iteration - windows_.environment_clock + 1);
+    if (with_environment_) {
+      const int clock = iteration - windows_.environment_clock + 1;
+      note_reset(environment_.update(clock), "environment", stats);
+    }
     stats.num_surfels = num_surfels();
     return stats;
   }

@@ -149,7 +149,7 @@ class RefGs final : public Method {
     if (deferred_) add_entropy(view, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     backward();
-    set_.update(iteration + 1);
+    note_reset(set_.update(iteration + 1), "", stats);
     stats.num_surfels = set_.cloud().size();
     return stats;
   }

@@ -167,7 +167,7 @@ class RtSplatting final : public Method {
                                set_.penalise_opacity(config_.lambda_occupancy);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     backward();
-    set_.update(iteration + 1);
+    note_reset(set_.update(iteration + 1), "", stats);
     stats.num_surfels = set_.cloud().size();
     return stats;
   }

@@ -87,7 +87,7 @@ class Glint final : public Method {
       dL_dalpha = transmission_losses_.add_opacity(iteration, model_.transmission_alpha(), stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     model_.backward(config_, dL_dimage_, dL_dtransparency_, dL_dalpha, !frozen_, dL_dinterface_);
-    update(iteration);
+    update(iteration, stats);
     stats.num_surfels = num_surfels();
     return stats;
   }
@@ -197,13 +197,17 @@ class Glint final : public Method {
       );
   }
   // The secondary sets count steps from where they start.
-  void update(int iteration) {
+  void update(int iteration, StepStats& stats) {
+    const auto update_set = [&](TrainableSet& set, int from, const char* name) {
+      note_reset(set.update(iteration - from + 1), name, stats);
+    };
     if (!frozen_) {
-      model_.interface.update(iteration + 1);
+      update_set(model_.interface, 0, "interface");
       bootstrap_.update(iteration + 1, model_.interface);
     }
-    if (phase_.transmission) model_.transmission.update(iteration - windows_.transmission_from + 1);
-    if (phase_.reflection) model_.reflection.update(iteration - windows_.reflection_from + 1);
+    if (phase_.transmission)
+      update_set(model_.transmission, windows_.transmission_from, "transmission");
+    if (phase_.reflection) update_set(model_.reflection, windows_.reflection_from, "reflection");
   }
 
   GlintConfig config_, windows_;

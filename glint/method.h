@@ -21,6 +21,7 @@ struct StepStats {
   double psnr = 0;  // of the training view of this step
   std::size_t num_surfels = 0;
   std::map<std::string, double> terms;  // each loss term, weighted
+  std::vector<std::string> events;      // of this step, for the log: "opacities reset"
 };
 
 // Options of one run that every method gets.

@@ -364,6 +364,7 @@ DensifyCounts Densifier::update(int step, SurfelCloud& cloud, SurfelAdam& adam) 
   if (config_.resets && step % config_.reset_interval == 0) {
     synchronize();
     reset(step, cloud, adam);
+    counts.reset = true;
   }
   return counts;
 }

@@ -103,6 +103,7 @@ struct DensifyConfig {
 
 struct DensifyCounts {
   std::size_t cloned = 0, split = 0, pruned = 0;
+  bool reset = false;  // opacities
 };
 
 // What a densification says of every surfel, those that it adds included.

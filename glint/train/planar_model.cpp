@@ -89,7 +89,7 @@ void PlanarModel::backward(StepStats& stats) {
   RasterPass& pass = set_.pass();
   const RasterGradient& gradient = set_.backward(gradient_, pass, true);
   if (lobes_ != nullptr) lobes_->backward(gradient, pass.activated.channels);
-  set_.update(stats.iteration + 1);
+  note_reset(set_.update(stats.iteration + 1), "", stats);
   trim(stats.iteration + 1);
   stats.num_surfels = set_.cloud().size();
 }

@@ -5,6 +5,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
+#include "glint/method.h"
 #include "glint/scene/scene.h"
 #include "glint/train/opacity_penalty_kernels.h"
 
@@ -43,6 +44,11 @@ SetTraining training_on(
       .densify = densify,
       .extent = scene.spatial_scale,
       .training_views = scene.train.size()};
+}
+
+void note_reset(const DensifyCounts& counts, const std::string& set, StepStats& stats) {
+  if (!counts.reset) return;
+  stats.events.push_back(set.empty() ? "opacities reset" : "opacities of " + set + " reset");
 }
 
 TrainableSet::TrainableSet(SurfelCloud cloud, const SetTraining& training)

@@ -15,6 +15,7 @@
 namespace glint {
 
 struct Scene;
+struct StepStats;
 
 struct SetTraining {
   SurfelRates rates;
@@ -24,6 +25,10 @@ struct SetTraining {
   std::size_t training_views = 0;  // of the scene, for the holiday of pruning; 0: not known
 };
 SetTraining training_on(const Scene& scene, const SurfelRates& rates, const DensifyConfig& densify);
+
+// After an update() that reset opacities: an event of the step, "opacities of environment reset";
+// `set` is empty where there is one set.
+void note_reset(const DensifyCounts& counts, const std::string& set, StepStats& stats);
 
 class TrainableSet final : public SurfelSet {
  public:

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
@@ -74,6 +75,7 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
   for (const std::string& warning : method.warnings()) log::warn(warning);
   Progress progress(options.title, static_cast<std::size_t>(options.run.iterations));
   TrainReport report;
+  Json events = Json::array();  // since the last line of the log
   for (int i = 0; i < options.run.iterations; ++i) {
     throw_if_interrupted();
     const auto start = std::chrono::steady_clock::now();
@@ -89,9 +91,14 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
             "loss {:.4f}  psnr {:.2f}  {} surfels", stats.loss, stats.psnr, stats.num_surfels
         )
     );
+    for (const std::string& event : stats.events)
+      events.push_back({{"iteration", i}, {"text", event}});
     const bool due = (i + 1) % options.log_interval == 0 || i + 1 == options.run.iterations;
-    if (on_disk && due)
-      append_line(options.folder / "log.jsonl", log_line(stats, report.seconds).dump());
+    if (on_disk && due) {
+      Json line = log_line(stats, report.seconds);
+      if (!events.empty()) line["events"] = std::exchange(events, Json::array());
+      append_line(options.folder / "log.jsonl", line.dump());
+    }
     if (on_disk && (i + 1) % options.save_interval == 0) {
       synchronize();
       method.check_finite();

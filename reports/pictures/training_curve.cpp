@@ -16,6 +16,7 @@ namespace {
 struct Step {
   double iteration = 0, seconds = 0, loss = 0, psnr = 0, num_surfels = 0;
   std::vector<std::string> terms;  // of the loss
+  Json events;                     // logged since the step before: {"iteration", "text"}
 };
 
 // First and last step with something, as indices.
@@ -51,7 +52,8 @@ std::vector<Step> read_steps(const fs::path& log) {
            number(json, "loss"),
            number(json, "psnr"),
            number(json, "num_surfels"),
-           term_names(json)}
+           term_names(json),
+           json.value("events", Json::array())}
       );
   }
   return steps;
@@ -96,6 +98,14 @@ Json training_events(const std::vector<Step>& steps) {
     if (span.first > 0) add(span.first, begins);
     if (span.last + 1 + steps.size() / kEndParts < steps.size()) add(span.last, ends);
   };
+  for (const Step& step : steps)
+    for (const Json& event : step.events)
+      if (event.is_object() && event.value("text", Json()).is_string())
+        events.push_back(
+            {{"iteration", short_number(number(event, "iteration"))},
+             {"seconds", short_number(step.seconds)},
+             {"text", event["text"]}}
+        );
   for (const auto& [term, span] : term_spans(steps))
     add_span(span, term + " loss begins", term + " loss ends");
   if (const Span span = surfel_changes(steps); span.first > 0)

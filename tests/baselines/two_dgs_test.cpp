@@ -50,3 +50,15 @@ TEST_CASE("2DGS for bounded scenes renders the median depth, 2DGS the expected o
 TEST_CASE("2DGS refuses a depth that it does not know") {
   CHECK_THROWS_WITH(create_method("2dgs", {{"depth", "sideways"}}), Catch::Contains("sideways"));
 }
+
+TEST_CASE("2DGS says in which step it reset opacities") {
+  auto method = create_method("2dgs");
+  method->initialize(small_room(), {1000, 0});  // 300 steps between resets, the fewest
+  for (int i = 0; i < 310; ++i) {
+    const StepStats stats = method->step(i);
+    CHECK(
+        stats.events ==
+        (i == 299 ? std::vector<std::string>{"opacities reset"} : std::vector<std::string>{})
+    );
+  }
+}

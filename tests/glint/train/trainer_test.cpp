@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <set>
+#include <sstream>
 
 #include "glint/core/progress.h"
 #include "tests/support/temp_folder.h"
@@ -23,6 +24,7 @@ class Exploding final : public Method {
     stats.iteration = iteration;
     stats.loss = iteration == at_ ? std::numeric_limits<double>::quiet_NaN() : 1.0;
     stats.terms["sharpness"] = stats.loss;
+    if (iteration == 3) stats.events.emplace_back("opacities reset");
     return stats;
   }
   MapSet render(const Camera&) override { return {}; }
@@ -67,6 +69,23 @@ TEST_CASE(
     CHECK(std::string(error.what()).find("sharpness") != std::string::npos);
   }
   CHECK(read_file(folder / "checkpoint" / "state") == "good");
+}
+
+TEST_CASE("Events between two lines of the log stand in the second, with their iteration") {
+  set_quiet(true);
+  const test::TempFolder temporary;
+  Exploding method(25);
+  TrainOptions options;
+  options.run.iterations = 20;
+  options.folder = temporary.path();
+  options.log_interval = 10;
+  train(method, one_view(), options);
+  std::istringstream log(read_file(options.folder / "log.jsonl"));
+  std::string first, second;
+  std::getline(log, first);
+  std::getline(log, second);
+  CHECK(Json::parse(first)["events"] == Json({{{"iteration", 3}, {"text", "opacities reset"}}}));
+  CHECK_FALSE(Json::parse(second).contains("events"));
 }
 
 TEST_CASE("Training without views is refused") {

@@ -227,7 +227,7 @@ async function testCurves(page) {
   await page.locator("#marks").check();
   await page.locator("#marks-list summary").click();
   assert.match(await textOf(page, "#marks-list"), /GLINT: \d+: .* loss begins/);
-  assert.match(await textOf(page, "#marks-list"), /logs do not say when opacities were reset/);
+  assert.match(await textOf(page, "#marks-list"), /Read from the logs: resets of opacities/);
   await shot(page, "curves");
   await page.locator("#method-0").uncheck();
   assert.equal(await page.locator("#chart-loss .u-series:not(.raw)").count(), 2, "x and GLINT");

@@ -179,6 +179,18 @@ TEST_CASE("a curve averages neighbours and keeps the last step") {
   CHECK(training_curve(folder / "torn.jsonl").is_null());
 }
 
+TEST_CASE("a curve has the events of the log where they happened") {
+  const test::TempFolder folder;
+  append_line(folder / "log.jsonl", R"({"iteration": 0, "seconds": 0})");
+  append_line(
+      folder / "log.jsonl",
+      R"({"iteration": 10, "seconds": 2, "events": [{"iteration": 7, "text": "opacities reset"}, 3]})"
+  );
+  const Json events = training_curve(folder / "log.jsonl")["events"];
+  REQUIRE(events.size() == 1);
+  CHECK(events[0] == Json({{"iteration", 7}, {"seconds", 2}, {"text", "opacities reset"}}));
+}
+
 TEST_CASE("a curve says where loss terms and changes of the surfels begin and end") {
   const test::TempFolder folder;
   for (int i = 0; i < 100; ++i) {

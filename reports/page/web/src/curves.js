@@ -110,7 +110,7 @@ function marksList(scene, chosen) {
     h(
       "p",
       { class: "note" },
-      "Read from the logs: the first and last step with a loss term, and with another number of surfels. The logs do not say when opacities were reset, so that is not marked.",
+      "Read from the logs: resets of opacities, the first and last step with a loss term, and with another number of surfels.",
     ),
   );
 }
