@@ -72,12 +72,14 @@ void check_inside(const Crop& crop, const Camera& camera, const std::string& sce
 FigureScene figure_scene(const PageScene& scene, const Truth& truth, const FigureView& shown) {
   const Scene& data = truth.scene;
   const View& view = shown_view(data, shown.view);
-  for (const Crop& crop : shown.crops) check_inside(crop, view.camera, scene.name);
   FigureScene result;
+  for (const std::string& text : shown.crops) {
+    result.crops.push_back(parse_crop(text, result.crops.size()));
+    check_inside(result.crops.back(), view.camera, scene.name);
+  }
   result.name = scene.name;
   result.view = view.name;
   result.chosen_view = !shown.view.empty();
-  result.crops = shown.crops;
   result.glass = mask_of_map(view.truth["glass"]);
   result.truth = true_layers(view);
   result.data = truth.folder;

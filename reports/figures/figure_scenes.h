@@ -8,6 +8,7 @@
 
 #include "glint/drawing/picture_grid.h"
 #include "reports/figures/figures.h"
+#include "reports/figures/map_crops.h"
 #include "reports/pictures/layers.h"
 
 namespace glint {

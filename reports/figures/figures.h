@@ -9,7 +9,6 @@
 
 #include "glint/core/files.h"
 #include "glint/core/service.h"
-#include "reports/figures/map_crops.h"
 #include "reports/records/run_folder.h"
 
 namespace glint {
@@ -18,7 +17,7 @@ namespace glint {
 struct FigureView {
   std::vector<std::string> scenes = {};  // globs; none: all
   std::string view = {};                 // name of a test view; empty: kViewRule
-  std::vector<Crop> crops = {};          // pixels of the view; none: choose_crops()
+  std::vector<std::string> crops = {};   // parse_crop(), pixels of the view; none: choose_crops()
 };
 
 struct FigureOptions {

@@ -6,16 +6,8 @@ namespace glint {
 
 namespace {
 
-struct FigureChoice {
-  std::vector<std::string> crops;
-  FigureView shown;
-};
-
-int run_figures(const CommonOptions& common, const FigureChoice& choice) {
+int run_figures(const CommonOptions& common, const FigureView& shown) {
   const fs::path folder = folder_with_records(common);
-  FigureView shown = choice.shown;
-  for (const std::string& crop : choice.crops)
-    shown.crops.push_back(parse_crop(crop, shown.crops.size()));
   Json json = {{"figures", Json::array()}};
   for (const fs::path& path : write_figures({folder, load_run_data, common.methods, shown})) {
     json["figures"].push_back(path.string());
@@ -26,18 +18,18 @@ int run_figures(const CommonOptions& common, const FigureChoice& choice) {
 }
 
 void add_figures_verb(CommandLine& line) {
-  const auto choice = std::make_shared<FigureChoice>();
+  const auto shown = std::make_shared<FigureView>();
   CLI::App* verb = line.add_verb(
       line.app,
       "figures",
       "write OUT/PROFILE/figures/*.png and *.pdf",
-      [&line, choice] { return run_figures(line.common, *choice); },
+      [&line, shown] { return run_figures(line.common, *shown); },
       kFolderOptions | kThreadsOption
   );
-  verb->add_option("--scene", choice->shown.scenes, "globs of the scenes to show")->delimiter(',');
-  verb->add_option("--view", choice->shown.view, "name of the test view to show");
+  verb->add_option("--scene", shown->scenes, "globs of the scenes to show")->delimiter(',');
+  verb->add_option("--view", shown->view, "name of the test view to show");
   verb->add_option(
-      "--crop", choice->crops, "x,y,width,height of a closer look, pixels of the view; up to three"
+      "--crop", shown->crops, "x,y,width,height of a closer look, pixels of the view; up to three"
   );
 }
 

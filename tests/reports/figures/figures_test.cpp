@@ -201,7 +201,7 @@ TEST_CASE("scene, view and crops can be chosen, and wrong ones are named") {
   const auto records = read_records(folder.path() / "records.jsonl");
   FigureOptions options{folder.path(), load_fake};
   const std::string last = fake_scene("room_1").test.back().name;
-  options.shown = {{"room_*"}, last, {parse_crop("2,3,4,5", 0)}};
+  options.shown = {{"room_*"}, last, {"2,3,4,5"}};
   const auto scenes = figure_scenes(records, options);
   REQUIRE(scenes.size() == 1);
   CHECK(scenes[0].view == last);
@@ -215,7 +215,7 @@ TEST_CASE("scene, view and crops can be chosen, and wrong ones are named") {
   CHECK_THROWS_WITH(
       figure_scenes(records, options), Catch::StartsWith("room_1 has no test view view_x; it has ")
   );
-  options.shown = {{}, "", {parse_crop("10,0,7,2", 0)}};
+  options.shown = {{}, "", {"10,0,7,2"}};
   CHECK_THROWS_WITH(figure_scenes(records, options), Catch::Contains("reaches out of the views"));
 }
 

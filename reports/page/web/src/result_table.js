@@ -62,8 +62,12 @@ export const isMeasured = (table) =>
     table.columns.some(({ id, published }) => !published && tells(row.cells[id])),
   );
 
-const emptyColumns = (table, columns) =>
-  columns.filter(({ id }) => !table.rows.some((row) => tells(row.cells[id])));
+// A failed method stands in every column; what it lacks fills none that no other method fills.
+function emptyColumns(table, columns) {
+  const holds = (test) => (column) => table.rows.some(({ cells }) => test(cells[column.id]));
+  const isFilled = holds((cell) => tells(cell) && cell.status !== "failed");
+  return columns.filter((column) => !(columns.some(isFilled) ? isFilled : holds(tells))(column));
+}
 
 // Rows that were not run: variants of a method (an ablation's), and others without a published
 // number to show.
