@@ -54,21 +54,11 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   return index;
 }
 
-Scene load(const fs::path& folder, const LoadOptions& options) {
-  return load_indexed(index_folder(folder, options), options);
-}
-
-std::vector<Finding> check(const fs::path& folder) {
-  return check_indexed(index_folder(folder, {}));
-}
-
-std::string split_rule(const fs::path& folder) { return index_folder(folder, {}).split_rule; }
-
 }  // namespace
 
 GLINT_REGISTER(
     LoaderSpec,
-    {"blender", match, load, "transforms_train.json and transforms_test.json", check, split_rule}
+    indexed_loader("blender", match, index_folder, "transforms_train.json and transforms_test.json")
 )
 
 }  // namespace glint

@@ -116,17 +116,13 @@ std::string split_views(const fs::path& list, int test_every, std::vector<ViewSo
     });
     return split_every(views, test_every);
   }
-  std::set<std::string> test = read_names(list);
-  for (ViewSource& view : views) {
-    view.is_test = test.erase(view.name) > 0;
-    view.is_train = !view.is_test;
-  }
+  const std::string unknown = hold_out(read_names(list), views);
   GLINT_CHECK(
-      test.empty(),
+      unknown.empty(),
       kBadReference,
       "{}: no image is called {}; give the names of images.bin, with their extension",
       list.string(),
-      test.empty() ? "" : *test.begin()
+      unknown
   );
   return "sparse/0/test.txt";
 }
@@ -180,26 +176,13 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   return index;
 }
 
-Scene load(const fs::path& folder, const LoadOptions& options) {
-  return load_indexed(index_folder(folder, options), options);
-}
-
-std::vector<Finding> check(const fs::path& folder) {
-  return check_indexed(index_folder(folder, {}));
-}
-
-std::string split_rule(const fs::path& folder) { return index_folder(folder, {}).split_rule; }
-
 }  // namespace
 
 GLINT_REGISTER(
     LoaderSpec,
-    {"colmap",
-     match,
-     load,
-     "sparse/0/cameras and images (.bin or .txt), images/",
-     check,
-     split_rule}
+    indexed_loader(
+        "colmap", match, index_folder, "sparse/0/cameras and images (.bin or .txt), images/"
+    )
 )
 
 }  // namespace glint

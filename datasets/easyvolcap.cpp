@@ -84,21 +84,11 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   return index;
 }
 
-Scene load(const fs::path& folder, const LoadOptions& options) {
-  return load_indexed(index_folder(folder, options), options);
-}
-
-std::vector<Finding> check(const fs::path& folder) {
-  return check_indexed(index_folder(folder, {}));
-}
-
-std::string split_rule(const fs::path& folder) { return index_folder(folder, {}).split_rule; }
-
 }  // namespace
 
 GLINT_REGISTER(
     LoaderSpec,
-    {"easyvolcap", match, load, "intri.yml, extri.yml and images/<view>/", check, split_rule}
+    indexed_loader("easyvolcap", match, index_folder, "intri.yml, extri.yml and images/<view>/")
 )
 
 }  // namespace glint

@@ -167,6 +167,14 @@ std::string split_every(std::vector<ViewSource>& views, int test_every) {
   return fmt::format("view 0, {0}, {1}, ... in the order of names", test_every, 2 * test_every);
 }
 
+std::string hold_out(std::set<std::string> names, std::vector<ViewSource>& views) {
+  for (ViewSource& view : views) {
+    view.is_test = names.erase(view.name) > 0;
+    view.is_train = !view.is_test;
+  }
+  return names.empty() ? "" : *names.begin();
+}
+
 void sort_naturally(std::vector<ViewSource>& views) {
   std::sort(views.begin(), views.end(), [](const ViewSource& a, const ViewSource& b) {
     return natural_less(a.name, b.name);
@@ -280,6 +288,24 @@ Image read_prior(const fs::path& path, MapKind kind) {
   if (kind == MapKind::kNormal) return read_normal_prior(path);
   if (kind == MapKind::kDepth) return read_depth_prior(path);
   return read_true_map(path, kind);
+}
+
+LoaderSpec indexed_loader(
+    const std::string& name,
+    std::function<LoaderMatch(const fs::path&)> match,
+    FolderIndexer index,
+    const std::string& looks_for
+) {
+  LoaderSpec loader;
+  loader.name = name;
+  loader.match = std::move(match);
+  loader.looks_for = looks_for;
+  loader.load = [index](const fs::path& folder, const LoadOptions& options) {
+    return load_indexed(index(folder, options), options);
+  };
+  loader.check = [index](const fs::path& folder) { return check_indexed(index(folder, {})); };
+  loader.split_rule = [index](const fs::path& folder) { return index(folder, {}).split_rule; };
+  return loader;
 }
 
 }  // namespace glint

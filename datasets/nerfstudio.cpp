@@ -67,20 +67,10 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   return index;
 }
 
-Scene load(const fs::path& folder, const LoadOptions& options) {
-  return load_indexed(index_folder(folder, options), options);
-}
-
-std::vector<Finding> check(const fs::path& folder) {
-  return check_indexed(index_folder(folder, {}));
-}
-
-std::string split_rule(const fs::path& folder) { return index_folder(folder, {}).split_rule; }
-
 }  // namespace
 
 GLINT_REGISTER(
-    LoaderSpec, {"nerfstudio", match, load, "transforms.json with frames", check, split_rule}
+    LoaderSpec, indexed_loader("nerfstudio", match, index_folder, "transforms.json with frames")
 )
 
 }  // namespace glint

@@ -3,6 +3,8 @@
 // it, load_indexed() reads what it lists, check_indexed() looks for everything wrong with it.
 #pragma once
 
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +53,10 @@ std::string folder_name(const fs::path& folder);
 // in words.
 std::string split_every(std::vector<ViewSource>& views, int test_every);
 
+// Views with these names are test views, all others train. Returns a name that no view has; empty:
+// there is none.
+std::string hold_out(std::set<std::string> names, std::vector<ViewSource>& views);
+
 void sort_naturally(std::vector<ViewSource>& views);
 // Names that are paths of pictures become the stem, or the whole path with '_' where stems repeat.
 void shorten_names(std::vector<ViewSource>& views);
@@ -72,6 +78,15 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options);
 
 // Everything wrong with the files, the split, the points, and maps against cameras.
 std::vector<Finding> check_indexed(const SceneIndex& index);
+
+// A loader whose folders `index` lists: it loads, checks and tells the split by the above.
+using FolderIndexer = std::function<SceneIndex(const fs::path&, const LoadOptions&)>;
+LoaderSpec indexed_loader(
+    const std::string& name,
+    std::function<LoaderMatch(const fs::path&)> match,
+    FolderIndexer index,
+    const std::string& looks_for
+);
 
 // PLY, or COLMAP's points3D.bin or .txt.
 PointCloud read_points(const fs::path& path);

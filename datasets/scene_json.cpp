@@ -23,17 +23,9 @@ void find_side_maps(const fs::path& folder, ViewSource& view) {
 }
 
 void split_by_names(const Json& test_views, const std::string& where, SceneIndex& index) {
-  std::set<std::string> names = test_views.get<std::set<std::string>>();
-  for (ViewSource& view : index.views) {
-    view.is_test = names.erase(view.name) > 0;
-    view.is_train = !view.is_test;
-  }
+  const std::string unknown = hold_out(test_views.get<std::set<std::string>>(), index.views);
   GLINT_CHECK(
-      names.empty(),
-      kBadReference,
-      "{}: test_views: no view is called {}",
-      where,
-      names.empty() ? "" : *names.begin()
+      unknown.empty(), kBadReference, "{}: test_views: no view is called {}", where, unknown
   );
   index.split_rule = "test_views of scene.json";
 }

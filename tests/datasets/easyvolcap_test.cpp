@@ -7,6 +7,7 @@
 #include "glint/core/parallel.h"
 #include "glint/scene/image_files.h"
 #include "tests/support/box_room.h"
+#include "tests/support/image_difference.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -32,15 +33,6 @@ struct RoomFolder : TempFolder {
     return bad_reference([&] { load_scene(path(), {}); });
   }
 };
-
-float largest_difference(ImageView a, ImageView b) {
-  REQUIRE(a.size() == b.size());
-  REQUIRE(a.channels == b.channels);
-  float largest = 0;
-  for (std::size_t i = 0; i < a.num_pixels() * static_cast<std::size_t>(a.channels); ++i)
-    largest = std::max(largest, std::abs(a.data[i] - b.data[i]));
-  return largest;
-}
 
 // Largest distance of the two cameras' images of points in front of them, in pixels.
 double projection_difference(const Camera& a, const Camera& b) {

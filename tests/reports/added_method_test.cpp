@@ -9,10 +9,10 @@
 #include "glint/method.h"
 #include "reports/records/records.h"
 #include "reports/tables/tables.h"
-#include "reports/verbs/command_line.h"
-#include "tests/support/temp_folder.h"
+#include "tests/reports/run_words.h"
 
 using namespace glint;
+using test::run;
 
 namespace {
 
@@ -44,12 +44,6 @@ voxel = 0.2
 [mesh_metrics]
 num_samples = 1000
 )";
-
-int run(const std::vector<std::string>& words) {
-  std::vector<const char*> arguments{"glint-bench"};
-  for (const std::string& word : words) arguments.push_back(word.c_str());
-  return run_command_line(static_cast<int>(arguments.size()), arguments.data());
-}
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include "glint/core/progress.h"
 #include "glint/core/rng.h"
 #include "tests/support/box_room.h"
+#include "tests/support/image_difference.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -73,15 +74,6 @@ std::vector<std::string> formats() {
   std::vector<std::string> ids;
   for (const auto& [id, exporter] : Registry<ExporterSpec>::all()) ids.push_back(id);
   return ids;
-}
-
-float largest_difference(ImageView a, ImageView b) {
-  REQUIRE(a.size() == b.size());
-  REQUIRE(a.channels == b.channels);
-  float largest = 0;
-  for (std::size_t i = 0; i < a.num_pixels() * static_cast<std::size_t>(a.channels); ++i)
-    largest = std::max(largest, std::abs(a.data[i] - b.data[i]));
-  return largest;
 }
 
 void check_camera(const Camera& a, const Camera& b) {

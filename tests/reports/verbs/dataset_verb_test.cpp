@@ -2,13 +2,8 @@
 // `dataset export` and `dataset info` as a user sees them.
 #include <catch2/catch.hpp>
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cstdio>
-
 #include "glint/core/config.h"
-#include "reports/verbs/command_line.h"
+#include "tests/reports/run_words.h"
 #include "tests/support/small_room.h"
 
 using namespace glint;
@@ -17,26 +12,9 @@ using Catch::Contains;
 
 namespace {
 
-int run(const std::vector<std::string>& words) {
-  std::vector<const char*> arguments{"glint-bench"};
-  for (const std::string& word : words) arguments.push_back(word.c_str());
-  return run_command_line(static_cast<int>(arguments.size()), arguments.data());
-}
-
 // What a command that succeeds prints on standard output.
 std::string output_of(const std::vector<std::string>& words) {
-  const TempFolder folder;
-  std::fflush(stdout);
-  const int terminal = ::dup(STDOUT_FILENO);
-  const int file = ::open((folder / "out").c_str(), O_CREAT | O_WRONLY, 0600);
-  ::dup2(file, STDOUT_FILENO);
-  const int code = run(words);
-  std::fflush(stdout);
-  ::dup2(terminal, STDOUT_FILENO);
-  ::close(file);
-  ::close(terminal);
-  CHECK(code == 0);
-  return read_file(folder / "out");
+  return captured(1, [&] { CHECK(run(words) == 0); });
 }
 
 }  // namespace

@@ -2,43 +2,18 @@
 // What verbs offer, what they answer to misspelt words, and what they print.
 #include <catch2/catch.hpp>
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdio>
 #include <set>
 
 #include "glint/method.h"
-#include "reports/verbs/command_line.h"
 #include "reports/verbs/verb.h"
-#include "tests/support/temp_folder.h"
+#include "tests/reports/run_words.h"
 
 using namespace glint;
+using test::captured;
+using test::run;
 
 namespace {
-
-// What goes to a stream (1: output, 2: errors) while `body` runs.
-template <class F>
-std::string captured(int stream, F&& body) {
-  const test::TempFolder folder;
-  const std::string file = (folder / "captured").string();
-  std::fflush(stream == 1 ? stdout : stderr);
-  const int kept = ::dup(stream);
-  std::FILE* target = std::fopen(file.c_str(), "w");
-  ::dup2(::fileno(target), stream);
-  body();
-  std::fflush(stream == 1 ? stdout : stderr);
-  ::dup2(kept, stream);
-  ::close(kept);
-  std::fclose(target);
-  return read_file(file);
-}
-
-int run(const std::vector<std::string>& words) {
-  std::vector<const char*> arguments{"glint-bench"};
-  for (const std::string& word : words) arguments.push_back(word.c_str());
-  return run_command_line(static_cast<int>(arguments.size()), arguments.data());
-}
 
 std::string errors_of(const std::vector<std::string>& words) {
   return captured(2, [&] { CHECK(run(words) == 1); });
