@@ -47,7 +47,7 @@ function keep(scene, push = false) {
       quality: metric,
       cost,
       methods: chosen,
-      range: range?.map((x) => Number(x.toPrecision(5))),
+      range,
     },
     push,
   );
@@ -63,6 +63,10 @@ function readState(params, scene) {
   state.hidden = hiddenKeys(scene, params.list("methods"));
   state.range = params.numbers("range", 2);
 }
+
+// As it stands in the address: lines are drawn at whole pixels, so a range that is a little
+// longer elsewhere would move some of them.
+const addressed = (range) => range?.map((x) => Number(x.toPrecision(5))) ?? null;
 
 const costs = () => kCosts.filter((id) => report.records.metrics.includes(id));
 
@@ -218,7 +222,8 @@ export async function showCurves(container, from) {
   if (from) state.scene = sceneOfAddress(from, state.scene);
   const scene = await loadScene(state.scene);
   if (from?.params) readState(from.params, scene);
-  const onRange = (range) => {
+  const onRange = (dragged) => {
+    const range = addressed(dragged);
     if (String(range) === String(state.range)) return;
     state.range = range;
     keep(scene);
