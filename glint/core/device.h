@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <utility>
 
 namespace glint {
 
@@ -27,6 +29,31 @@ void use_cpu();
 void use_gpu(const DeviceBackend& backend);
 // Of the GPU in use, or "cpu".
 const char* device_name();
+
+// What the host asked of a device since the program began: differences over a step are of interest.
+struct DeviceCounters {
+  std::uint64_t launches = 0;
+  std::uint64_t uploads = 0, downloads = 0;  // copies from and to the host
+  std::uint64_t waits = 0;                   // of the host for the device, those of downloads, too
+  std::uint64_t allocations = 0;             // blocks that were not there before
+};
+inline DeviceCounters device_counters;
+
+// In a silent step the host looks at nothing that ops compute, so that it never waits: sums that
+// are only told are not read, and lists that ops make are as long as their memory. On the CPU there
+// is no difference.
+class SilentStep {
+ public:
+  explicit SilentStep(bool silent) : before_(std::exchange(silent_, silent)) {}
+  ~SilentStep() { silent_ = before_; }
+  SilentStep(const SilentStep&) = delete;
+  SilentStep& operator=(const SilentStep&) = delete;
+  static bool now() { return silent_ && on_gpu(); }
+
+ private:
+  static inline bool silent_ = false;
+  bool before_;
+};
 
 void synchronize();
 // Sets floats in the order of the ops.
