@@ -163,7 +163,7 @@ class TwoDgs final : public Method {
     stats.terms["distortion"] = static_cast<double>(config_.lambda_distortion) * mean;
     const float weight = config_.lambda_distortion / static_cast<float>(count);
     fit(gradient_.distortion, out.distortion.size(), 1);
-    fill(gradient_.distortion.data(), out.distortion.num_pixels(), weight);
+    gradient_.distortion.array().fill(weight);
   }
 
   TwoDgsConfig config_, windows_;

@@ -164,7 +164,8 @@ class RefGs final : public Method {
     if (!deferred_) return out;
     fit(out["interface"], camera.size(), 3);
     fit(out["reflection"], camera.size(), 3);
-    const DeferredParts parts{pixels(), out["interface"].data(), out["reflection"].data()};
+    const DeferredParts parts{
+        pixels(), out["interface"].on_device(), out["reflection"].on_device()};
     run_kernel(camera.size().num_pixels(), kGrain, parts);
     return out;
   }
@@ -206,10 +207,10 @@ class RefGs final : public Method {
     return {
         output_->features.channels(),
         kAlbedo,
-        output_->features.data(),
-        output_->alpha.data(),
-        field_.directions().data(),
-        network_outputs_->data(),
+        output_->features.on_device(),
+        output_->alpha.on_device(),
+        field_.directions().on_device(),
+        network_outputs_->on_device(),
         background_};
   }
   const Image& forward(const Camera& camera) {
@@ -220,7 +221,7 @@ class RefGs final : public Method {
     }
     network_outputs_ = &field_.forward(camera, *output_, kSpecularChannels);
     fit(image_, camera.size(), 3);
-    run_kernel(image_.num_pixels(), kGrain, ShadeDeferred{pixels(), image_.data()});
+    run_kernel(image_.num_pixels(), kGrain, ShadeDeferred{pixels(), image_.on_device()});
     return image_;
   }
   void backward() {
@@ -234,10 +235,10 @@ class RefGs final : public Method {
         kGrain,
         ShadeDeferredVjp{
             pixels(),
-            dL_dimage_.data(),
-            gradient_.features.data(),
-            gradient_.alpha.data(),
-            dL_doutputs_.data()}
+            dL_dimage_.on_device(),
+            gradient_.features.on_device(),
+            gradient_.alpha.on_device(),
+            dL_doutputs_.on_device()}
     );
     field_.backward(dL_doutputs_, gradient_);
     field_.step(faster_);

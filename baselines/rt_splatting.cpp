@@ -246,11 +246,11 @@ class RtSplatting final : public Method {
   }
 
   RtPixels pixels() const {
-    RtPixels p{stage_, volume_output_->features.data(), nullptr, nullptr, nullptr};
-    if (stage_ != RtStage::kTransmission) p.surface = surface_output_->features.data();
+    RtPixels p{stage_, volume_output_->features.on_device(), nullptr, nullptr, nullptr};
+    if (stage_ != RtStage::kTransmission) p.surface = surface_output_->features.on_device();
     if (stage_ != RtStage::kAll) return p;
-    p.outputs = network_outputs_->data();
-    p.directions = field_.directions().data();
+    p.outputs = network_outputs_->on_device();
+    p.directions = field_.directions().on_device();
     return p;
   }
   const Image& forward(const Camera& camera) {
@@ -260,22 +260,29 @@ class RtSplatting final : public Method {
     if (stage_ == RtStage::kAll)
       network_outputs_ = &field_.forward(camera, *surface_output_, {kRtRoughness, kRtFeature});
     fit(image_, camera.size(), 3);
-    run_kernel(image_.num_pixels(), kGrain, RtCompose{pixels(), image_.data()});
+    run_kernel(image_.num_pixels(), kGrain, RtCompose{pixels(), image_.on_device()});
     return image_;
   }
 
   void backward() {
     RtComposeVjp vjp{
-        pixels(), dL_dimage_.data(), nullptr, nullptr, dL_dsurface_.features.data(), nullptr};
+        pixels(),
+        dL_dimage_.on_device(),
+        nullptr,
+        nullptr,
+        dL_dsurface_.features.on_device(),
+        nullptr};
     clear_gradient(image_.size(), 3, dL_dvolume_);
-    vjp.dL_dtransmission = dL_dvolume_.features.data();
+    vjp.dL_dtransmission = dL_dvolume_.features.on_device();
     if (stage_ == RtStage::kAll) {
       find_specular(light_);
       fit(kept_, image_.size(), 1);
-      run_kernel(kept_.num_pixels(), kGrain, RtKeptShare{mean_light_, kept_.data()});
-      vjp.kept = kept_.data();
+      run_kernel(
+          kept_.num_pixels(), kGrain, RtKeptShare{mean_light_.on_device(), kept_.on_device()}
+      );
+      vjp.kept = kept_.on_device();
       dL_doutputs_.resize(network_outputs_->size());
-      vjp.dL_doutputs = dL_doutputs_.data();
+      vjp.dL_doutputs = dL_doutputs_.on_device();
     }
     run_kernel(image_.num_pixels(), kGrain, vjp);
     if (stage_ == RtStage::kAll) {
@@ -288,33 +295,40 @@ class RtSplatting final : public Method {
 
   void add_mask_losses(const View& view, StepStats& stats) {
     const Image& mask = glass_mask(view);
-    const ImageView surface = surface_output_->features;
+    const Image& surface = surface_output_->features;
     check_fits("glass mask", mask, surface.size(), 1);
-    const RtMoments moments = sum_kernel(surface.size(), RtMaskMoments{surface, mask});
+    sum_kernel_to(surface.size(), RtMaskMoments{surface.on_device(), mask.on_device()}, moments_);
+    inside_.resize(1);
+    run_kernel(
+        1, 1, RtFindInside{moments_.on_device(), config_.lambda_variance, inside_.on_device()}
+    );
     const auto pixels = static_cast<float>(surface.num_pixels());
-    RtMaskLoss loss{
-        surface,
-        mask,
-        {},
+    const RtMaskLoss loss{
+        surface.on_device(),
+        mask.on_device(),
+        inside_.on_device(),
         config_.lambda_mask / pixels,
         config_.lambda_outside / pixels,
-        config_.lambda_variance / static_cast<float>(std::max(moments.count, 1.0)),
-        dL_dsurface_.features.ref()};
-    for (int k = 0; k < 4; ++k) loss.mean[k] = static_cast<float>(moments.mean(k));
+        dL_dsurface_.features.on_device()};
     stats.terms["mask"] = sum_kernel(surface.size(), loss);
-    stats.terms["variance"] = static_cast<double>(config_.lambda_variance) * moments.variance();
+    stats.terms["variance"] =
+        static_cast<double>(config_.lambda_variance) * told(moments_).variance();
   }
 
   // Specular light alone; its mean channel, too.
   void find_specular(Image& light) {
     fit(light, image_.size(), 3);
     fit(mean_light_, image_.size(), 1);
-    run_kernel(light.num_pixels(), kGrain, RtSpecular{pixels(), light.data(), mean_light_.data()});
+    run_kernel(
+        light.num_pixels(), kGrain, RtSpecular{pixels(), light.on_device(), mean_light_.on_device()}
+    );
   }
   void copy_channel(int channel, Image& map) const {
     fit(map, image_.size(), 1);
     run_kernel(
-        map.num_pixels(), kGrain, RtChannel{surface_output_->features.data(), channel, map.data()}
+        map.num_pixels(),
+        kGrain,
+        RtChannel{surface_output_->features.on_device(), channel, map.on_device()}
     );
   }
 
@@ -332,6 +346,8 @@ class RtSplatting final : public Method {
   const FloatArray* network_outputs_ = nullptr;
   Image image_, depth_, light_, mean_light_, kept_, dL_dimage_;
   FloatArray dL_doutputs_;
+  Array<RtMoments> moments_;  // [1]
+  Array<RtInside> inside_;    // [1]
   PhotometricLoss photometric_;
   std::unique_ptr<PerceptualLoss> perceptual_;
   GeometryLosses geometry_;

@@ -177,10 +177,10 @@ struct RtMoments {
     }
     return *this;
   }
-  GLINT_HD double mean(int k) const { return count > 0 ? sum[k] / count : 0; }
+  GLINT_HD double mean(int k) const { return count == 0 ? 0 : sum[k] / count; }
   double variance() const {  // of all four together
     double total = 0;
-    for (int k = 0; k < 4; ++k) total += count > 0 ? squares[k] / count - mean(k) * mean(k) : 0;
+    for (int k = 0; k < 4; ++k) total += count == 0 ? 0 : squares[k] / count - mean(k) * mean(k);
     return total;
   }
 };
@@ -201,12 +201,26 @@ struct RtMaskMoments {
   }
 };
 
+// What the variance inside the mask needs: means, and its weight over the number of pixels.
+struct RtInside {
+  float mean[4], weight_variance;
+};
+struct RtFindInside {
+  const RtMoments* moments;
+  float lambda_variance;
+  RtInside* inside;
+  GLINT_HD void operator()(std::size_t) const {
+    for (int k = 0; k < 4; ++k) inside->mean[k] = static_cast<float>(moments->mean(k));
+    inside->weight_variance = lambda_variance / static_cast<float>(max_of(moments->count, 1.0));
+  }
+};
+
 // BCE(1 - opacity, mask) + BCE(t, 0) outside the mask, and the gradient of the mean of both and of
 // the variance inside (means given), each with its weight over the number of pixels it is taken of.
 struct RtMaskLoss {
   ImageView surface, mask;
-  float mean[4];
-  float weight_opacity, weight_outside, weight_variance;
+  const RtInside* inside_mask;
+  float weight_opacity, weight_outside;
   ImageRef dL_dsurface;  // added to
 
   GLINT_HD double operator()(int x, int y) const {
@@ -220,7 +234,8 @@ struct RtMaskLoss {
     double loss = static_cast<double>(weight_opacity * binary_cross_entropy(through, inside));
     if (inside > 0) {
       for (int k = 0; k < 4; ++k)
-        g[k < 3 ? k : kRtTransmissivity] += 2 * weight_variance * (rt_varying(s, k) - mean[k]);
+        g[k < 3 ? k : kRtTransmissivity] +=
+            2 * inside_mask->weight_variance * (rt_varying(s, k) - inside_mask->mean[k]);
       return loss;
     }
     binary_cross_entropy_vjp(s[kRtTransmissivity], 0.0f, weight_outside, g[kRtTransmissivity]);
@@ -245,6 +260,7 @@ using RtSplattingKernels = KernelList<
     RtSpecular,
     RtKeptShare,
     RtMaskMoments,
+    RtFindInside,
     RtMaskLoss,
     RtChannel>;
 

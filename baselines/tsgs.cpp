@@ -31,6 +31,7 @@
 #include "glint/train/glass_masks.h"
 #include "glint/train/lobe_appearance.h"
 #include "glint/train/planar_model.h"
+#include "glint/train/share_kernels.h"
 
 namespace glint {
 
@@ -237,7 +238,12 @@ class Tsgs final : public Method {
     check_fits("glass mask", mask, view.rgb.size(), 1);
     check_fits("de-lighted photo", delighted, view.rgb.size(), 3);
     fit(target_, view.rgb.size(), 3);
-    run_kernel(target_.num_pixels(), 4096, ChooseByMask{mask, delighted, view.rgb, target_.data()});
+    run_kernel(
+        target_.num_pixels(),
+        4096,
+        ChooseByMask{
+            mask.on_device(), delighted.on_device(), view.rgb.on_device(), target_.on_device()}
+    );
     return target_;
   }
 
@@ -247,12 +253,18 @@ class Tsgs final : public Method {
     check_fits("normal prior", prior, normal.size(), 3);
     constexpr float kNoGate = -1e30f;
     const GatedNormals gate{
-        normal, prior, iteration >= windows_.gate_from ? windows_.min_cosine : kNoGate};
-    const double count = sum_kernel(normal.size(), CountGatedNormals{gate});
+        normal.on_device(),
+        prior.on_device(),
+        iteration >= windows_.gate_from ? windows_.min_cosine : kNoGate};
+    Array<double> counted;
+    Array<float> scale;
+    sum_kernel_to(normal.size(), CountGatedNormals{gate}, counted);
+    share_of(counted.on_device(), windows_.lambda_normal, scale);
+    const double sum = sum_kernel(
+        normal.size(), GatedNormalAt{gate, scale.on_device(), model_.gradient().normal.on_device()}
+    );
+    const double count = told(counted);
     if (count == 0) return;
-    const float scale = windows_.lambda_normal / static_cast<float>(count);
-    const double sum =
-        sum_kernel(normal.size(), GatedNormalAt{gate, scale, model_.gradient().normal.ref()});
     stats.terms["normal"] = static_cast<double>(windows_.lambda_normal) * sum / count;
   }
 

@@ -32,12 +32,12 @@ struct CountGatedNormals {
 };
 struct GatedNormalAt {
   GatedNormals gate;
-  float scale;
+  const float* scale;
   ImageRef dL_dnormal;
   GLINT_HD double operator()(int x, int y) const {
     if (!gate.counts(x, y)) return 0.0;
     const Vec3f off = load3<float>(gate.normal, x, y) - load3<float>(gate.prior, x, y);
-    add3(dL_dnormal, x, y, scale * Vec3f{sign_of(off.x), sign_of(off.y), sign_of(off.z)});
+    add3(dL_dnormal, x, y, *scale * Vec3f{sign_of(off.x), sign_of(off.y), sign_of(off.z)});
     return static_cast<double>(l1_norm(off));
   }
 };

@@ -27,7 +27,7 @@ void fill_or_empty(ImageSize size, float value, Image& image) {
     return;
   }
   fit(image, size, 1);
-  fill(image.data(), image.num_pixels(), value);
+  image.array().fill(value);
 }
 
 }  // namespace
@@ -60,14 +60,17 @@ void GlintModel::render_transmission(const Camera& camera, const GlintConfig& co
   fit(near_limit_, camera.size(), 1);
   const std::size_t pixels = near_limit_.num_pixels();
   run_kernel(
-      pixels, kGrain, ShiftDepth{buffer().depth.data(), config.secondary_near, near_limit_.data()}
+      pixels,
+      kGrain,
+      ShiftDepth{buffer().depth.on_device(), config.secondary_near, near_limit_.on_device()}
   );
   if (config.transmission == "trace") {
     camera_rays(camera, through_);
     run_kernel(
         pixels,
         kGrain,
-        MoveAlongRays{through_.directions.data(), near_limit_.data(), through_.origins.data()}
+        MoveAlongRays{
+            through_.directions.on_device(), near_limit_.on_device(), through_.origins.on_device()}
     );
     const TraceOutput& out = transmission.trace(through_, phase_.transmission_degree, {});
     copy_color(out.color, layers_.transmission);

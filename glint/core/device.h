@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Where ops run and where arrays live: one device at a time, chosen before the first array is made.
-// On a GPU, arrays are in memory that host and device share (pages move on demand), so every op has
-// the same signature on both and whatever has no kernel still works, slower. What ops begin runs
-// on in the background: the host calls synchronize() before it looks at arrays that ops wrote.
+// Where ops run: one device at a time, chosen before the first array is made. A GPU has memory of
+// its own; arrays (arrays.h) have a host and a device side and copy between them when the other is
+// asked for. What ops begin runs on in the background; looking at an array on the host waits for
+// it.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,23 @@ namespace glint {
 
 enum class Device { kCpu, kCuda };
 
-// What a backend other than the CPU offers (glint/cuda; tests that run kernels on the host).
+// What a backend other than the CPU offers (glint/cuda; tests that run kernels on the host). All
+// but download() and synchronize() are in the order of the ops and wait for nothing. They throw
+// Error (kEnvironment).
 struct DeviceBackend {
   const char* name;                      // of the device, for people
-  void* (*allocate)(std::size_t bytes);  // seen by host and device; throws Error (kEnvironment)
-  void (*free)(void* block);             // waits for the device
+  void* (*allocate)(std::size_t bytes);  // device memory, 64-byte aligned, of any content
+  void (*release)(void* block) noexcept;
+  // The host may change `from` at once, and has what it downloads.
+  void (*upload)(void* to, const void* from, std::size_t bytes);
+  void (*download)(void* to, const void* from, std::size_t bytes);
+  void (*copy)(void* to, const void* from, std::size_t bytes);
+  void (*clear)(void* block, std::size_t bytes);  // to zeros
   void (*fill)(float* to, std::size_t count, float value);
   void (*synchronize)();
+  // Memory of the host's sides, 64-byte aligned; null: the host's own.
+  void* (*allocate_host)(std::size_t bytes) = nullptr;
+  void (*release_host)(void* block) noexcept = nullptr;
 };
 
 Device current_device();
@@ -56,23 +66,49 @@ class SilentStep {
 };
 
 void synchronize();
-// Sets floats in the order of the ops.
-void fill(float* to, std::size_t count, float value);
 
-// Memory of arrays, 64-byte aligned. Blocks may be freed while another device is in use.
-void* allocate_array(std::size_t bytes);
-void free_array(void* array) noexcept;
+// Memory of the host, 64-byte aligned. Blocks may be freed while another device is in use.
+void* allocate_on_host(std::size_t bytes);
+void free_on_host(void* block) noexcept;
 
-// Of vectors whose elements ops read or write.
 template <class T>
-struct ArrayAllocator {
+struct HostAllocator {
   using value_type = T;
-  ArrayAllocator() = default;
+  HostAllocator() = default;
   template <class U>
-  ArrayAllocator(const ArrayAllocator<U>&) {}
-  T* allocate(std::size_t count) { return static_cast<T*>(allocate_array(count * sizeof(T))); }
-  void deallocate(T* array, std::size_t) noexcept { free_array(array); }
-  friend bool operator==(ArrayAllocator, ArrayAllocator) { return true; }
+  HostAllocator(const HostAllocator<U>&) {}
+  T* allocate(std::size_t count) { return static_cast<T*>(allocate_on_host(count * sizeof(T))); }
+  void deallocate(T* block, std::size_t) noexcept { free_on_host(block); }
+  friend bool operator==(HostAllocator, HostAllocator) { return true; }
+};
+
+// Memory of the device in use when it was first asked for. Grows, never shrinks.
+class DeviceBlock {
+ public:
+  DeviceBlock() = default;
+  DeviceBlock(DeviceBlock&& other) noexcept { swap(other); }
+  DeviceBlock& operator=(DeviceBlock&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~DeviceBlock() { release(); }
+
+  void* data() const { return data_; }
+  // Room for so many bytes on the device in use, of which the first `kept` stay what they are.
+  void fit(std::size_t bytes, std::size_t kept);
+  void upload(const void* from, std::size_t bytes);
+  void download(void* to, std::size_t bytes) const;
+  void copy(const DeviceBlock& from, std::size_t bytes);  // of the same device
+  void clear(std::size_t first, std::size_t bytes);
+  void fill(std::size_t count, float value);
+  void release() noexcept;
+  bool is_current() const;  // of the device in use
+
+ private:
+  void swap(DeviceBlock& other) noexcept;
+  const DeviceBackend* backend_ = nullptr;
+  void* data_ = nullptr;
+  std::size_t capacity_ = 0;  // bytes
 };
 
 }  // namespace glint

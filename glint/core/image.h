@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Images and maps: row-major [height][width][channels] arrays, owned (Image) or borrowed
-// (ImageView). Pixel (x, y) covers [x, x+1) x [y, y+1); its centre is (x + 0.5, y + 0.5).
+// (ImageView, of the host's side unless a kernel has it). Pixel (x, y) covers [x, x+1) x [y, y+1);
+// its centre is (x + 0.5, y + 0.5).
 #pragma once
 
 #include <cstddef>
@@ -49,16 +50,32 @@ struct BasicImageRef {
   GLINT_HD T& at(int x, int y, int c = 0) const { return pixel(x, y)[c]; }
 };
 
-// The host copies only what is there.
-struct SynchronizedCopy {
-  SynchronizedCopy() = default;
-  SynchronizedCopy(const SynchronizedCopy&) { synchronize(); }
-  SynchronizedCopy(SynchronizedCopy&&) noexcept {}
-  SynchronizedCopy& operator=(const SynchronizedCopy&) {
-    synchronize();
-    return *this;
-  }
-  SynchronizedCopy& operator=(SynchronizedCopy&&) noexcept { return *this; }
+template <class T>
+class BasicImage;
+
+// An image where ops run, for the fields of kernels: views and `const T*` read it, references and
+// `T*` may write it. Null when empty.
+template <class T>
+class ConstImageOnDevice {
+ public:
+  explicit ConstImageOnDevice(const BasicImage<T>& image) : image_(image) {}
+  operator BasicImageView<T>() const;
+  operator const T*() const;
+
+ private:
+  const BasicImage<T>& image_;
+};
+template <class T>
+class ImageOnDevice {
+ public:
+  explicit ImageOnDevice(BasicImage<T>& image) : image_(image) {}
+  operator BasicImageView<T>() const;
+  operator BasicImageRef<T>() const;
+  operator const T*() const;
+  operator T*() const;
+
+ private:
+  BasicImage<T>& image_;
 };
 
 template <class T>
@@ -99,10 +116,61 @@ class BasicImage {
   BasicImageView<T> view() const { return *this; }
   BasicImageRef<T> ref() { return {data_.data(), width_, height_, channels_}; }
 
+  Array<T>& array() { return data_; }
+  const Array<T>& array() const { return data_; }
+  ImageOnDevice<T> on_device() { return ImageOnDevice<T>(*this); }
+  ConstImageOnDevice<T> on_device() const { return ConstImageOnDevice<T>(*this); }
+
  private:
   int width_ = 0, height_ = 0, channels_ = 0;
-  [[no_unique_address]] SynchronizedCopy before_data_;
   Array<T> data_;
+};
+
+template <class T>
+ConstImageOnDevice<T>::operator BasicImageView<T>() const {
+  return {*this, image_.width(), image_.height(), image_.channels()};
+}
+template <class T>
+ConstImageOnDevice<T>::operator const T*() const {
+  return image_.array().device_for_reading();
+}
+template <class T>
+ImageOnDevice<T>::operator BasicImageView<T>() const {
+  return std::as_const(image_).on_device();
+}
+template <class T>
+ImageOnDevice<T>::operator BasicImageRef<T>() const {
+  return {*this, image_.width(), image_.height(), image_.channels()};
+}
+template <class T>
+ImageOnDevice<T>::operator const T*() const {
+  return image_.array().device_for_reading();
+}
+template <class T>
+ImageOnDevice<T>::operator T*() const {
+  return image_.array().device_for_writing();
+}
+
+// An image that lives longer, or none.
+template <class T>
+class BasicBorrowedImage {
+ public:
+  BasicBorrowedImage() = default;
+  BasicBorrowedImage(const BasicImage<T>& image) : image_(&image) {}
+
+  const BasicImage<T>& get() const {
+    static const BasicImage<T> none;
+    return image_ == nullptr ? none : *image_;
+  }
+  ImageSize size() const { return get().size(); }
+  int channels() const { return get().channels(); }
+  std::size_t num_pixels() const { return get().num_pixels(); }
+  bool empty() const { return get().empty(); }
+  BasicImageView<T> view() const { return get(); }
+  ConstImageOnDevice<T> on_device() const { return get().on_device(); }
+
+ private:
+  const BasicImage<T>* image_ = nullptr;
 };
 
 // Gives an image this shape; its values are not kept when it had another.
@@ -113,6 +181,7 @@ void fit(BasicImage<T>& image, ImageSize size, int channels) {
 }
 
 using Image = BasicImage<float>;
+using BorrowedImage = BasicBorrowedImage<float>;
 using ImageRef = BasicImageRef<float>;
 using ImageView = BasicImageView<float>;
 using MaskImage = BasicImage<unsigned char>;  // one channel; non-zero means "counts"

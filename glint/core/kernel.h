@@ -7,11 +7,12 @@
 // glint/cuda, which fills the pointers below: so the layers under it know nothing of it.
 #pragma once
 
+#include <cstring>
 #include <type_traits>
 #include <typeinfo>
 #include <vector>
 
-#include "glint/core/device.h"
+#include "glint/core/arrays.h"
 #include "glint/core/image.h"
 #include "glint/core/parallel.h"
 
@@ -28,7 +29,8 @@ template <class Kernel>
 using SumOf = decltype(std::declval<const Kernel&>()(0, 0));
 template <class Kernel>
 struct SumOnGpu {
-  static inline SumOf<Kernel> (*run)(ImageSize, const Kernel&) = nullptr;
+  // `sum`: on the device; null: nobody asks for it.
+  static inline void (*run)(ImageSize, const Kernel&, SumOf<Kernel>* sum) = nullptr;
 };
 
 namespace detail {
@@ -64,13 +66,52 @@ auto sum_over_pixels(ImageSize size, F&& term) {
   return total;
 }
 
-// The same for a kernel, on either device. Waits for the GPU; there, the order of the sum is fixed,
-// too, and another.
+namespace detail {
+template <class Kernel>
+void sum_on_gpu(ImageSize size, const Kernel& kernel, SumOf<Kernel>* sum) {
+  if (SumOnGpu<Kernel>::run == nullptr) throw_no_gpu_kernel(typeid(Kernel).name());
+  SumOnGpu<Kernel>::run(size, kernel, sum);
+}
+}  // namespace detail
+
+// What a silent step knows of a sum: numbers that are none.
+template <class Sum>
+Sum unknown() {
+  static_assert(std::is_trivially_copyable_v<Sum>);
+  Sum sum;
+  std::memset(static_cast<void*>(&sum), 0xff, sizeof sum);
+  return sum;
+}
+
+// The same for a kernel, on either device; `sum` [1] is where other kernels read it. On the GPU the
+// order of the sum is fixed, too, and another.
+template <class Kernel>
+void sum_kernel_to(ImageSize size, const Kernel& kernel, Array<SumOf<Kernel>>& sum) {
+  sum.resize(1);
+  if (on_gpu())
+    detail::sum_on_gpu(size, kernel, sum.device_for_overwriting());
+  else
+    sum[0] = sum_over_pixels(size, kernel);
+}
+
+// The same for the host, which waits for the GPU. Sums that are only told: in a silent step they
+// are not known (NaN), and nothing that is computed may depend on them.
 template <class Kernel>
 SumOf<Kernel> sum_kernel(ImageSize size, const Kernel& kernel) {
   if (!on_gpu()) return sum_over_pixels(size, kernel);
-  if (SumOnGpu<Kernel>::run == nullptr) detail::throw_no_gpu_kernel(typeid(Kernel).name());
-  return SumOnGpu<Kernel>::run(size, kernel);
+  if (SilentStep::now()) {
+    detail::sum_on_gpu(size, kernel, nullptr);
+    return unknown<SumOf<Kernel>>();
+  }
+  Array<SumOf<Kernel>> sum;
+  sum_kernel_to(size, kernel, sum);
+  return sum[0];
+}
+
+// The element of an array [1] that is only told: NaN in a silent step.
+template <class Sum>
+Sum told(const Array<Sum>& sum) {
+  return SilentStep::now() ? unknown<Sum>() : sum[0];
 }
 
 }  // namespace glint

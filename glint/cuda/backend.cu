@@ -16,13 +16,38 @@ struct FillFloats {
   GLINT_HD void operator()(std::size_t i) const { to[i] = value; }
 };
 
-// Memory of arrays: pages move to whoever touches them.
-void* allocate(std::size_t bytes) {
-  void* block = nullptr;
-  check_cuda(cudaMallocManaged(&block, bytes), "allocating shared memory");
-  return block;
+MemoryPool& pool() {
+  // Never destroyed: arrays of the program may outlive it.
+  static MemoryPool& pool = *new MemoryPool(
+      {[](std::size_t bytes) -> void* {
+         void* block = nullptr;
+         if (cudaMalloc(&block, bytes) == cudaSuccess) return block;
+         cudaGetLastError();  // forgotten: the pool knows what to do
+         return nullptr;
+       },
+       [](void* block) { cudaFree(block); },
+       [] { check_cuda(cudaDeviceSynchronize(), "waiting for the device"); }}
+  );
+  return pool;
 }
-void release(void* block) { cudaFree(block); }
+
+void copy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind, const char* what) {
+  check_cuda(cudaMemcpyAsync(to, from, bytes, kind, nullptr), what);
+}
+// From memory that is not locked to its pages, which CUDA copies away before it returns.
+void upload(void* to, const void* from, std::size_t bytes) {
+  copy(to, from, bytes, cudaMemcpyHostToDevice, "copying to the device");
+}
+void download(void* to, const void* from, std::size_t bytes) {
+  copy(to, from, bytes, cudaMemcpyDeviceToHost, "copying from the device");
+  check_cuda(cudaStreamSynchronize(nullptr), "waiting for the device");
+}
+void copy_inside(void* to, const void* from, std::size_t bytes) {
+  copy(to, from, bytes, cudaMemcpyDeviceToDevice, "copying inside the device");
+}
+void clear(void* block, std::size_t bytes) {
+  check_cuda(cudaMemsetAsync(block, 0, bytes, nullptr), "clearing memory");
+}
 void fill_floats(float* to, std::size_t count, float value) {
   executor<DeviceExec>().for_each(count, FillFloats{to, value});
 }
@@ -65,12 +90,20 @@ CudaDevice look() {
   device.name = properties.name;
   device.compute_capability = 10 * properties.major + properties.minor;
   device.memory_bytes = properties.totalGlobalMem;
-  device.usable = properties.concurrentManagedAccess != 0;
-  if (!device.usable) device.why_not = device.name + " shares no memory with a running host";
+  device.usable = true;
   return device;
 }
 
 }  // namespace
+
+void* CudaMemory::allocate(std::size_t bytes) {
+  void* block = pool().allocate(bytes);
+  if (block != nullptr) return block;
+  std::size_t free = 0, total = 0;
+  cudaMemGetInfo(&free, &total);
+  throw_no_room(cuda_device().name.c_str(), bytes, free, total, pool().bytes_in_use());
+}
+void CudaMemory::release(void* block) noexcept { pool().release(block); }
 
 const CudaDevice& cuda_device() {
   static const CudaDevice device = look();
@@ -80,13 +113,22 @@ const CudaDevice& cuda_device() {
 void use_cuda() {
   const CudaDevice& device = cuda_device();
   if (!device.usable) throw_cuda_error("finding a device", device.why_not.c_str());
-  static const DeviceBackend backend{device.name.c_str(), allocate, release, fill_floats, wait};
+  static const DeviceBackend backend{
+      .name = device.name.c_str(),
+      .allocate = CudaMemory::allocate,
+      .release = CudaMemory::release,
+      .upload = upload,
+      .download = download,
+      .copy = copy_inside,
+      .clear = clear,
+      .fill = fill_floats,
+      .synchronize = wait};
   use_executor<DeviceExec>(backend);
 }
 
 double measure_copy_bandwidth(std::size_t bytes) {
   constexpr int kRuns = 9;
-  DeviceBuffer<char> from, to;
+  DeviceExec::Buffer<char> from, to;
   from.resize(bytes);
   to.resize(bytes);
   cudaEvent_t begin, end;

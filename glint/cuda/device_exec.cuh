@@ -10,8 +10,10 @@
 #include <cub/device/device_scan.cuh>
 #include <utility>
 
+#include "glint/core/device.h"
 #include "glint/cuda/block.h"
 #include "glint/cuda/cuda_error.h"
+#include "glint/cuda/device_buffer.h"
 
 namespace glint::gpu {
 
@@ -19,62 +21,25 @@ inline void check_cuda(cudaError_t status, const char* what) {
   if (status != cudaSuccess) throw_cuda_error(what, cudaGetErrorString(status));
 }
 
-template <class T>
-class DeviceBuffer {
- public:
-  DeviceBuffer() = default;
-  DeviceBuffer(DeviceBuffer&& other) noexcept { swap(other); }
-  DeviceBuffer& operator=(DeviceBuffer&& other) noexcept {
-    swap(other);
-    return *this;
-  }
-  ~DeviceBuffer() { cudaFree(data_); }
-
-  // What was there before is not kept once it has to grow.
-  void resize(std::size_t count) {
-    size_ = count;
-    if (count <= capacity_) return;
-    const std::size_t room = count + count / 2;
-    check_cuda(cudaFree(data_), "freeing memory");
-    data_ = nullptr;
-    capacity_ = 0;
-    check_cuda(cudaMalloc(&data_, room * sizeof(T)), "allocating memory");
-    capacity_ = room;
-  }
-  std::size_t size() const { return size_; }
-  T* data() { return data_; }
-  const T* data() const { return data_; }
-
- private:
-  void swap(DeviceBuffer& other) {
-    std::swap(data_, other.data_);
-    std::swap(size_, other.size_);
-    std::swap(capacity_, other.capacity_);
-  }
-  T* data_ = nullptr;
-  std::size_t size_ = 0, capacity_ = 0;
+// The device's memory, from a pool; errors (kEnvironment): there is no room.
+struct CudaMemory {
+  static void* allocate(std::size_t bytes);
+  static void release(void* block) noexcept;
 };
 
 class DeviceExec {
  public:
   template <class T>
-  using Buffer = DeviceBuffer<T>;
+  using Buffer = DeviceBuffer<T, CudaMemory>;
 
   explicit DeviceExec(cudaStream_t stream = nullptr) : stream_(stream) {}
 
-  template <class T>
-  void upload(const T* from, std::size_t count, Buffer<T>& to) {
-    to.resize(count);
-    if (count == 0) return;
-    check_cuda(
-        cudaMemcpyAsync(to.data(), from, count * sizeof(T), cudaMemcpyHostToDevice, stream_),
-        "copying to the device"
-    );
-  }
   // Waits for the device.
   template <class T>
   void download(const Buffer<T>& from, std::size_t count, T* to) {
     if (count == 0) return;
+    ++device_counters.downloads;
+    ++device_counters.waits;
     check_cuda(
         cudaMemcpyAsync(to, from.data(), count * sizeof(T), cudaMemcpyDeviceToHost, stream_),
         "copying from the device"
@@ -92,6 +57,7 @@ class DeviceExec {
   void for_each(std::size_t count, F f) {
     constexpr unsigned kThreads = 256;
     if (count == 0) return;
+    ++device_counters.launches;
     const auto blocks = static_cast<unsigned>((count + kThreads - 1) / kThreads);
     run_elements<<<blocks, kThreads, 0, stream_>>>(count, f);
     check_cuda(cudaGetLastError(), "launching a kernel");
@@ -99,6 +65,7 @@ class DeviceExec {
   template <class Body>
   void launch(std::size_t blocks, const Body& body) {
     if (blocks == 0) return;
+    ++device_counters.launches;
     run_blocks<<<static_cast<unsigned>(blocks), Body::kThreads, 0, stream_>>>(body);
     check_cuda(cudaGetLastError(), "launching a kernel");
   }
@@ -112,6 +79,8 @@ class DeviceExec {
     with_scratch([&](void* scratch, std::size_t& bytes) {
       return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts.data(), sums.data(), n, stream_);
     });
+    ++device_counters.downloads;
+    ++device_counters.waits;
     std::uint32_t last[2];
     const std::uint32_t* ends[2] = {sums.data() + count - 1, counts.data() + count - 1};
     for (int i = 0; i < 2; ++i)
@@ -154,6 +123,7 @@ class DeviceExec {
     std::size_t bytes = 0;
     check_cuda(run(nullptr, bytes), "asking CUB for its memory");
     scratch_.resize(bytes);
+    ++device_counters.launches;
     check_cuda(run(scratch_.data(), bytes), "running CUB");
   }
 

@@ -59,20 +59,45 @@ void run_on(std::size_t count, const Kernel& kernel) {
   executor<Exec>().for_each(count, kernel);
 }
 
+// One sum of many, in their order by strides, by one block.
+template <class Sum>
+struct UniteSums {
+  static constexpr int kThreads = 256;
+  struct Shared {
+    alignas(alignof(Sum)) unsigned char bytes[kThreads * sizeof(Sum)];
+  };
+  const Sum* partial;
+  std::size_t count;
+  Sum* out;
+
+  template <class Block>
+  GLINT_HD void operator()(Block& block, Shared& shared) const {
+    Sum* sums = reinterpret_cast<Sum*>(shared.bytes);
+    block.each([&](int thread) {
+      Sum sum{};
+      for (std::size_t i = static_cast<std::size_t>(thread); i < count; i += kThreads)
+        sum += partial[i];
+      sums[thread] = sum;
+    });
+    for (int half = kThreads / 2; half > 0; half /= 2)
+      block.each([&](int thread) {
+        if (thread < half) sums[thread] += sums[thread + half];
+      });
+    block.each([&](int thread) {
+      if (thread == 0) *out = sums[0];
+    });
+  }
+};
+
 template <class Exec, class Kernel>
-SumOf<Kernel> sum_on(ImageSize size, const Kernel& kernel) {
+void sum_on(ImageSize size, const Kernel& kernel, SumOf<Kernel>* out) {
   using Sum = SumOf<Kernel>;
   static typename Exec::template Buffer<Sum> partial;
-  static std::vector<Sum> sums;
   const std::size_t threads = SumRuns<Kernel>::kThreads;
   const std::size_t blocks = (size.num_pixels() + threads - 1) / threads;
   partial.resize(blocks);
-  sums.resize(blocks);
   executor<Exec>().launch(blocks, SumRuns<Kernel>{kernel, size, partial.data()});
-  executor<Exec>().download(partial, blocks, sums.data());
-  Sum total{};
-  for (const Sum& sum : sums) total += sum;
-  return total;
+  if (out != nullptr) executor<Exec>().launch(1, UniteSums<Sum>{partial.data(), blocks, out});
 }
 
 // Gives a kernel of run_kernel or of sum_kernel its place on Exec.

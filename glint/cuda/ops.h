@@ -11,52 +11,54 @@
 
 namespace glint::gpu {
 
-// Gradients of outputs are only read; empty images are null.
+// What a call writes; gradients of outputs are only read, through the same type. Empty ones are
+// null.
+inline float* pointer(Image& image) { return image.on_device(); }
 inline float* pointer(const Image& image) {
-  return image.empty() ? nullptr : const_cast<float*>(image.data());
+  return const_cast<float*>(image.array().device_for_reading());
 }
 
 inline DeviceSurfels device_surfels(const RasterInput& in) {
   return {
       .count = in.count,
       .channels = in.channels,
-      .means = in.means.data(),
-      .scales = in.scales.data(),
-      .rotations = in.rotations.data(),
-      .opacities = in.opacities.data(),
-      .features = in.features.data()};
+      .means = in.means.on_device(),
+      .scales = in.scales.on_device(),
+      .rotations = in.rotations.on_device(),
+      .opacities = in.opacities.on_device(),
+      .features = in.features.on_device()};
 }
-inline float* pointer(FloatArray& array) { return array.empty() ? nullptr : array.data(); }
-inline DeviceMaps device_maps(const RasterMaps<ImageMap>& maps) {
+template <class Maps>
+DeviceMaps device_maps(Maps& maps) {
   DeviceMaps result;
   for_each_map(
-      {}, [](const char*, int, float*& to, const Image& map) { to = pointer(map); }, result, maps
+      {}, [](const char*, int, float*& to, auto& map) { to = pointer(map); }, result, maps
   );
   return result;
 }
 inline DeviceGradients device_gradients(RasterGradient& g) {
   return {
-      .means = g.means.data(),
-      .scales = g.scales.data(),
-      .rotations = g.rotations.data(),
-      .opacities = g.opacities.data(),
-      .features = g.features.data(),
-      .screen = g.screen.data(),
-      .screen_abs = pointer(g.screen_abs)};
+      .means = g.means.on_device(),
+      .scales = g.scales.on_device(),
+      .rotations = g.rotations.on_device(),
+      .opacities = g.opacities.on_device(),
+      .features = g.features.on_device(),
+      .screen = g.screen.on_device(),
+      .screen_abs = g.screen_abs.on_device()};
 }
 inline DeviceRasterCall device_call(const RasterCall& call, RasterOutput& output) {
   return {
       .surfels = device_surfels(call.input),
       .camera = camera_of(call),
-      .near_limit = call.input.near_limit.data,
+      .near_limit = call.input.near_limit.get().array().device_for_reading(),
       .has = call.maps(),
       .range = distortion_range(call.settings),
       .out = device_maps(output),
       .seen = {
-          .visibility = output.visibility.data(),
-          .in_view = output.in_view.data(),
-          .owned_pixels = pointer(output.owned_pixels),
-          .radii = pointer(output.radii)}};
+          .visibility = output.visibility.on_device(),
+          .in_view = output.in_view.on_device(),
+          .owned_pixels = output.owned_pixels.on_device(),
+          .radii = output.radii.on_device()}};
 }
 
 template <class Exec>
@@ -76,11 +78,11 @@ class RasterizerOn final : public RasterBackend {
   void first_surface(
       const RasterCall&,
       const RasterOutput&,
-      ImageView mask,
+      const Image& mask,
       const FirstSurfaceSettings& settings,
       Image& depth
   ) override {
-    pipeline_.first_surface(mask.data, settings, depth.data());
+    pipeline_.first_surface(mask.on_device(), settings, depth.on_device());
   }
   std::size_t num_pairs() override { return pipeline_.num_pairs(); }
   std::size_t num_pixel_pairs() override { return pipeline_.num_pixel_pairs(); }
@@ -93,15 +95,15 @@ inline DeviceTraceInput device_input(const TraceInput& in) {
   return {
       .count = in.count,
       .sh_degree = in.sh_degree,
-      .means = in.means.data(),
-      .scales = in.scales.data(),
-      .rotations = in.rotations.data(),
-      .opacities = in.opacities.data(),
-      .sh_dc = in.sh_dc.data(),
-      .sh_rest = in.sh_rest.data()};
+      .means = in.means.on_device(),
+      .scales = in.scales.on_device(),
+      .rotations = in.rotations.on_device(),
+      .opacities = in.opacities.on_device(),
+      .sh_dc = in.sh_dc.on_device(),
+      .sh_rest = in.sh_rest.on_device()};
 }
 template <class Maps>
-DeviceTraceOutput device_output(const Maps& maps) {
+DeviceTraceOutput device_output(Maps& maps) {
   return {
       .color = pointer(maps.color),
       .alpha = pointer(maps.alpha),
@@ -110,24 +112,24 @@ DeviceTraceOutput device_output(const Maps& maps) {
 }
 inline DeviceTraceGradients device_gradients(TraceGradient& g) {
   return {
-      .means = g.means.data(),
-      .scales = g.scales.data(),
-      .rotations = g.rotations.data(),
-      .opacities = g.opacities.data(),
-      .sh_dc = g.sh_dc.data(),
-      .sh_rest = g.sh_rest.data(),
-      .visibility = g.visibility.data(),
-      .half_depths = g.half_depths.data(),
-      .origins = g.rays.origins.data(),
-      .directions = g.rays.directions.data()};
+      .means = g.means.on_device(),
+      .scales = g.scales.on_device(),
+      .rotations = g.rotations.on_device(),
+      .opacities = g.opacities.on_device(),
+      .sh_dc = g.sh_dc.on_device(),
+      .sh_rest = g.sh_rest.on_device(),
+      .visibility = g.visibility.on_device(),
+      .half_depths = g.half_depths.on_device(),
+      .origins = g.rays.origins.on_device(),
+      .directions = g.rays.directions.on_device()};
 }
 inline TraceCutoffs cutoffs(const TraceSettings& s) {
   return {s.near, s.max_rho, s.min_alpha, s.min_transmittance, s.max_hits};
 }
-inline DeviceTraceCall device_call(const TraceCall& call, const TraceOutput& output) {
+inline DeviceTraceCall device_call(const TraceCall& call, TraceOutput& output) {
   return {
       .input = device_input(call.input),
-      .rays = {call.rays.origins.data(), call.rays.directions.data()},
+      .rays = {call.rays.origins.on_device(), call.rays.directions.on_device()},
       .num_rays = call.rays.origins.num_pixels(),
       .cutoffs = cutoffs(call.settings),
       .out = device_output(output)};

@@ -19,7 +19,7 @@ float surface_behind_mask(
     int x,
     int y
 ) {
-  const ImageView& limit = call.input.near_limit;
+  const ImageView limit = call.input.near_limit.view();
   const float near = call.settings.near_plane;
   SurfacePixel pixel(x, y, limit.empty() ? near : std::max(near, limit.at(x, y)));
   const int tile = y / kTileSize * lists.tiles_x + x / kTileSize;

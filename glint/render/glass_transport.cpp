@@ -9,8 +9,6 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;  // pixels a block
 
-const float* data_or_null(const Image& image) { return image.empty() ? nullptr : image.data(); }
-
 }  // namespace
 
 PixelRays pixel_rays(const Camera& camera) {
@@ -30,7 +28,7 @@ void camera_rays(const Camera& camera, Rays& rays) {
   run_kernel(
       camera.size().num_pixels(),
       kGrain,
-      CameraRays{pixel_rays(camera), rays.origins.data(), rays.directions.data()}
+      CameraRays{pixel_rays(camera), rays.origins.on_device(), rays.directions.on_device()}
   );
 }
 
@@ -54,14 +52,14 @@ GlassTransport::read_interface(const Camera& camera, const RasterOutput& interfa
   for (Image* image : {&b.normal, &b.reflected.origins, &b.reflected.directions})
     fit(*image, size, 3);
   const GlassMaps out{
-      b.depth.data(),
-      b.normal.data(),
-      b.transparency.data(),
-      b.specular.data(),
-      b.fresnel.data(),
-      b.specularity.data(),
-      b.reflected.origins.data(),
-      b.reflected.directions.data()};
+      b.depth.on_device(),
+      b.normal.on_device(),
+      b.transparency.on_device(),
+      b.specular.on_device(),
+      b.fresnel.on_device(),
+      b.specularity.on_device(),
+      b.reflected.origins.on_device(),
+      b.reflected.directions.on_device()};
   run_kernel(
       size.num_pixels(),
       kGrain,
@@ -69,10 +67,10 @@ GlassTransport::read_interface(const Camera& camera, const RasterOutput& interfa
           pixel_rays(camera),
           options_,
           interface.features.channels(),
-          interface.features.data(),
-          interface.alpha.data(),
-          interface.depth_sum.data(),
-          interface.normal.data(),
+          interface.features.on_device(),
+          interface.alpha.on_device(),
+          interface.depth_sum.on_device(),
+          interface.normal.on_device(),
           out}
   );
   return buffer_;
@@ -80,16 +78,16 @@ GlassTransport::read_interface(const Camera& camera, const RasterOutput& interfa
 
 GlassInputs GlassTransport::inputs(const GlassLayers& layers) const {
   return {
-      data_or_null(layers.interface),
-      data_or_null(layers.transmission),
-      data_or_null(layers.reflection),
-      buffer_.transparency.data(),
-      buffer_.specularity.data()};
+      layers.interface.on_device(),
+      layers.transmission.on_device(),
+      layers.reflection.on_device(),
+      buffer_.transparency.on_device(),
+      buffer_.specularity.on_device()};
 }
 
 const Image& GlassTransport::compose(const GlassLayers& layers) {
   fit(image_, buffer_.depth.size(), 3);
-  run_kernel(image_.num_pixels(), kGrain, ComposeGlass{inputs(layers), image_.data()});
+  run_kernel(image_.num_pixels(), kGrain, ComposeGlass{inputs(layers), image_.on_device()});
   return image_;
 }
 
@@ -105,12 +103,12 @@ const GlassLayers& GlassTransport::compose_vjp(const GlassLayers& layers, const 
       ComposeGlassVjp{
           inputs(layers),
           options_,
-          dL_dimage.data(),
-          dL_dlayers_.interface.data(),
-          dL_dlayers_.transmission.data(),
-          dL_dlayers_.reflection.data(),
-          dL_dtransparency_.data(),
-          dL_dmirrored_.data()}
+          dL_dimage.on_device(),
+          dL_dlayers_.interface.on_device(),
+          dL_dlayers_.transmission.on_device(),
+          dL_dlayers_.reflection.on_device(),
+          dL_dtransparency_.on_device(),
+          dL_dmirrored_.on_device()}
   );
   return dL_dlayers_;
 }
@@ -129,22 +127,22 @@ void GlassTransport::interface_vjp(
           pixel_rays(camera),
           options_,
           dL_dinterface.features.channels(),
-          interface.alpha.data(),
-          interface.depth_sum.data(),
-          interface.normal.data(),
-          buffer_.normal.data(),
-          buffer_.specular.data(),
-          buffer_.fresnel.data(),
-          dL_dlayers_.interface.data(),
-          dL_dtransparency_.data(),
-          dL_dmirrored_.data(),
-          data_or_null(dL_dtransparency),
-          dL_drays == nullptr ? nullptr : dL_drays->origins.data(),
-          dL_drays == nullptr ? nullptr : dL_drays->directions.data(),
-          dL_dinterface.features.data(),
-          dL_dinterface.depth_sum.data(),
-          dL_dinterface.alpha.data(),
-          dL_dinterface.normal.data()}
+          interface.alpha.on_device(),
+          interface.depth_sum.on_device(),
+          interface.normal.on_device(),
+          buffer_.normal.on_device(),
+          buffer_.specular.on_device(),
+          buffer_.fresnel.on_device(),
+          dL_dlayers_.interface.on_device(),
+          dL_dtransparency_.on_device(),
+          dL_dmirrored_.on_device(),
+          dL_dtransparency.on_device(),
+          dL_drays == nullptr ? nullptr : dL_drays->origins.array().device_for_reading(),
+          dL_drays == nullptr ? nullptr : dL_drays->directions.array().device_for_reading(),
+          dL_dinterface.features.on_device(),
+          dL_dinterface.depth_sum.on_device(),
+          dL_dinterface.alpha.on_device(),
+          dL_dinterface.normal.on_device()}
   );
 }
 

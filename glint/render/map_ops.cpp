@@ -15,7 +15,7 @@ void expected_depth_map(const RasterOutput& output, Image& depth) {
   run_kernel(
       depth.num_pixels(),
       kPixelGrain,
-      ExpectedDepth{output.depth_sum.data(), output.alpha.data(), depth.data()}
+      ExpectedDepth{output.depth_sum.on_device(), output.alpha.on_device(), depth.on_device()}
   );
 }
 
@@ -26,11 +26,11 @@ void expected_depth_map_vjp(
       dL_ddepth.num_pixels(),
       kPixelGrain,
       ExpectedDepthVjp{
-          output.depth_sum.data(),
-          output.alpha.data(),
-          dL_ddepth.data(),
-          dL_doutput.depth_sum.data(),
-          dL_doutput.alpha.data()}
+          output.depth_sum.on_device(),
+          output.alpha.on_device(),
+          dL_ddepth.on_device(),
+          dL_doutput.depth_sum.on_device(),
+          dL_doutput.alpha.on_device()}
   );
 }
 
@@ -46,7 +46,8 @@ void plane_depth_map(
   run_kernel(
       depth.num_pixels(),
       kPixelGrain,
-      PlaneDepth{pinhole_of<float>(camera), distance, normal, depth.ref()}
+      PlaneDepth{
+          pinhole_of<float>(camera), distance.on_device(), normal.on_device(), depth.on_device()}
   );
 }
 
@@ -63,17 +64,17 @@ void plane_depth_map_vjp(
       kPixelGrain,
       PlaneDepthVjp{
           pinhole_of<float>(camera),
-          distance,
-          normal,
-          dL_ddepth,
-          dL_ddistance.data(),
-          dL_dnormal.data()}
+          distance.on_device(),
+          normal.on_device(),
+          dL_ddepth.on_device(),
+          dL_ddistance.on_device(),
+          dL_dnormal.on_device()}
   );
 }
 
 void clear_image(Image& image, ImageSize size, int channels) {
   fit(image, size, channels);
-  fill(image.data(), image.values().size(), 0.0f);
+  image.array().fill(0.0f);
 }
 
 void clear_gradient(ImageSize size, int features, RasterOutputGradient& dL_doutput) {
@@ -85,20 +86,24 @@ void clear_gradient(ImageSize size, int features, RasterOutputGradient& dL_doutp
 
 Image unit_normals(const Image& normal) {
   Image result(normal.width(), normal.height(), 3);
-  run_kernel(normal.num_pixels(), kPixelGrain, UnitNormals{normal.data(), result.data()});
+  run_kernel(normal.num_pixels(), kPixelGrain, UnitNormals{normal.on_device(), result.on_device()});
   return result;
 }
 
 void copy_color(const Image& features, Image& color) {
   fit(color, features.size(), 3);
   run_kernel(
-      color.num_pixels(), kPixelGrain, CopyColor{features.data(), features.channels(), color.data()}
+      color.num_pixels(),
+      kPixelGrain,
+      CopyColor{features.on_device(), features.channels(), color.on_device()}
   );
 }
 
 void add_color(const Image& color, Image& features) {
   run_kernel(
-      color.num_pixels(), kPixelGrain, AddColor{color.data(), features.channels(), features.data()}
+      color.num_pixels(),
+      kPixelGrain,
+      AddColor{color.on_device(), features.channels(), features.on_device()}
   );
 }
 

@@ -25,7 +25,7 @@ class RasterBackend {
   virtual void first_surface(
       const RasterCall& call,
       const RasterOutput& output,
-      ImageView mask,
+      const Image& mask,
       const FirstSurfaceSettings& settings,
       Image& depth
   ) = 0;

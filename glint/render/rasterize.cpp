@@ -42,8 +42,8 @@ void check_call(const RasterCall& call) {
       input.near_limit.empty() || input.near_limit.size() == call.camera.size(),
       kUsage,
       "rasterize: near_limit is {}x{}, the camera {}x{}",
-      input.near_limit.width,
-      input.near_limit.height,
+      input.near_limit.size().width,
+      input.near_limit.size().height,
       call.camera.width,
       call.camera.height
   );
@@ -101,15 +101,17 @@ const RasterGradient& Rasterizer::backward(const RasterOutputGradient& dL_doutpu
   return state_->gradient;
 }
 
-void Rasterizer::first_surface(ImageView mask, const FirstSurfaceSettings& settings, Image& depth) {
+void Rasterizer::first_surface(
+    const Image& mask, const FirstSurfaceSettings& settings, Image& depth
+) {
   const RasterCall& call = state_->last_call();
   GLINT_CHECK(
-      mask.size() == call.camera.size() && mask.channels == 1,
+      mask.size() == call.camera.size() && mask.channels() == 1,
       kUsage,
       "first_surface: the mask is {}x{}x{}, expected the camera's {}x{}x1",
-      mask.width,
-      mask.height,
-      mask.channels,
+      mask.width(),
+      mask.height(),
+      mask.channels(),
       call.camera.width,
       call.camera.height
   );

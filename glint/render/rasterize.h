@@ -36,12 +36,12 @@ struct RasterSettings {
 struct RasterInput {
   std::size_t count = 0;
   int channels = 3;
-  std::span<const float> means;      // [N][3] world, metres
-  std::span<const float> scales;     // [N][2] > 0, metres
-  std::span<const float> rotations;  // [N][4] w x y z, need not be normalised
-  std::span<const float> opacities;  // [N] in [0, 1]
-  std::span<const float> features;   // [N][C]: colour after SH first, then extra channels
-  ImageView near_limit;              // optional [H][W][1]: only hits with z > limit count
+  Borrowed<float> means;      // [N][3] world, metres
+  Borrowed<float> scales;     // [N][2] > 0, metres
+  Borrowed<float> rotations;  // [N][4] w x y z, need not be normalised
+  Borrowed<float> opacities;  // [N] in [0, 1]
+  Borrowed<float> features;   // [N][C]: colour after SH first, then extra channels
+  BorrowedImage near_limit;   // optional [H][W][1]: only hits with z > limit count
 };
 
 // One rasterisation. Borrowed arrays must stay where and what they are until its backward().
@@ -107,7 +107,7 @@ class Rasterizer {
   // Of the last forward call: depth [H][W][1] of the first surface (first_surface.h), metres, 0:
   // none. mask [H][W][1]: pixels above 0.5 see something behind it. Errors (kUsage): the mask has
   // not the image's size; there was no forward().
-  void first_surface(ImageView mask, const FirstSurfaceSettings& settings, Image& depth);
+  void first_surface(const Image& mask, const FirstSurfaceSettings& settings, Image& depth);
 
   const RasterCall& call() const;      // the last one; errors (kUsage): there was none
   const RasterOutput& output() const;  // of it

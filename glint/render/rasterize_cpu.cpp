@@ -365,7 +365,7 @@ class RasterOnCpu final : public RasterBackend {
   void first_surface(
       const RasterCall& call,
       const RasterOutput& output,
-      ImageView mask,
+      const Image& mask,
       const FirstSurfaceSettings& settings,
       Image& depth
   ) override {

@@ -21,17 +21,17 @@ template <class F, class Cloud>
 CloudArrays<F> arrays_of(Cloud& c, const ActivationOptions& options) {
   const int num_extra = static_cast<int>(c.num_extra());
   CloudArrays<F> arrays{
-      c.means.data(),
-      c.log_scales.data(),
-      c.rotations.data(),
-      c.opacity_logits.data(),
-      c.sh_dc.data(),
-      c.sh_rest.data(),
-      c.extra_logits.data(),
+      c.means.on_device(),
+      c.log_scales.on_device(),
+      c.rotations.on_device(),
+      c.opacity_logits.on_device(),
+      c.sh_dc.on_device(),
+      c.sh_rest.on_device(),
+      c.extra_logits.on_device(),
       num_extra,
       options.color_only ? 0 : num_extra,
       options.opacity_factor,
-      options.color_offsets,
+      options.color_offsets == nullptr ? nullptr : options.color_offsets->device_for_reading(),
       {}};
   std::copy(c.extra_activations.begin(), c.extra_activations.end(), arrays.kinds);
   return arrays;
@@ -72,7 +72,9 @@ void activate_geometry(const SurfelCloud& cloud, ActivatedSurfels& activated) {
   run_lanes(
       cloud.size(),
       ActivateGeometry{
-          pointers(cloud, activated.options), activated.scales.data(), activated.opacities.data()}
+          pointers(cloud, activated.options),
+          activated.scales.on_device(),
+          activated.opacities.on_device()}
   );
 }
 
@@ -83,7 +85,7 @@ void activate(const SurfelCloud& cloud, Vec3f eye, int sh_degree, ActivatedSurfe
   run_lanes(
       cloud.size(),
       ActivateFeatures{
-          pointers(cloud, activated.options), eye, sh_degree, activated.features.data()}
+          pointers(cloud, activated.options), eye, sh_degree, activated.features.on_device()}
   );
 }
 
@@ -113,14 +115,14 @@ void activate_vjp(
           pointers(cloud, a.options),
           eye,
           sh_degree,
-          a.scales.data(),
-          a.opacities.data(),
-          a.features.data(),
-          {g.means.data(),
-           g.scales.data(),
-           g.rotations.data(),
-           g.opacities.data(),
-           g.features.data()},
+          a.scales.on_device(),
+          a.opacities.on_device(),
+          a.features.on_device(),
+          {g.means.on_device(),
+           g.scales.on_device(),
+           g.rotations.on_device(),
+           g.opacities.on_device(),
+           g.features.on_device()},
           pointers(dL_dcloud)}
   );
 }
@@ -128,7 +130,9 @@ void activate_vjp(
 void color_gradient(const RasterGradient& gradient, int channels, FloatArray& dL_dcolors) {
   const std::size_t count = gradient.features.size() / static_cast<std::size_t>(channels);
   dL_dcolors.resize(3 * count);
-  run_kernel(count, kGrain, CopyColor{gradient.features.data(), channels, dL_dcolors.data()});
+  run_kernel(
+      count, kGrain, CopyColor{gradient.features.on_device(), channels, dL_dcolors.on_device()}
+  );
 }
 
 TraceInput trace_input(const SurfelCloud& cloud, const ActivatedSurfels& activated, int sh_degree) {
@@ -151,14 +155,14 @@ void trace_activate_vjp(
       activated.opacities.size(),
       kGrain,
       TraceActivateVjp{
-          activated.scales.data(),
-          activated.opacities.data(),
-          {g.means.data(),
-           g.scales.data(),
-           g.rotations.data(),
-           g.opacities.data(),
-           g.sh_dc.data(),
-           g.sh_rest.data()},
+          activated.scales.on_device(),
+          activated.opacities.on_device(),
+          {g.means.on_device(),
+           g.scales.on_device(),
+           g.rotations.on_device(),
+           g.opacities.on_device(),
+           g.sh_dc.on_device(),
+           g.sh_rest.on_device()},
           pointers(dL_dcloud)}
   );
 }

@@ -17,7 +17,7 @@ struct ActivationOptions {
   bool color_only = false;     // without extra channels among the features
   // [N][3], added to the colours behind their clamp (LobeAppearance, say); null: nothing. They must
   // stay as they are until activate_vjp(); their gradient: color_gradient().
-  const float* color_offsets = nullptr;
+  const FloatArray* color_offsets = nullptr;
 };
 
 struct ActivatedSurfels {

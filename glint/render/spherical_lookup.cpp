@@ -31,7 +31,7 @@ std::size_t SphericalLookup::num_values() const {
   return shape_.num_texels(0) * static_cast<std::size_t>(shape_.channels);
 }
 
-void SphericalLookup::set_texels(std::span<const float> level0) {
+void SphericalLookup::set_texels(const FloatArray& level0) {
   GLINT_CHECK(
       level0.size() == num_values(),
       kUsage,
@@ -39,13 +39,13 @@ void SphericalLookup::set_texels(std::span<const float> level0) {
       level0.size(),
       num_values()
   );
-  run_kernel(level0.size(), kValueGrain, CopyValues{level0.data(), texels_.data()});
+  run_kernel(level0.size(), kValueGrain, CopyValues{level0.on_device(), texels_.on_device()});
   const auto channels = static_cast<std::size_t>(shape_.channels);
   for (int level = 1; level < shape_.levels; ++level)
     run_kernel(
         shape_.num_texels(level) * channels,
         kValueGrain,
-        BuildMapLevel{shape_, level, texels_.data()}
+        BuildMapLevel{shape_, level, texels_.on_device()}
     );
 }
 
@@ -56,16 +56,18 @@ const Image& SphericalLookup::look_up(const Image& directions, const Image& roug
   run_kernel(
       values_.num_pixels(),
       kGrain,
-      LookUpMap{shape_, texels_.data(), directions.data(), roughness.data(), values_.data()}
+      LookUpMap{
+          shape_,
+          texels_.on_device(),
+          directions.on_device(),
+          roughness.on_device(),
+          values_.on_device()}
   );
   return values_;
 }
 
 void SphericalLookup::look_up_vjp(
-    const Image& dL_dvalues,
-    Image& dL_ddirections,
-    Image& dL_droughness,
-    std::span<float> dL_dlevel0
+    const Image& dL_dvalues, Image& dL_ddirections, Image& dL_droughness, FloatArray& dL_dlevel0
 ) {
   GLINT_CHECK(directions_ != nullptr, kUsage, "a map over directions: nothing was looked up");
   fit(dL_ddirections, values_.size(), 3);
@@ -75,12 +77,12 @@ void SphericalLookup::look_up_vjp(
       kGrain,
       LookUpMapVjp{
           shape_,
-          texels_.data(),
-          directions_->data(),
-          roughness_->data(),
-          dL_dvalues.data(),
-          dL_ddirections.data(),
-          dL_droughness.data()}
+          texels_.on_device(),
+          directions_->on_device(),
+          roughness_->on_device(),
+          dL_dvalues.on_device(),
+          dL_ddirections.on_device(),
+          dL_droughness.on_device()}
   );
   texels_vjp(dL_dvalues, dL_dlevel0);
 }
@@ -98,37 +100,38 @@ void SphericalLookup::sort_taps() {
     if (keys_[i] != kNoTexel) taps_[next[keys_[i]]++] = static_cast<std::uint32_t>(i);
 }
 
-void SphericalLookup::texels_vjp(const Image& dL_dvalues, std::span<float> dL_dlevel0) {
+void SphericalLookup::texels_vjp(const Image& dL_dvalues, FloatArray& dL_dlevel0) {
   const std::size_t pixels = values_.num_pixels();
   keys_.resize(2 * pixels);
   weights_.resize(2 * pixels);
   run_kernel(
       pixels,
       kGrain,
-      MapTaps{shape_, directions_->data(), roughness_->data(), keys_.data(), weights_.data()}
+      MapTaps{
+          shape_, directions_->on_device(), roughness_->on_device(), keys_.on_device(), weights_.on_device()}
   );
   sort_taps();
   dL_dtexels_.resize(texels_.size());
-  fill(dL_dtexels_.data(), dL_dtexels_.size(), 0.0f);
+  dL_dtexels_.fill(0.0f);
   const auto channels = static_cast<std::size_t>(shape_.channels);
   run_kernel(
       shape_.first_texel(shape_.levels),
       kGrain,
       GatherMapTexels{
           shape_,
-          dL_dvalues.data(),
-          weights_.data(),
-          begins_.data(),
-          taps_.data(),
-          dL_dtexels_.data()}
+          dL_dvalues.on_device(),
+          weights_.on_device(),
+          begins_.on_device(),
+          taps_.on_device(),
+          dL_dtexels_.on_device()}
   );
   for (int level = shape_.levels - 1; level > 0; --level)
     run_kernel(
         shape_.num_texels(level - 1) * channels,
         kValueGrain,
-        BuildMapLevelVjp{shape_, level, dL_dtexels_.data()}
+        BuildMapLevelVjp{shape_, level, dL_dtexels_.on_device()}
     );
-  run_kernel(num_values(), kValueGrain, AddValues{dL_dtexels_.data(), dL_dlevel0.data()});
+  run_kernel(num_values(), kValueGrain, AddValues{dL_dtexels_.on_device(), dL_dlevel0.on_device()});
 }
 
 }  // namespace glint

@@ -21,7 +21,7 @@ class SphericalLookup {
 
   // Makes the levels of these values of level 0; once after they have changed. Errors (kUsage):
   // not num_values().
-  void set_texels(std::span<const float> level0);
+  void set_texels(const FloatArray& level0);
   // directions: [H][W][3] unit, world; zero: the value is zero. roughness: [H][W][1]; below 0 and
   // above 1 as those. Both must stay as they are until look_up_vjp(). Returns [H][W][channels],
   // valid until the next call.
@@ -30,15 +30,12 @@ class SphericalLookup {
   // adds to dL_dlevel0. On the CPU the same bytes for any number of threads. On a GPU it waits for
   // the device: look-ups are sorted by texel on the host.
   void look_up_vjp(
-      const Image& dL_dvalues,
-      Image& dL_ddirections,
-      Image& dL_droughness,
-      std::span<float> dL_dlevel0
+      const Image& dL_dvalues, Image& dL_ddirections, Image& dL_droughness, FloatArray& dL_dlevel0
   );
 
  private:
   void sort_taps();
-  void texels_vjp(const Image& dL_dvalues, std::span<float> dL_dlevel0);
+  void texels_vjp(const Image& dL_dvalues, FloatArray& dL_dlevel0);
 
   MapShape shape_;
   FloatArray texels_, dL_dtexels_;  // all levels

@@ -12,7 +12,7 @@ const RasterOutput& SurfelSet::forward(
     const Camera& camera,
     int sh_degree,
     const RasterSettings& settings,
-    ImageView near_limit
+    BorrowedImage near_limit
 ) const {
   pass.sh_degree = sh_degree;
   activate(cloud_, cast<float>(camera.center()), sh_degree, pass.activated);

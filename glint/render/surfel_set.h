@@ -31,7 +31,7 @@ class SurfelSet {
       const Camera& camera,
       int sh_degree,
       const RasterSettings& settings = {},
-      ImageView near_limit = {}
+      BorrowedImage near_limit = {}
   ) {
     return forward(pass_, camera, sh_degree, settings, near_limit);
   }
@@ -41,13 +41,13 @@ class SurfelSet {
       const Camera& camera,
       int sh_degree,
       const RasterSettings& settings = {},
-      ImageView near_limit = {}
+      BorrowedImage near_limit = {}
   ) const;
   // The same for rays, which must stay as they are until trace_backward().
   const TraceOutput& trace(const Rays& rays, int sh_degree, const TraceSettings& settings = {});
 
   // Depth of the first surface of what the first of them rasterised last, see Rasterizer.
-  void first_surface(ImageView mask, const FirstSurfaceSettings& settings, Image& depth) {
+  void first_surface(const Image& mask, const FirstSurfaceSettings& settings, Image& depth) {
     pass_.rasterizer.first_surface(mask, settings, depth);
   }
 

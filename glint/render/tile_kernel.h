@@ -101,7 +101,7 @@ struct TilePixels {
                           (y[g] < T(static_cast<float>(tile.size.height)));
       transmittance[g] = select(inside, T(1), T(0));
       nearest[g] = T(tile.call.settings.near_plane);
-      const ImageView& limit = tile.call.input.near_limit;
+      const ImageView limit = tile.call.input.near_limit.view();
       if (!limit.empty()) nearest[g] = max_of(nearest[g], load_pixels<T>(tile, limit, g, 0, 0.0f));
     }
   }

@@ -41,12 +41,12 @@ struct TraceSettings {
 struct TraceInput {
   std::size_t count = 0;
   int sh_degree = 3;
-  std::span<const float> means;      // [N][3] world, metres
-  std::span<const float> scales;     // [N][2] > 0, metres
-  std::span<const float> rotations;  // [N][4] w x y z, need not be normalised
-  std::span<const float> opacities;  // [N] in [0, 1]
-  std::span<const float> sh_dc;      // [N][3]
-  std::span<const float> sh_rest;    // [N][15][3]
+  Borrowed<float> means;      // [N][3] world, metres
+  Borrowed<float> scales;     // [N][2] > 0, metres
+  Borrowed<float> rotations;  // [N][4] w x y z, need not be normalised
+  Borrowed<float> opacities;  // [N] in [0, 1]
+  Borrowed<float> sh_dc;      // [N][3]
+  Borrowed<float> sh_rest;    // [N][15][3]
 };
 // scales and opacities of `activated`; its features are not used.
 TraceInput trace_input(const SurfelCloud& cloud, const ActivatedSurfels& activated, int sh_degree);

@@ -50,7 +50,8 @@ struct AdamArrays {
 
 template <bool kOneRate>
 void update(const AdamArrays& a, float correction1, float correction2) {
-  AdamKernel<kOneRate> kernel{a.p->data(), a.g->data(), a.m->data(), a.v->data(), {}, 0, 0};
+  AdamKernel<kOneRate> kernel{
+      a.p->on_device(), a.g->on_device(), a.m->on_device(), a.v->on_device(), {}, 0, 0};
   kernel.columns = a.rates.size();
   kernel.scale_v = 1 / correction2;
   for (std::size_t c = 0; c < a.rates.size(); ++c) kernel.rates[c] = a.rates[c] / correction1;

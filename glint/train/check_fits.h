@@ -9,18 +9,19 @@
 namespace glint {
 
 // Throws unless the image has the map's size and as many channels as expected.
-inline void check_fits(
-    std::string_view name, ImageView image, ImageSize expected, int expected_channels
+template <class Image>
+void check_fits(
+    std::string_view name, const Image& image, ImageSize expected, int expected_channels
 ) {
   GLINT_CHECK(
-      image.size() == expected && image.channels == expected_channels,
+      image.size() == expected && image.channels() == expected_channels,
       kBadReference,
       "{}: {}x{} pixels with {} channels found, {}x{} with {} expected, as the rendered map; "
       "resize it to its view's image",
       name,
-      image.width,
-      image.height,
-      image.channels,
+      image.size().width,
+      image.size().height,
+      image.channels(),
       expected.width,
       expected.height,
       expected_channels

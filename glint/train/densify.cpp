@@ -118,7 +118,7 @@ DensifyStatistics Densifier::statistics(std::size_t count) {
   gradient_sum_.resize(count, 0.0f);
   weight_sum_.resize(count, 0.0f);
   views_.resize(count, 0);
-  return {gradient_sum_.data(), weight_sum_.data(), views_.data()};
+  return {gradient_sum_.on_device(), weight_sum_.on_device(), views_.on_device()};
 }
 
 float Densifier::scale_of(int rows) const {
@@ -128,12 +128,17 @@ float Densifier::scale_of(int rows) const {
 void Densifier::observe(const RasterOutput& output, const RasterGradient& gradient) {
   const std::size_t count = output.in_view.size();
   const float scale = scale_of(output.alpha.height());
-  const float* visibility = output.visibility.size() == count ? output.visibility.data() : nullptr;
+  const float* visibility =
+      output.visibility.size() == count ? output.visibility.device_for_reading() : nullptr;
   run_kernel(
       count,
       kGrain,
       ObserveRaster{
-          statistics(count), output.in_view.data(), gradient.screen.data(), visibility, scale}
+          statistics(count),
+          output.in_view.on_device(),
+          gradient.screen.on_device(),
+          visibility,
+          scale}
   );
   const bool has_footprints = !gradient.screen_abs.empty() && !output.radii.empty();
   GLINT_CHECK(
@@ -153,12 +158,12 @@ void Densifier::observe_footprints(const RasterOutput& output, const RasterGradi
       count,
       kGrain,
       ObserveFootprint{
-          output.in_view.data(),
-          gradient.screen_abs.data(),
-          output.radii.data(),
+          output.in_view.on_device(),
+          gradient.screen_abs.on_device(),
+          output.radii.on_device(),
           scale_of(output.alpha.height()),
-          abs_sum_.data(),
-          max_radius_.data()}
+          abs_sum_.on_device(),
+          max_radius_.on_device()}
   );
 }
 
@@ -169,8 +174,8 @@ void Densifier::observe(const TraceGradient& gradient, int rows) {
       kGrain,
       ObserveTrace{
           statistics(count),
-          gradient.visibility.data(),
-          gradient.half_depths.data(),
+          gradient.visibility.on_device(),
+          gradient.half_depths.on_device(),
           scale_of(rows)}
   );
 }

@@ -23,23 +23,24 @@ class DepthNormalLoss {
       Image& dL_dnormal,
       Image& dL_ddepth
   ) {
-    const Unprojector unproject = unprojector(camera, depth);
+    const Unprojector unproject = unprojector(camera, depth.on_device());
     fit(dL_dx_, depth.size(), 3);
     fit(dL_dy_, depth.size(), 3);
     const At loss_at{
         unproject,
-        normal,
-        alpha,
-        pixel_factor,
+        normal.on_device(),
+        alpha.on_device(),
+        pixel_factor.on_device(),
         weight / static_cast<float>(depth.num_pixels()),
-        dL_dnormal.ref(),
-        dL_dx_.ref(),
-        dL_dy_.ref()};
+        dL_dnormal.on_device(),
+        dL_dx_.on_device(),
+        dL_dy_.on_device()};
     const double sum = sum_kernel(depth.size(), loss_at);
     run_kernel(
         depth.num_pixels(),
         kGrain,
-        ConsistencyDepthVjp{unproject, dL_dx_.view(), dL_dy_.view(), dL_ddepth.ref()}
+        ConsistencyDepthVjp{
+            unproject, dL_dx_.on_device(), dL_dy_.on_device(), dL_ddepth.on_device()}
     );
     return sum / static_cast<double>(depth.num_pixels());
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "glint/core/kernel.h"
+#include "glint/train/depth_prior.h"
 #include "glint/train/pixel_access.h"
 
 namespace glint {
@@ -39,20 +40,45 @@ struct DepthMomentsAt {
   }
 };
 
-// The fit of the prior to the depth, at the precision of T.
+// The least-squares fit of the prior, from its sums.
+struct FitDepthPrior {
+  // A relative variance of the depths below this is rounding of float: no slope can be fitted.
+  static constexpr double kConstantDepth = 1e-12;
+  const DepthMoments* moments;
+  DepthPriorFit* fit;
+
+  GLINT_HD void operator()(std::size_t) const { *fit = fit_of(*moments); }
+  GLINT_HD static DepthPriorFit fit_of(const DepthMoments& sum) {
+    DepthPriorFit fit;
+    if (sum.pixels < 2) return fit;
+    fit.weight_sum = sum.m;
+    fit.mean_depth = sum.z / sum.m;
+    fit.mean_prior = sum.p / sum.m;
+    fit.depth_variation = sum.zz - sum.z * fit.mean_depth;
+    if (!(fit.depth_variation > kConstantDepth * sum.zz)) return fit;
+    fit.scale = (sum.zp - sum.z * fit.mean_prior) / fit.depth_variation;
+    fit.shift = fit.mean_prior - fit.scale * fit.mean_depth;
+    fit.valid = true;
+    return fit;
+  }
+};
+
+// With that fit, at the precision of T; where it is not valid, no pixel counts.
 template <class T>
 struct FittedPairs {
   DepthPairs<T> pairs;
-  T scale, shift, mean_depth, mean_prior, depth_variation;
+  const DepthPriorFit* fit;
 
+  GLINT_HD T scale() const { return static_cast<T>(fit->scale); }
+  GLINT_HD T weight(int x, int y) const { return fit->valid ? pairs.weight(x, y) : T(0); }
   GLINT_HD T residual(int x, int y) const {
-    return scale * pairs.z(x, y) + shift - pairs.target(x, y);
+    return scale() * pairs.z(x, y) + static_cast<T>(fit->shift) - pairs.target(x, y);
   }
   // dw/dz without the factor m.
   GLINT_HD T dscale_dz(int x, int y) const {
-    const T prior_offset = pairs.target(x, y) - mean_prior;
-    const T depth_offset = pairs.z(x, y) - mean_depth;
-    return (prior_offset - 2 * scale * depth_offset) / depth_variation;
+    const T prior_offset = pairs.target(x, y) - static_cast<T>(fit->mean_prior);
+    const T depth_offset = pairs.z(x, y) - static_cast<T>(fit->mean_depth);
+    return (prior_offset - 2 * scale() * depth_offset) / static_cast<T>(fit->depth_variation);
   }
 };
 
@@ -71,12 +97,12 @@ template <class T>
 struct MatchGradients {
   FittedPairs<T> fitted;
   int stride;
-  T scale;
+  const double* scale;
   BasicImageRef<T> dL_dresidual;
 
   GLINT_HD double operator()(int i, int j) const {
     const int x = i * stride, y = j * stride;
-    if (!(fitted.pairs.weight(x, y) > 0)) return 0;
+    if (!(fitted.weight(x, y) > 0)) return 0;
     const double right = difference(x, y, x + stride, y), down = difference(x, y, x, y + stride);
     difference(x, y, x - stride, y);  // these two count with that pixel
     difference(x, y, x, y - stride);
@@ -91,7 +117,7 @@ struct MatchGradients {
     const T pair_weight = pairs.weight(x, y) * pairs.weight(nx, ny);
     if (!(pair_weight > 0)) return 0;
     const T difference = fitted.residual(x, y) - fitted.residual(nx, ny);
-    dL_dresidual.at(x, y) += scale * pair_weight * sign_of(difference);
+    dL_dresidual.at(x, y) += static_cast<T>(*scale) * pair_weight * sign_of(difference);
     return static_cast<double>(pair_weight * abs_of(difference));
   }
 };
@@ -108,25 +134,28 @@ struct MatchingScaleVjp {
 template <class T>
 struct DepthPriorAt {
   FittedPairs<T> fitted;
-  BasicImageView<T> matching;  // dL/d(residual) of gradient matching, may be empty
-  T matching_scale;            // and of the fit's scale
-  T per_weight, weight;
+  BasicImageView<T> matching;    // dL/d(residual) of gradient matching, may be empty
+  const double* matching_scale;  // and of the fit's scale; null: none
+  T weight;
   BasicImageRef<T> dL_ddepth;
 
   GLINT_HD double operator()(int x, int y) const {
-    const T m = fitted.pairs.weight(x, y);
+    const T m = fitted.weight(x, y);
     if (!(m > 0)) return 0.0;
+    const T per_weight = static_cast<T>(1 / fitted.fit->weight_sum);
     const T residual = fitted.residual(x, y);
     const T matched = matching.empty() ? T(0) : matching.at(x, y);
     const T dL_dresidual = 2 * per_weight * m * residual + matched;
-    const T through_scale = matching_scale * m * fitted.dscale_dz(x, y);
-    dL_ddepth.at(x, y) += weight * (fitted.scale * dL_dresidual + through_scale);
+    const T dL_dscale = matching_scale == nullptr ? T(0) : static_cast<T>(*matching_scale);
+    const T through_scale = dL_dscale * m * fitted.dscale_dz(x, y);
+    dL_ddepth.at(x, y) += weight * (fitted.scale() * dL_dresidual + through_scale);
     return static_cast<double>(m * residual * residual);
   }
 };
 
 using DepthPriorKernels = KernelList<
     DepthMomentsAt<float>,
+    FitDepthPrior,
     StridedWeight<float>,
     MatchGradients<float>,
     MatchingScaleVjp<float>,

@@ -45,12 +45,14 @@ PhotometricTerms ExposureLoss::evaluate(
   run_kernel(
       rendered.values().size(),
       4096,
-      Expose{rendered.data(), gain, static_cast<float>(exposure.offset), exposed_.data()}
+      Expose{rendered.on_device(), gain, static_cast<float>(exposure.offset), exposed_.on_device()}
   );
   clear_image(dL_dexposed_, rendered.size(), 3);
   terms.l1 = photometric_.evaluate(exposed_, target, l1, dL_dexposed_).l1;
-  const ExposureGradient sum =
-      sum_kernel(rendered.size(), ExposeVjp{rendered, dL_dexposed_, gain, gradient.ref()});
+  const ExposureGradient sum = sum_kernel(
+      rendered.size(),
+      ExposeVjp{rendered.on_device(), dL_dexposed_.on_device(), gain, gradient.on_device()}
+  );
   exposure.adam_step(
       static_cast<double>(gain) * sum.gain, sum.offset, static_cast<double>(config_.rate)
   );

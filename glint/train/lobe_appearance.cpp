@@ -38,7 +38,9 @@ LobeAppearanceConfig LobeAppearanceConfig::real() {
 
 void world_normals(const SurfelCloud& cloud, FloatArray& normals) {
   normals.resize(3 * cloud.size());
-  run_kernel(cloud.size(), 4 * kGrain, WorldNormals{cloud.rotations.data(), normals.data()});
+  run_kernel(
+      cloud.size(), 4 * kGrain, WorldNormals{cloud.rotations.on_device(), normals.on_device()}
+  );
 }
 
 void mark_in_pyramid(const SurfelCloud& cloud, const Camera& camera, Array<std::uint8_t>& visible) {
@@ -47,12 +49,12 @@ void mark_in_pyramid(const SurfelCloud& cloud, const Camera& camera, Array<std::
       cloud.size(),
       4 * kGrain,
       MarkInPyramid{
-          cloud.means.data(),
-          cloud.log_scales.data(),
+          cloud.means.on_device(),
+          cloud.log_scales.on_device(),
           pinhole_of<float>(camera),
           cast<float>(camera.rotation_cam_from_world),
           cast<float>(camera.translation_cam_from_world),
-          visible.data()}
+          visible.on_device()}
   );
 }
 
@@ -82,7 +84,7 @@ LobeAppearance::LobeAppearance(
 }
 
 // On the host: how many there are decides the sizes of what follows.
-void LobeAppearance::find_visible(std::span<const std::uint8_t> visible) {
+void LobeAppearance::find_visible(const Array<std::uint8_t>& visible) {
   synchronize();
   surfels_.clear();
   for (std::size_t i = 0; i < visible.size(); ++i)
@@ -90,10 +92,10 @@ void LobeAppearance::find_visible(std::span<const std::uint8_t> visible) {
 }
 
 const FloatArray& LobeAppearance::forward(
-    std::span<const float> means,
-    std::span<const float> normals,
+    const FloatArray& means,
+    const FloatArray& normals,
     Vec3f eye,
-    std::span<const std::uint8_t> visible
+    const Array<std::uint8_t>& visible
 ) {
   GLINT_CHECK(
       means.size() == 3 * count_ && normals.size() == 3 * count_ && visible.size() == count_,
@@ -105,13 +107,14 @@ const FloatArray& LobeAppearance::forward(
       visible.size()
   );
   find_visible(visible);
-  view_ = {means.data(), normals.data(), eye, config_.lobe_reflection};
+  view_ = {means.on_device(), normals.on_device(), eye, config_.lobe_reflection};
   const std::size_t m = surfels_.size(), width = static_cast<std::size_t>(config_.lobe_feature);
   seen_features_.resize(m * width);
   run_kernel(
       m * width,
       kGrain * width,
-      GatherRows{features_.values.data(), surfels_.data(), width, seen_features_.data()}
+      GatherRows{
+          features_.values.on_device(), surfels_.on_device(), width, seen_features_.on_device()}
   );
   numbers_ = &to_lobes_.forward(seen_features_);
   const auto input = static_cast<std::size_t>(config_.input_width());
@@ -120,18 +123,20 @@ const FloatArray& LobeAppearance::forward(
       m,
       kGrain,
       LobeInputs{
-          surfels_.data(),
+          surfels_.on_device(),
           view_,
-          frames_.data(),
+          frames_.on_device(),
           frames_.size(),
           input,
-          numbers_->data(),
-          inputs_.data()}
+          numbers_->on_device(),
+          inputs_.on_device()}
   );
   const FloatArray& colors = to_color_.forward(inputs_);
   offsets_.resize(3 * count_);
-  fill(offsets_.data(), offsets_.size(), 0.0f);
-  run_kernel(3 * m, kGrain, AddToRows{colors.data(), surfels_.data(), 3, offsets_.data()});
+  offsets_.fill(0.0f);
+  run_kernel(
+      3 * m, kGrain, AddToRows{colors.on_device(), surfels_.on_device(), 3, offsets_.on_device()}
+  );
   return offsets_;
 }
 
@@ -146,7 +151,7 @@ void LobeAppearance::backward(const RasterGradient& gradient, int channels) {
   backward(dL_doffsets_);
 }
 
-void LobeAppearance::backward(std::span<const float> dL_doffsets) {
+void LobeAppearance::backward(const FloatArray& dL_doffsets) {
   GLINT_CHECK(
       numbers_ != nullptr && dL_doffsets.size() == offsets_.size(),
       kUsage,
@@ -156,29 +161,34 @@ void LobeAppearance::backward(std::span<const float> dL_doffsets) {
   );
   const std::size_t m = surfels_.size(), width = static_cast<std::size_t>(config_.lobe_feature);
   dL_dcolors_.resize(3 * m);
-  run_kernel(3 * m, kGrain, GatherRows{dL_doffsets.data(), surfels_.data(), 3, dL_dcolors_.data()});
+  run_kernel(
+      3 * m,
+      kGrain,
+      GatherRows{dL_doffsets.on_device(), surfels_.on_device(), 3, dL_dcolors_.on_device()}
+  );
   dL_dinputs_.resize(inputs_.size());
-  to_color_.backward(dL_dcolors_, dL_dinputs_);
+  to_color_.backward(dL_dcolors_, &dL_dinputs_);
   dL_dnumbers_.resize(numbers_->size());
   run_kernel(
       m,
       kGrain,
       LobeInputsVjp{
-          surfels_.data(),
+          surfels_.on_device(),
           view_,
-          frames_.data(),
+          frames_.on_device(),
           frames_.size(),
           static_cast<std::size_t>(config_.input_width()),
-          numbers_->data(),
-          dL_dinputs_.data(),
-          dL_dnumbers_.data()}
+          numbers_->on_device(),
+          dL_dinputs_.on_device(),
+          dL_dnumbers_.on_device()}
   );
   dL_dfeatures_.resize(seen_features_.size());
-  to_lobes_.backward(dL_dnumbers_, dL_dfeatures_);
+  to_lobes_.backward(dL_dnumbers_, &dL_dfeatures_);
   run_kernel(
       m * width,
       kGrain * width,
-      AddToRows{dL_dfeatures_.data(), surfels_.data(), width, features_.gradient.data()}
+      AddToRows{
+          dL_dfeatures_.on_device(), surfels_.on_device(), width, features_.gradient.on_device()}
   );
 }
 

@@ -70,15 +70,15 @@ class LobeAppearance {
   // All must stay as they are until backward(). The result is valid until the next call. Errors
   // (kUsage): arrays of another number of surfels.
   const FloatArray& forward(
-      std::span<const float> means,
-      std::span<const float> normals,
+      const FloatArray& means,
+      const FloatArray& normals,
       Vec3f eye,
-      std::span<const std::uint8_t> visible
+      const Array<std::uint8_t>& visible
   );
   // The same for a cloud as a camera sees it, which must stay as it is until backward().
   const FloatArray& forward(const SurfelCloud& cloud, const Camera& camera);
   // Adds dL/d(features and weights) of the last forward(). Positions and normals are constants.
-  void backward(std::span<const float> dL_doffsets);
+  void backward(const FloatArray& dL_doffsets);
   // The same from what was rasterised with the offsets; channels: of its features.
   void backward(const RasterGradient& gradient, int channels);
   // An optimiser step, the networks' rate at step `step` of `steps`.
@@ -96,7 +96,7 @@ class LobeAppearance {
   void check_finite(const std::string& name) const;
 
  private:
-  void find_visible(std::span<const std::uint8_t> visible);
+  void find_visible(const Array<std::uint8_t>& visible);
 
   LobeAppearanceConfig config_;
   std::size_t count_ = 0;

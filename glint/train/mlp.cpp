@@ -82,12 +82,12 @@ std::span<float> Mlp::biases(std::size_t index) {
   return {parameters_.values.data() + l.biases, l.out};
 }
 
-const FloatArray& Mlp::forward(std::span<const float> inputs) {
+const FloatArray& Mlp::forward(const FloatArray& inputs) {
   const std::size_t in = layers_.front().in;
   GLINT_CHECK(
       inputs.size() % in == 0, kUsage, "network: {} inputs are no rows of {}", inputs.size(), in
   );
-  inputs_ = inputs;
+  inputs_ = &inputs;
   rows_ = inputs.size() / in;
   for (std::size_t l = 0; l < layers_.size(); ++l) outputs_[l].resize(rows_ * layers_[l].out);
   if (on_gpu())
@@ -100,7 +100,7 @@ const FloatArray& Mlp::forward(std::span<const float> inputs) {
 }
 
 void Mlp::forward_rows(std::size_t begin, std::size_t end) {
-  const float* x = inputs_.data() + begin * layers_.front().in;
+  const float* x = inputs_->data() + begin * layers_.front().in;
   for (std::size_t l = 0; l < layers_.size(); ++l) {
     const Layer& at = layers_[l];
     const float* parameters = parameters_.values.data();
@@ -115,38 +115,39 @@ void Mlp::forward_rows(std::size_t begin, std::size_t end) {
 void Mlp::backward_rows(
     std::size_t begin,
     std::size_t end,
-    std::span<const float> dL_doutputs,
-    std::span<float> dL_dinputs,
+    const float* dL_doutputs,
+    float* dL_dinputs,
     float* dL_dparameters
 ) const {
   const std::size_t rows = end - begin;
   const std::size_t last = layers_.size() - 1;
-  Matrix g = matrix(dL_doutputs.data() + begin * layers_[last].out, rows, layers_[last].out);
+  Matrix g = matrix(dL_doutputs + begin * layers_[last].out, rows, layers_[last].out);
   for (std::size_t l = last;; --l) {
     const Layer& at = layers_[l];
-    const float* x = (l == 0 ? inputs_.data() : outputs_[l - 1].data()) + begin * at.in;
+    const float* x = (l == 0 ? inputs_->data() : outputs_[l - 1].data()) + begin * at.in;
     const auto inputs = matrix(x, rows, at.in);
     matrix(dL_dparameters + at.weights, at.in, at.out).noalias() += inputs.transpose() * g;
     row(dL_dparameters + at.biases, at.out) += g.colwise().sum();
-    if (l == 0 && dL_dinputs.empty()) return;
+    if (l == 0 && dL_dinputs == nullptr) return;
     const auto weights = matrix(parameters_.values.data() + at.weights, at.in, at.out);
     Matrix dL_dx = g * weights.transpose();
     if (l == 0) {
-      matrix(dL_dinputs.data() + begin * at.in, rows, at.in) = dL_dx;
+      matrix(dL_dinputs + begin * at.in, rows, at.in) = dL_dx;
       return;
     }
     g = (inputs.array() > 0).select(dL_dx, 0.0f);
   }
 }
 
-void Mlp::backward(std::span<const float> dL_doutputs, std::span<float> dL_dinputs) {
+void Mlp::backward(const FloatArray& dL_doutputs, FloatArray* dL_dinputs) {
   const std::size_t in = layers_.front().in, out = layers_.back().out;
   GLINT_CHECK(
-      dL_doutputs.size() == rows_ * out && (dL_dinputs.empty() || dL_dinputs.size() == rows_ * in),
+      dL_doutputs.size() == rows_ * out &&
+          (dL_dinputs == nullptr || dL_dinputs->size() == rows_ * in),
       kUsage,
       "network: gradients of {} outputs and {} inputs for {} rows of {} and {}",
       dL_doutputs.size(),
-      dL_dinputs.size(),
+      dL_dinputs == nullptr ? 0 : dL_dinputs->size(),
       rows_,
       out,
       in
@@ -157,25 +158,29 @@ void Mlp::backward(std::span<const float> dL_doutputs, std::span<float> dL_dinpu
   if (on_gpu()) {
     backward_on_gpu(dL_doutputs, dL_dinputs);
   } else {
+    const float* g = dL_doutputs.data();
+    float* g_inputs = dL_dinputs == nullptr ? nullptr : dL_dinputs->data();
     parallel_for(chunks, 1, [&](std::size_t chunk) {
       float* sums = partials_.data() + chunk * parameters_.size();
       std::fill_n(sums, parameters_.size(), 0.0f);
       const std::size_t end = std::min((chunk + 1) * a_chunk, rows_);
       for (std::size_t begin = chunk * a_chunk; begin < end; begin += kBlock)
-        backward_rows(begin, std::min(begin + kBlock, end), dL_doutputs, dL_dinputs, sums);
+        backward_rows(begin, std::min(begin + kBlock, end), g, g_inputs, sums);
     });
   }
   const std::size_t count = parameters_.size();
   run_kernel(
-      count, kGrain, MlpSumPartials{partials_.data(), chunks, count, parameters_.gradient.data()}
+      count,
+      kGrain,
+      MlpSumPartials{partials_.on_device(), chunks, count, parameters_.gradient.on_device()}
   );
 }
 
 void Mlp::forward_on_gpu() {
-  const float* x = inputs_.data();
+  const float* x = inputs_->on_device();
+  const float* parameters = parameters_.values.on_device();
   for (std::size_t l = 0; l < layers_.size(); ++l) {
     const Layer& at = layers_[l];
-    const float* parameters = parameters_.values.data();
     run_kernel(
         rows_ * at.out,
         kGrain,
@@ -186,28 +191,28 @@ void Mlp::forward_on_gpu() {
             at.in,
             at.out,
             l + 1 < layers_.size(),
-            outputs_[l].data()}
+            outputs_[l].on_device()}
     );
-    x = outputs_[l].data();
+    x = outputs_[l].on_device();
   }
 }
 
-void Mlp::backward_on_gpu(std::span<const float> dL_doutputs, std::span<float> dL_dinputs) {
+void Mlp::backward_on_gpu(const FloatArray& dL_doutputs, FloatArray* dL_dinputs) {
   const std::size_t a_chunk = rows_a_chunk(rows_), chunks = (rows_ + a_chunk - 1) / a_chunk;
-  const float* g = dL_doutputs.data();
+  const float* g = dL_doutputs.on_device();
+  const float* parameters = std::as_const(parameters_.values).on_device();
   for (std::size_t l = layers_.size(); l-- > 0;) {
     const Layer& at = layers_[l];
-    const float* x = l == 0 ? inputs_.data() : outputs_[l - 1].data();
-    float* sums = partials_.data() + at.weights;
+    const float* x = (l == 0 ? *inputs_ : outputs_[l - 1]).device_for_reading();
+    float* sums = partials_.device_for_writing() + at.weights;
     run_kernel(
         chunks * (at.in + 1) * at.out,
         kGrain,
         MlpLayerWeightVjp{x, g, rows_, a_chunk, at.in, at.out, sums, parameters_.size()}
     );
-    if (l == 0 && dL_dinputs.empty()) return;
+    if (l == 0 && dL_dinputs == nullptr) return;
     if (l > 0) dL_doutput_[l - 1].resize(rows_ * at.in);
-    float* dL_dx = l == 0 ? dL_dinputs.data() : dL_doutput_[l - 1].data();
-    const float* parameters = parameters_.values.data();
+    float* dL_dx = (l == 0 ? *dL_dinputs : dL_doutput_[l - 1]).device_for_writing();
     run_kernel(
         rows_ * at.in,
         kGrain,

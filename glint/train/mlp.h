@@ -32,11 +32,11 @@ class Mlp {
 
   // inputs: [rows][widths.front()]; they must stay as they are until backward(). Returns
   // [rows][widths.back()], valid until the next call.
-  const FloatArray& forward(std::span<const float> inputs);
+  const FloatArray& forward(const FloatArray& inputs);
   // Back through the last forward(): adds to the parameters' gradient, and fills dL_dinputs
   // [rows][widths.front()] unless it is empty. dL_doutputs: [rows][widths.back()]. On the CPU the
   // same bytes for any number of threads.
-  void backward(std::span<const float> dL_doutputs, std::span<float> dL_dinputs);
+  void backward(const FloatArray& dL_doutputs, FloatArray* dL_dinputs);
 
   // As tensors "name.0.weight" [in][out], "name.0.bias" [out], ... that borrow the parameters.
   std::vector<TensorToWrite> tensors(const std::string& name) const;
@@ -52,17 +52,17 @@ class Mlp {
   void backward_rows(
       std::size_t begin,
       std::size_t end,
-      std::span<const float> dL_doutputs,
-      std::span<float> dL_dinputs,
+      const float* dL_doutputs,
+      float* dL_dinputs,
       float* dL_dparameters
   ) const;
   void forward_on_gpu();
-  void backward_on_gpu(std::span<const float> dL_doutputs, std::span<float> dL_dinputs);
+  void backward_on_gpu(const FloatArray& dL_doutputs, FloatArray* dL_dinputs);
 
   std::vector<int> widths_;
   std::vector<Layer> layers_;
   TrainableArray parameters_;
-  std::span<const float> inputs_;
+  const FloatArray* inputs_ = nullptr;
   std::size_t rows_ = 0;
   std::vector<FloatArray> outputs_;     // [rows][out] of each layer, behind its ReLU
   std::vector<FloatArray> dL_doutput_;  // on a GPU: the same for gradients

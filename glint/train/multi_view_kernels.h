@@ -22,7 +22,7 @@ struct CountedSum {
     count += o.count;
     return *this;
   }
-  double mean() const { return count > 0 ? sum / count : 0.0; }
+  double mean() const { return count == 0 ? 0.0 : sum / count; }
 };
 
 // w e of each reference pixel, with e the reprojection error and w = exp(-e) held constant.
@@ -118,7 +118,7 @@ struct PatchSimilarityAt {
   CameraPair<T> pair;
   ImageView gray, neighbor_gray;               // [H][W][1]
   BasicImageView<T> normal, distance, weight;  // [H][W][3], [H][W][1] metres, [H][W][1] w
-  PixelSample sample;
+  const PixelSample* sample;
   T max_dissimilarity;
   BasicImageRef<T> dL_dnormal, dL_ddistance;  // written
 
@@ -135,7 +135,7 @@ struct PatchSimilarityAt {
   GLINT_HD bool counts(int x, int y) const {
     return weight.at(x, y) > T(0) && distance.at(x, y) > T(0) && x >= kPatchRadius &&
            y >= kPatchRadius && x + kPatchRadius < gray.width && y + kPatchRadius < gray.height &&
-           sample.takes(static_cast<std::uint32_t>(y * gray.width + x));
+           sample->takes(static_cast<std::uint32_t>(y * gray.width + x));
   }
   GLINT_HD CountedSum at(int x, int y, Vec3<T>& dL_dn, T& dL_dd) const {
     PatchSums<T> sums;
@@ -172,22 +172,38 @@ struct PatchSimilarityAt {
   }
 };
 
+// About so many of the pixels that count.
+struct SampleOf {
+  const CountedSum* counted;
+  std::size_t wanted;
+  std::uint32_t seed;
+  PixelSample* sample;
+  GLINT_HD void operator()(std::size_t) const {
+    *sample = {seed};
+    if (counted->count > static_cast<double>(wanted))
+      sample->below =
+          static_cast<std::uint32_t>(4294967296.0 * static_cast<double>(wanted) / counted->count);
+  }
+};
+
 struct AddScaled {
   const float* values;
-  float scale;
+  const double* scale;
   float* out;
-  GLINT_HD void operator()(std::size_t i) const { out[i] += scale * values[i]; }
+  GLINT_HD void operator()(std::size_t i) const {
+    out[i] += static_cast<float>(*scale) * values[i];
+  }
 };
 struct AddFixed {
   FixedSums values;
-  double scale;
+  const double* scale;
   float* out;
   GLINT_HD void operator()(std::size_t i) const {
-    out[i] += static_cast<float>(scale * values.take(i));
+    out[i] += static_cast<float>(*scale * values.take(i));
   }
 };
 
 using MultiViewKernels =
-    KernelList<ReprojectionAt<float>, PatchSimilarityAt<float>, AddScaled, AddFixed>;
+    KernelList<ReprojectionAt<float>, PatchSimilarityAt<float>, SampleOf, AddScaled, AddFixed>;
 
 }  // namespace glint

@@ -3,7 +3,7 @@
 
 #include "glint/core/kernel.h"
 #include "glint/train/check_fits.h"
-#include "glint/train/multi_view_kernels.h"
+#include "glint/train/share_kernels.h"
 
 namespace glint {
 
@@ -11,18 +11,17 @@ namespace {
 
 constexpr std::size_t kPixelGrain = 4096;  // pixels a block
 
-void add_scaled(const Image& values, double scale, Image& out) {
+void add_scaled(const Image& values, const Array<double>& scale, Image& out) {
   run_kernel(
-      values.values().size(),
+      values.num_pixels() * static_cast<std::size_t>(values.channels()),
       kPixelGrain,
-      AddScaled{values.data(), static_cast<float>(scale), out.data()}
+      AddScaled{values.on_device(), scale.on_device(), out.on_device()}
   );
 }
 
-// Which pixels of `count` are drawn where `wanted` are enough.
-PixelSample sample_of(double count, std::size_t wanted, std::uint32_t seed) {
-  if (count <= static_cast<double>(wanted)) return {seed};
-  return {seed, static_cast<std::uint32_t>(4294967296.0 * static_cast<double>(wanted) / count)};
+// What of the pixels that count each gradient is multiplied by.
+void share_of_counted(const Array<CountedSum>& sum, float weight, Array<double>& scale) {
+  share_of(&sum.device_for_reading()->count, static_cast<double>(weight), scale);
 }
 
 }  // namespace
@@ -40,26 +39,29 @@ double MultiViewLosses::geometric(
   fit(depth_gradient_, size, 1);
   const std::size_t neighbor_pixels = neighbor.depth.num_pixels();
   if (neighbor_gradient_.size() != neighbor_pixels) neighbor_gradient_.assign(neighbor_pixels, 0);
-  const FixedSums neighbor_sums{neighbor_gradient_.data()};
-  const CountedSum sum = sum_kernel(
+  const FixedSums neighbor_sums{neighbor_gradient_.on_device()};
+  sum_kernel_to(
       size,
       ReprojectionAt<float>{
           camera_pair<float>(reference.camera, neighbor.camera),
-          reference.depth,
-          neighbor.depth,
+          reference.depth.on_device(),
+          neighbor.depth.on_device(),
           settings.min_z,
           settings.max_error,
-          weight_.ref(),
-          depth_gradient_.ref(),
-          neighbor_sums}
+          weight_.on_device(),
+          depth_gradient_.on_device(),
+          neighbor_sums},
+      geometric_
   );
+  const CountedSum sum = told(geometric_);
   terms.geometric = sum.mean();
   terms.num_pixels = sum.count;
-  if (sum.count == 0) return 0;
-  const double scale = static_cast<double>(weight) / sum.count;
-  add_scaled(depth_gradient_, scale, dL_ddepth);
+  share_of_counted(geometric_, weight, scale_);
+  add_scaled(depth_gradient_, scale_, dL_ddepth);
   run_kernel(
-      neighbor_pixels, kPixelGrain, AddFixed{neighbor_sums, scale, dL_dneighbor_depth.data()}
+      neighbor_pixels,
+      kPixelGrain,
+      AddFixed{neighbor_sums, scale_.on_device(), dL_dneighbor_depth.on_device()}
   );
   return sum.count;
 }
@@ -85,26 +87,31 @@ MultiViewTerms MultiViewLosses::evaluate(
   if (count == 0 || weights.photometric == 0) return terms;
   fit(normal_gradient_, size, 3);
   fit(distance_gradient_, size, 1);
-  const CountedSum sum = sum_kernel(
+  sample_.resize(1);
+  run_kernel(
+      1, 1, SampleOf{geometric_.on_device(), settings.max_patches, seed, sample_.on_device()}
+  );
+  sum_kernel_to(
       size,
       PatchSimilarityAt<float>{
           camera_pair<float>(reference.camera, neighbor.camera),
-          reference.gray,
-          neighbor.gray,
-          normal,
-          distance,
-          weight_,
-          sample_of(count, settings.max_patches, seed),
+          reference.gray.on_device(),
+          neighbor.gray.on_device(),
+          normal.on_device(),
+          distance.on_device(),
+          weight_.on_device(),
+          sample_.on_device(),
           settings.max_dissimilarity,
-          normal_gradient_.ref(),
-          distance_gradient_.ref()}
+          normal_gradient_.on_device(),
+          distance_gradient_.on_device()},
+      photometric_
   );
+  const CountedSum sum = told(photometric_);
   terms.photometric = sum.mean();
   terms.num_patches = sum.count;
-  if (sum.count == 0) return terms;
-  const double scale = static_cast<double>(weights.photometric) / sum.count;
-  add_scaled(normal_gradient_, scale, dL_dnormal);
-  add_scaled(distance_gradient_, scale, dL_ddistance);
+  share_of_counted(photometric_, weights.photometric, scale_);
+  add_scaled(normal_gradient_, scale_, dL_dnormal);
+  add_scaled(distance_gradient_, scale_, dL_ddistance);
   return terms;
 }
 

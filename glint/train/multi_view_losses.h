@@ -6,9 +6,8 @@
 
 #include <cstdint>
 
-#include "glint/core/fixed_sum.h"
-#include "glint/core/image.h"
 #include "glint/scene/camera.h"
+#include "glint/train/multi_view_kernels.h"
 
 namespace glint {
 
@@ -69,6 +68,9 @@ class MultiViewLosses {
 
   Image weight_, depth_gradient_, normal_gradient_, distance_gradient_;
   FixedArray neighbor_gradient_;
+  Array<CountedSum> geometric_, photometric_;  // [1] each, as those below
+  Array<double> scale_;
+  Array<PixelSample> sample_;
 };
 
 // 0.299 R + 0.587 G + 0.114 B, [H][W][1].

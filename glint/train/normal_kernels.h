@@ -21,7 +21,8 @@ template <class T>
 struct NormalPriorAt {
   BasicImageView<T> normal;
   ImageView prior, pixel_weight;  // pixel_weight may be empty
-  T tau, along_axes, scale;
+  T tau, along_axes;
+  const T* scale;
   BasicImageRef<T> dL_dnormal;
 
   GLINT_HD double operator()(int x, int y) const {
@@ -30,7 +31,7 @@ struct NormalPriorAt {
     const T factor = pixel_weight.empty() ? T(1) : static_cast<T>(pixel_weight.at(x, y));
     const Vec3<T> unit = unit_normal(composited);
     Vec3<T> dL_dunit{}, gradient{};
-    gated_normal_loss_vjp(unit, target, tau, along_axes, scale * factor, dL_dunit);
+    gated_normal_loss_vjp(unit, target, tau, along_axes, *scale * factor, dL_dunit);
     unit_normal_vjp(composited, dL_dunit, gradient);
     add3(dL_dnormal, x, y, gradient);
     return static_cast<double>(factor * gated_normal_loss(unit, target, tau, along_axes));
@@ -79,7 +80,8 @@ struct Unprojector {
   GLINT_HD Vec3f point(int x, int y) const { return depth.at(x, y) * ray(x, y); }
   GLINT_HD bool valid(int x, int y) const { return depth.at(x, y) > 0; }
 };
-inline Unprojector unprojector(const Camera& camera, const Image& depth) {
+// depth: [H][W][1], where it is looked at.
+inline Unprojector unprojector(const Camera& camera, ImageView depth) {
   return {
       depth,
       static_cast<float>(1 / camera.fx),

@@ -7,6 +7,7 @@
 #include "glint/core/kernel.h"
 #include "glint/train/check_fits.h"
 #include "glint/train/normal_kernels.h"
+#include "glint/train/share_kernels.h"
 
 namespace glint {
 
@@ -47,17 +48,20 @@ double NormalPriorLoss::evaluate(
   check_fits("normal prior", prior, normal.size(), 3);
   if (!pixel_weight.empty())
     check_fits("weights of the normal prior", pixel_weight, normal.size(), 1);
-  const double num_priors = sum_kernel(normal.size(), CountNormals{prior});
-  if (num_priors == 0) return 0;
+  Array<double> num_priors;
+  Array<T> scale;
+  sum_kernel_to(normal.size(), CountNormals{prior.on_device()}, num_priors);
+  share_of(num_priors.on_device(), weight, scale);
   const NormalPriorAt<T> loss_at{
-      normal,
-      prior,
-      pixel_weight,
+      normal.on_device(),
+      prior.on_device(),
+      pixel_weight.on_device(),
       static_cast<T>(min_cosine),
       static_cast<T>(l1),
-      weight / static_cast<T>(num_priors),
-      dL_dnormal.ref()};
-  return sum_kernel(normal.size(), loss_at) / num_priors;
+      scale.on_device(),
+      dL_dnormal.on_device()};
+  const double sum = sum_kernel(normal.size(), loss_at), count = told(num_priors);
+  return count == 0 ? 0 : sum / count;
 }
 
 Image inverse_depth_weight(const Image& depth) {

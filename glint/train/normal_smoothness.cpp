@@ -14,9 +14,9 @@ double NormalSmoothnessLoss::evaluate(
   check_fits("image of the normal smoothness", image, normal.size(), 3);
   const auto num_pixels = static_cast<double>(normal.num_pixels());
   const NormalSmoothnessAt<T> loss_at{
-      {{normal}, image, static_cast<T>(edge_sharpness)},
+      {{normal.on_device()}, image.on_device(), static_cast<T>(edge_sharpness)},
       weight / static_cast<T>(num_pixels),
-      dL_dnormal.ref()};
+      dL_dnormal.on_device()};
   return sum_kernel(normal.size(), loss_at) / num_pixels;
 }
 

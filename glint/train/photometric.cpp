@@ -177,21 +177,24 @@ PhotometricTerms PhotometricLoss::evaluate_on_gpu(
   std::copy(taps.begin(), taps.end(), window.weights);
   moments_.resize(kMomentPlanes * values);
   moment_gradients_.resize(kGradientPlanes * values);
-  float *moments = moments_.data(), *gradients = moment_gradients_.data();
-  run_kernel(values, 1, BlurMomentRows{rendered, target, window, planes, moments});
+  float* moments = moments_.on_device();
+  float* gradients = moment_gradients_.on_device();
+  run_kernel(
+      values, 1, BlurMomentRows{rendered.on_device(), target.on_device(), window, planes, moments}
+  );
   const double ssim = sum_kernel(rendered.size(), SsimAt{window, planes, moments, gradients});
   run_kernel(kGradientPlanes * values, 1, BlurGradientColumns{window, planes, gradients, moments});
   const auto count = static_cast<double>(values);
   const float per_value = 1.0f / static_cast<float>(values);
   const PhotometricAt loss_at{
-      rendered,
-      target,
+      rendered.on_device(),
+      target.on_device(),
       window,
       planes,
       moments,
       weights.l1 * per_value,
       -weights.ssim * per_value,
-      gradient.ref()};
+      gradient.on_device()};
   const PhotometricSums sums = sum_kernel(rendered.size(), loss_at);
   return {sums.l1 / count, 1.0 - ssim / count, sums.mse / count};
 }

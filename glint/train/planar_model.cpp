@@ -120,7 +120,7 @@ const RasterOutput& PlanarModel::draw(const Camera& camera) {
 
 void PlanarModel::rasterize(const Camera& camera, const RasterSettings& settings) {
   set_.pass().activated.options.color_offsets =
-      lobes_ != nullptr ? lobes_->forward(set_.cloud(), camera).data() : nullptr;
+      lobes_ != nullptr ? &lobes_->forward(set_.cloud(), camera) : nullptr;
   output_ = &set_.forward(camera, sh_degree_, settings);
 }
 

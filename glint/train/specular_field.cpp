@@ -69,11 +69,11 @@ const FloatArray& SpecularField::forward(
           config_.min_alpha,
           feature_channels,
           channels.roughness,
-          surface.features.data(),
-          surface.alpha.data(),
-          surface.normal.data(),
-          directions_.data(),
-          roughness_.data()}
+          surface.features.on_device(),
+          surface.alpha.on_device(),
+          surface.normal.on_device(),
+          directions_.on_device(),
+          roughness_.on_device()}
   );
   code_ = &lookup_.look_up(directions_, roughness_);
   inputs_.resize(size.num_pixels() * static_cast<std::size_t>(network_.widths().front()));
@@ -84,19 +84,17 @@ const FloatArray& SpecularField::forward(
           config_.map_channels,
           feature_channels,
           channels.feature,
-          code_->data(),
-          surface.features.data(),
-          inputs_.data()}
+          code_->on_device(),
+          surface.features.on_device(),
+          inputs_.on_device()}
   );
   return network_.forward(inputs_);
 }
 
-void SpecularField::backward(
-    std::span<const float> dL_doutputs, RasterOutputGradient& dL_dsurface
-) {
+void SpecularField::backward(const FloatArray& dL_doutputs, RasterOutputGradient& dL_dsurface) {
   GLINT_CHECK(surface_ != nullptr, kUsage, "specular field: backward() without a forward()");
   dL_dinputs_.resize(inputs_.size());
-  network_.backward(dL_doutputs, dL_dinputs_);
+  network_.backward(dL_doutputs, &dL_dinputs_);
   const std::size_t pixels = directions_.num_pixels();
   const int feature_channels = surface_->features.channels();
   fit(dL_dcode_, directions_.size(), config_.map_channels);
@@ -107,11 +105,11 @@ void SpecularField::backward(
           config_.map_channels,
           feature_channels,
           channels_.feature,
-          code_->data(),
-          surface_->features.data(),
-          dL_dinputs_.data(),
-          dL_dcode_.data(),
-          dL_dsurface.features.data()}
+          code_->on_device(),
+          surface_->features.on_device(),
+          dL_dinputs_.on_device(),
+          dL_dcode_.on_device(),
+          dL_dsurface.features.on_device()}
   );
   lookup_.look_up_vjp(dL_dcode_, dL_ddirections_, dL_droughness_, map_.gradient);
   run_kernel(
@@ -121,12 +119,12 @@ void SpecularField::backward(
           pixel_rays(camera_),
           feature_channels,
           channels_.roughness,
-          directions_.data(),
-          surface_->normal.data(),
-          dL_ddirections_.data(),
-          dL_droughness_.data(),
-          dL_dsurface.features.data(),
-          dL_dsurface.normal.data()}
+          directions_.on_device(),
+          surface_->normal.on_device(),
+          dL_ddirections_.on_device(),
+          dL_droughness_.on_device(),
+          dL_dsurface.features.on_device(),
+          dL_dsurface.normal.on_device()}
   );
 }
 

@@ -59,7 +59,7 @@ class SpecularField {
   const Image& directions() const { return directions_; }
   // Back through the last forward(): adds to the gradients of map and network, and of the set's
   // normal and features. dL_doutputs: zero where not shaded.
-  void backward(std::span<const float> dL_doutputs, RasterOutputGradient& dL_dsurface);
+  void backward(const FloatArray& dL_doutputs, RasterOutputGradient& dL_dsurface);
   // An optimiser step, `faster` times the rates.
   void step(float faster);
 

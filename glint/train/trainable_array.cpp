@@ -23,7 +23,8 @@ void TrainableArray::step(float rate) {
   }
   ++steps_;
   using Kernel = AdamKernel<true>;
-  Kernel kernel{values.data(), gradient.data(), first_.data(), second_.data(), {}, 1, 0};
+  Kernel kernel{
+      values.on_device(), gradient.on_device(), first_.on_device(), second_.on_device(), {}, 1, 0};
   kernel.rates[0] = rate / (1 - std::pow(Kernel::kBeta1, static_cast<float>(steps_)));
   kernel.scale_v = 1 / (1 - std::pow(Kernel::kBeta2, static_cast<float>(steps_)));
   run_kernel(values.size(), kGrain, kernel);

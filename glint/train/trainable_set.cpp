@@ -28,7 +28,9 @@ Array<std::uint32_t> count_observations(
   RasterPass pass;
   for (const Camera& camera : cameras) {
     const RasterOutput& output = set.forward(pass, camera, 0, settings);
-    run_kernel(views.size(), 4096, CountObservations{output.owned_pixels.data(), views.data()});
+    run_kernel(
+        views.size(), 4096, CountObservations{output.owned_pixels.on_device(), views.on_device()}
+    );
   }
   synchronize();
   return views;
@@ -101,11 +103,11 @@ double TrainableSet::penalise_opacity(float weight) {
   constexpr int kRow = 256;  // surfels that are summed one after the other
   const auto count = static_cast<double>(std::max<std::size_t>(cloud_.size(), 1));
   const OpacityPenalty penalty{
-      cloud_.opacity_logits.data(),
+      cloud_.opacity_logits.on_device(),
       cloud_.size(),
       kRow,
       weight / static_cast<float>(count),
-      training().gradient.opacity_logits.data()};
+      training().gradient.opacity_logits.on_device()};
   const int rows = static_cast<int>((cloud_.size() + kRow - 1) / kRow);
   return sum_kernel({kRow, rows}, penalty) / count;
 }

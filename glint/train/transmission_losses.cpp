@@ -67,7 +67,7 @@ float TransmissionLosses::add_opacity(int iteration, const Image& alpha, StepSta
   if (weight <= 0 || iteration < config_.opacity_from || iteration >= config_.opacity_until)
     return 0;
   const auto count = static_cast<double>(alpha.num_pixels());
-  const double mean = sum_kernel(alpha.size(), SumPixels{alpha}) / count;
+  const double mean = sum_kernel(alpha.size(), SumPixels{alpha.on_device()}) / count;
   stats.terms["opacity"] = static_cast<double>(weight) * (1 - mean);
   return -weight / static_cast<float>(alpha.num_pixels());
 }

@@ -4,6 +4,7 @@
 #include "glint/core/kernel.h"
 #include "glint/render/glass_transport.h"
 #include "glint/train/check_fits.h"
+#include "glint/train/share_kernels.h"
 #include "glint/train/transparency_kernels.h"
 
 namespace glint {
@@ -12,16 +13,21 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;  // pixels a block
 
-Image eroded_and_weighed(const Image& mask, ImageView cosine) {
+Image eroded_and_weighed(const Image& mask, const Image& cosine) {
   Image result(mask.width(), mask.height(), 1);
-  run_kernel(mask.num_pixels(), kGrain, ErodeAndWeigh{mask, cosine, result.ref()});
+  run_kernel(
+      mask.num_pixels(),
+      kGrain,
+      ErodeAndWeigh{mask.on_device(), cosine.on_device(), result.on_device()}
+  );
   return result;
 }
 
 template <class T>
 double mean_l1(const BasicImage<T>& t, const Image& target, T weight, BasicImage<T>& dL_dt) {
   const auto num_pixels = static_cast<double>(t.num_pixels());
-  const GuideL1<T> loss_at{t, target, weight / static_cast<T>(num_pixels), dL_dt.ref()};
+  const GuideL1<T> loss_at{
+      t.on_device(), target.on_device(), weight / static_cast<T>(num_pixels), dL_dt.on_device()};
   return sum_kernel(t.size(), loss_at) / num_pixels;
 }
 
@@ -30,10 +36,14 @@ template <class T>
 double mean_bce(
     const BasicImage<T>& t, const Image& mask, T target, T weight, BasicImage<T>& dL_dt
 ) {
-  const double mask_sum = sum_kernel(t.size(), SumPixels{mask});
-  if (!(mask_sum > 0)) return 0;
-  const GuideBce<T> loss_at{t, mask, target, weight / static_cast<T>(mask_sum), dL_dt.ref()};
-  return sum_kernel(t.size(), loss_at) / mask_sum;
+  Array<double> mask_sum;
+  Array<T> scale;
+  sum_kernel_to(t.size(), SumPixels{mask.on_device()}, mask_sum);
+  share_of(mask_sum.on_device(), weight, scale);
+  const GuideBce<T> loss_at{
+      t.on_device(), mask.on_device(), target, scale.on_device(), dL_dt.on_device()};
+  const double sum = sum_kernel(t.size(), loss_at), count = told(mask_sum);
+  return count == 0 ? 0 : sum / count;
 }
 
 }  // namespace
@@ -51,12 +61,12 @@ void TransparencyGuidance::label(const TransparencyCues& cues, TransparencyMasks
   fit(masks.transparent, size, 1);
   fit(masks.opaque, size, 1);
   const LabelMaps maps{
-      cues.interface_depth,
-      cues.transmission_depth,
-      cues.albedo,
-      cues.basecolor,
-      masks.transparent.ref(),
-      masks.opaque.ref()};
+      cues.interface_depth.on_device(),
+      cues.transmission_depth.on_device(),
+      cues.albedo.on_device(),
+      cues.basecolor.on_device(),
+      masks.transparent.on_device(),
+      masks.opaque.on_device()};
   if (!is_bce)
     return run_kernel(size.num_pixels(), kGrain, LabelL1{maps, depth_threshold, low_albedo});
   check_fits("basecolor prior", cues.basecolor, size, 3);
@@ -66,8 +76,8 @@ void TransparencyGuidance::label(const TransparencyCues& cues, TransparencyMasks
       kGrain,
       LabelBce{maps, depth_threshold, low_albedo, high_albedo, bright_basecolor}
   );
-  masks.transparent = eroded_and_weighed(masks.transparent, cues.cosine);
-  masks.opaque = eroded_and_weighed(masks.opaque, cues.cosine);
+  masks.transparent = eroded_and_weighed(masks.transparent, cues.cosine.get());
+  masks.opaque = eroded_and_weighed(masks.opaque, cues.cosine.get());
 }
 
 template <class T>
@@ -90,7 +100,9 @@ double TransparencyGuidance::evaluate(
 Image viewing_cosines(const Camera& camera, const Image& normal) {
   Image cosines(normal.width(), normal.height(), 1);
   run_kernel(
-      normal.num_pixels(), kGrain, ViewingCosine{pixel_rays(camera), normal.data(), cosines.data()}
+      normal.num_pixels(),
+      kGrain,
+      ViewingCosine{pixel_rays(camera), normal.on_device(), cosines.on_device()}
   );
   return cosines;
 }

@@ -13,12 +13,12 @@ enum class GuidanceKind { kL1, kBce };
 
 // What the masks are made from; constants, no gradient flows to them.
 struct TransparencyCues {
-  ImageView interface_depth;     // [H][W][1] planar z, 0: none
-  ImageView transmission_depth;  // [H][W][1] planar z of the transmission set seen from the camera
-                                 // on its own (not only behind the interface), 0: none
-  ImageView albedo;              // [H][W][3] the prior's diffuse albedo as stored
-  ImageView basecolor;           // [H][W][3] the prior's; kBce only
-  ImageView cosine;              // [H][W][1] of viewing_cosines(), empty for 1; kBce only
+  BorrowedImage interface_depth;     // [H][W][1] planar z, 0: none
+  BorrowedImage transmission_depth;  // [H][W][1] planar z of the transmission set seen from the
+                                     // camera on its own (not only behind the interface), 0: none
+  BorrowedImage albedo;              // [H][W][3] the prior's diffuse albedo as stored
+  BorrowedImage basecolor;           // [H][W][3] the prior's; kBce only
+  BorrowedImage cosine;              // [H][W][1] of viewing_cosines(), empty for 1; kBce only
 };
 
 // [H][W][1] weights in [0, 1], for the loss and for figures. Empty: no guidance for this view.

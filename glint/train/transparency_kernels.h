@@ -98,12 +98,13 @@ template <class T>
 struct GuideBce {
   BasicImageView<T> t;
   ImageView mask;
-  T target, scale;
+  T target;
+  const T* scale;
   BasicImageRef<T> dL_dt;
 
   GLINT_HD double operator()(int x, int y) const {
     const T m = static_cast<T>(mask.at(x, y));
-    binary_cross_entropy_vjp(t.at(x, y), target, scale * m, dL_dt.at(x, y));
+    binary_cross_entropy_vjp(t.at(x, y), target, *scale * m, dL_dt.at(x, y));
     return static_cast<double>(m * binary_cross_entropy(t.at(x, y), target));
   }
 };

@@ -14,12 +14,12 @@ double TransparencyPriorLoss::evaluate(
   check_fits("image of the transparency prior", image, transparency.size(), 3);
   const auto num_pixels = static_cast<double>(transparency.num_pixels());
   const TransparencyPriorAt<T> loss_at{
-      {{transparency}, image, static_cast<T>(edge_sharpness)},
+      {{transparency.on_device()}, image.on_device(), static_cast<T>(edge_sharpness)},
       static_cast<T>(entropy),
       static_cast<T>(sparsity),
       static_cast<T>(smoothness),
       weight / static_cast<T>(num_pixels),
-      dL_dtransparency.ref()};
+      dL_dtransparency.on_device()};
   return sum_kernel(transparency.size(), loss_at) / num_pixels;
 }
 

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
+#include <cstring>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,13 +17,35 @@
 
 namespace glint::test {
 
+// Memory operations of kernels on the host.
+struct HostDeviceOps {
+  static void upload(void* to, const void* from, std::size_t bytes) {
+    const OpenMemory open(OpenMemory::kBoth);
+    std::memcpy(to, from, bytes);
+  }
+  static void clear(void* block, std::size_t bytes) {
+    const OpenMemory open(OpenMemory::kDevice);
+    std::memset(block, 0, bytes);
+  }
+  static void fill(float* to, std::size_t count, float value) {
+    const OpenMemory open(OpenMemory::kDevice);
+    std::fill_n(to, count, value);
+  }
+};
+
 inline void use_host_kernels() {
   static const DeviceBackend backend{
-      "kernels on the host",
-      [](std::size_t bytes) { return std::aligned_alloc(64, (bytes + 63) / 64 * 64); },
-      std::free,
-      [](float* to, std::size_t count, float value) { std::fill_n(to, count, value); },
-      [] {}};
+      .name = "kernels on the host",
+      .allocate = HostDeviceMemory::allocate,
+      .release = HostDeviceMemory::release,
+      .upload = HostDeviceOps::upload,
+      .download = HostDeviceOps::upload,
+      .copy = HostDeviceOps::upload,
+      .clear = HostDeviceOps::clear,
+      .fill = HostDeviceOps::fill,
+      .synchronize = [] {},
+      .allocate_host = [](std::size_t bytes) { return host_memory().host.allocate(bytes); },
+      .release_host = [](void* block) noexcept { host_memory().host.release(block); }};
   gpu::use_executor<HostExec>(backend);
 }
 

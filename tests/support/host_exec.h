@@ -10,7 +10,9 @@
 #include <numeric>
 #include <vector>
 
+#include "glint/core/device.h"
 #include "glint/cuda/block.h"
+#include "tests/support/host_memory.h"
 
 namespace glint::test {
 
@@ -53,32 +55,30 @@ class HostBlock {
 class HostExec {
  public:
   template <class T>
-  class Buffer {
-   public:
-    // What was there before is not kept.
-    void resize(std::size_t count) { values_.assign(count, T{}); }
-    std::size_t size() const { return values_.size(); }
-    T* data() { return values_.data(); }
-    const T* data() const { return values_.data(); }
-
-   private:
-    std::vector<T> values_;
-  };
+  using Buffer = gpu::DeviceBuffer<T, HostDeviceMemory>;
 
   template <class T>
   void download(const Buffer<T>& from, std::size_t count, T* to) {
+    ++device_counters.downloads;
+    ++device_counters.waits;
+    const OpenMemory open(OpenMemory::kBoth);
     std::copy_n(from.data(), count, to);
   }
   template <class T>
   void fill_zero(Buffer<T>& buffer) {
+    const OpenMemory open(OpenMemory::kDevice);
     std::fill_n(buffer.data(), buffer.size(), T{});
   }
   template <class F>
   void for_each(std::size_t count, F f) {
+    ++device_counters.launches;
+    const OpenMemory open(OpenMemory::kDevice);
     for (std::size_t i = 0; i < count; ++i) f(i);
   }
   template <class Body>
   void launch(std::size_t blocks, const Body& body) {
+    ++device_counters.launches;
+    const OpenMemory open(OpenMemory::kDevice);
     for (std::size_t i = 0; i < blocks; ++i) {
       HostBlock<Body::kThreads> block;
       block.index = static_cast<int>(i);
@@ -91,6 +91,9 @@ class HostExec {
       const Buffer<std::uint32_t>& counts, std::size_t count, Buffer<std::uint32_t>& sums
   ) {
     sums.resize(count);
+    ++device_counters.downloads;  // of the sum of all
+    ++device_counters.waits;
+    const OpenMemory open(OpenMemory::kBoth);
     std::exclusive_scan(counts.data(), counts.data() + count, sums.data(), 0u);
     return count == 0 ? 0 : sums.data()[count - 1] + counts.data()[count - 1];
   }
@@ -98,6 +101,8 @@ class HostExec {
   void sort_pairs(
       std::size_t count, int bits, Buffer<std::uint64_t>& keys, Buffer<std::uint32_t>& values
   ) {
+    ++device_counters.launches;
+    const OpenMemory open(OpenMemory::kBoth);
     const std::uint64_t mask = bits < 64 ? (std::uint64_t{1} << bits) - 1 : ~std::uint64_t{0};
     std::vector<std::pair<std::uint64_t, std::uint32_t>> pairs(count);
     for (std::size_t i = 0; i < count; ++i) pairs[i] = {keys.data()[i], values.data()[i]};

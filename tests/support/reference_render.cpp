@@ -94,7 +94,7 @@ ReferenceInput reference_input(const RasterInput& input) {
   result.rotations = doubles(input.rotations);
   result.opacities = doubles(input.opacities);
   result.features = doubles(input.features);
-  result.near_limit = input.near_limit;
+  result.near_limit = input.near_limit.view();
   return result;
 }
 

@@ -54,7 +54,7 @@ std::vector<double> activate_one(
     values.push_back(options.color_only ? 0.0 : extra_in_double(cloud, i, e));
   values.push_back(sigmoid(static_cast<double>(cloud.opacity_logits[i])));
   for (std::size_t c = 0; c < 3 && options.color_offsets != nullptr; ++c)
-    values[c] += static_cast<double>(options.color_offsets[3 * i + c]);
+    values[c] += static_cast<double>((*options.color_offsets)[3 * i + c]);
   if (options.opacity_factor >= 0)
     values.back() *= extra_in_double(cloud, i, static_cast<std::size_t>(options.opacity_factor));
   for (int a = 0; a < 2; ++a)
@@ -200,7 +200,7 @@ TEST_CASE("Offsets of colours are added behind the clamp, and hide no gradient a
   Rng rng(8);
   for (float& value : offsets) value = rng.uniform(-1, 1);
   ActivatedSurfels a;
-  a.options.color_offsets = offsets.data();
+  a.options.color_offsets = &offsets;
   activate(cloud, {0.1f, 0.2f, -3}, 3, a);
   for (std::size_t c = 0; c < 3; ++c) CHECK(a.features[5 * 7 + c] == offsets[3 * 7 + c]);
   for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -82,7 +82,7 @@ TEST_CASE("A network gives what is computed by hand") {
   const FloatArray& y = net.forward(x);
   CHECK(y == FloatArray{2 * 3.5f + 10 + 0.25f, 2 * 1.5f + 0.25f});
   FloatArray dL_dx(4);
-  net.backward(FloatArray{1, 1}, dL_dx);
+  net.backward(FloatArray{1, 1}, &dL_dx);
   CHECK(dL_dx == FloatArray{2 - 10, 4 + 30, 2, 4});
   // dL/dW of the first layer: x times (2, 10) where the hidden value is not cut off; biases alike.
   const FloatArray expected = {2 + 2, 10, 2, 10, 2 + 2, 10, 3.5f + 1.5f, 1, 2};
@@ -106,7 +106,7 @@ TEST_CASE("The gradients of a network match central differences of the plain loo
        {std::pair<std::vector<int>, std::size_t>{{5, 6, 4, 2}, 7}, {{2, 3, 1}, 256 * 64 + 300}}) {
     Fixture f(widths, rows);
     f.net.forward(f.x);
-    f.net.backward(f.g, f.dL_dx);
+    f.net.backward(f.g, &f.dL_dx);
     const Vector p = in_double(f.net.parameters().values), x = in_double(f.x);
     const DifferenceStep small{1e-6, 1};  // few rows have a kink within it
     const Vector by_weights =
@@ -122,9 +122,9 @@ TEST_CASE("The gradients of a network match central differences of the plain loo
 TEST_CASE("Gradients of weights are added to, those of inputs may be left out") {
   Fixture f({3, 8, 2}, 40);
   f.net.forward(f.x);
-  f.net.backward(f.g, f.dL_dx);
+  f.net.backward(f.g, &f.dL_dx);
   const FloatArray once = f.net.parameters().gradient;
-  f.net.backward(f.g, {});
+  f.net.backward(f.g, nullptr);
   for (std::size_t i = 0; i < once.size(); ++i)
     CHECK(f.net.parameters().gradient[i] == 2 * once[i]);
 }
@@ -137,7 +137,7 @@ TEST_CASE("A network gives the same bytes for any number of threads") {
     set_num_threads(threads);
     Fixture f({80, 64, 64, 3}, 3000);
     const FloatArray y = f.net.forward(f.x);
-    f.net.backward(f.g, f.dL_dx);
+    f.net.backward(f.g, &f.dL_dx);
     f.net.parameters().step(1e-3f);
     return std::vector<FloatArray>{y, f.dL_dx, f.net.parameters().values};
   };
@@ -150,7 +150,7 @@ TEST_CASE("The kernels of a network give what the CPU's products give") {
   check_same_as_cpu(2e-5, [] {
     Fixture f({80, 64, 64, 3}, 700);
     std::map<std::string, std::vector<float>> results{{"outputs", read(f.net.forward(f.x))}};
-    f.net.backward(f.g, f.dL_dx);
+    f.net.backward(f.g, &f.dL_dx);
     results["inputs"] = read(f.dL_dx);
     results["weights"] = read(f.net.parameters().gradient);
     return results;
@@ -184,7 +184,7 @@ TEST_CASE("A network learns a function that no linear one can give") {
       g[i] = 2 * (y[i] - target[i]);
       error += square(static_cast<double>(y[i] - target[i]));
     }
-    net.backward(g, {});
+    net.backward(g, nullptr);
     net.parameters().step(0.01f);
   }
   CHECK(error < 1e-3);
@@ -205,11 +205,11 @@ TEST_CASE("A network comes back from a file with the same bytes, and other width
 TEST_CASE("No rows are no work, and rows that do not fit are refused") {
   Mlp net({3, 2}, 0);
   CHECK(net.forward({}).empty());
-  net.backward({}, {});
+  net.backward({}, nullptr);
   for (const float g : net.parameters().gradient) CHECK(g == 0);
   CHECK_THROWS_WITH(net.forward(FloatArray(4)), Catch::Contains("4 inputs are no rows of 3"));
   net.forward(FloatArray(6));
-  CHECK_THROWS_WITH(net.backward(FloatArray(3), {}), Catch::Contains("gradients of 3 outputs"));
+  CHECK_THROWS_WITH(net.backward(FloatArray(3), nullptr), Catch::Contains("gradients of 3 outputs"));
   CHECK_THROWS_WITH(Mlp({3}, 0), Catch::Contains("widths"));
   CHECK_THROWS_WITH(Mlp({3, 0, 1}, 0), Catch::Contains("widths"));
 }

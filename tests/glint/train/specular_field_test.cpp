@@ -58,7 +58,7 @@ struct Fixture {
     RasterOutputGradient result;
     result.features = Image(kSize.width, kSize.height, kChannels);
     result.normal = Image(kSize.width, kSize.height, 3);
-    field.backward(g.values(), result);
+    field.backward(g.array(), result);
     return result;
   }
   // In float: where the slopes to both sides and over two steps agree, and so no texel's middle or
