@@ -159,7 +159,8 @@ class TwoDgs final : public Method {
   }
   void add_distortion(const RasterOutput& out, StepStats& stats) {
     const double count = static_cast<double>(out.distortion.num_pixels());
-    const double mean = sum_kernel(out.distortion.size(), SumPixels{out.distortion}) / count;
+    const double mean =
+        sum_kernel(out.distortion.size(), SumPixels{out.distortion.on_device()}) / count;
     stats.terms["distortion"] = static_cast<double>(config_.lambda_distortion) * mean;
     const float weight = config_.lambda_distortion / static_cast<float>(count);
     fit(gradient_.distortion, out.distortion.size(), 1);

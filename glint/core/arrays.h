@@ -177,6 +177,8 @@ class Array {
     sides_ = kDevice;
     return static_cast<T*>(device_.data());
   }
+  // On a GPU: the host would have to ask for its side.
+  bool is_on_device_alone() const { return on_gpu() && size_ > 0 && !has(kHost); }
   // Gives the device's side back where the host has the values, too.
   void leave_device() const {
     if (has(kHost) && has(kDevice)) {

@@ -155,6 +155,38 @@ class TracerOn final : public TraceBackend {
   TracePipeline<Exec> pipeline_{executor<Exec>()};
 };
 
+struct WidenKeys {
+  const std::uint32_t* keys;
+  std::uint64_t* wide;
+  std::uint32_t* order;
+  GLINT_HD void operator()(std::size_t i) const {
+    wide[i] = keys[i];
+    order[i] = static_cast<std::uint32_t>(i);
+  }
+};
+struct NarrowKeys {
+  const std::uint64_t* wide;
+  const std::uint32_t* sorted;
+  std::uint32_t *keys, *order;
+  GLINT_HD void operator()(std::size_t i) const {
+    keys[i] = static_cast<std::uint32_t>(wide[i]);
+    order[i] = sorted[i];
+  }
+};
+template <class Exec>
+void sort_on(Array<std::uint32_t>& keys, Array<std::uint32_t>& order) {
+  static typename Exec::template Buffer<std::uint64_t> wide;
+  static typename Exec::template Buffer<std::uint32_t> sorted;
+  Exec& exec = executor<Exec>();
+  const std::size_t count = keys.size();
+  order.resize(count);
+  wide.resize(count);
+  sorted.resize(count);
+  exec.for_each(count, WidenKeys{keys.on_device(), wide.data(), sorted.data()});
+  exec.sort_pairs(count, 32, wide, sorted);
+  exec.for_each(count, NarrowKeys{wide.data(), sorted.data(), keys.on_device(), order.on_device()});
+}
+
 // Ops run on Exec from now on; `backend` offers its memory.
 template <class Exec>
 void use_executor(const DeviceBackend& backend) {
@@ -165,6 +197,7 @@ void use_executor(const DeviceBackend& backend) {
   gpu_ops.tracer = []() -> std::unique_ptr<TraceBackend> {
     return std::make_unique<TracerOn<Exec>>();
   };
+  gpu_ops.sort = sort_on<Exec>;
   use_gpu(backend);
 }
 

@@ -100,6 +100,18 @@ struct SumPixels {
   GLINT_HD double operator()(int x, int y) const { return static_cast<double>(map.at(x, y)); }
 };
 
+// How many of a run of values, laid out as rows of `across`, are NaN or infinite.
+struct CountNotFinite {
+  const float* values;
+  std::size_t count;
+  int across;
+  GLINT_HD double operator()(int x, int y) const {
+    const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(across) +
+                          static_cast<std::size_t>(x);
+    return i < count && !(values[i] - values[i] == 0) ? 1.0 : 0.0;
+  }
+};
+
 // Camera rays moved on to a planar depth: the parameter of a ray with camera-space z = 1.
 struct MoveAlongRays {
   const float *directions, *depth;
@@ -119,6 +131,7 @@ using MapKernels = KernelList<
     UnitNormals,
     ShiftDepth,
     SumPixels,
+    CountNotFinite,
     MoveAlongRays>;
 
 }  // namespace glint

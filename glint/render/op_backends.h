@@ -53,6 +53,8 @@ std::unique_ptr<TraceBackend> trace_on_cpu();
 struct GpuOps {
   std::unique_ptr<RasterBackend> (*rasterizer)() = nullptr;
   std::unique_ptr<TraceBackend> (*tracer)() = nullptr;
+  // Sorts keys, stably; `order`: where each was.
+  void (*sort)(Array<std::uint32_t>& keys, Array<std::uint32_t>& order) = nullptr;
 };
 inline GpuOps gpu_ops;
 

@@ -5,6 +5,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
+#include "glint/render/op_backends.h"
 
 namespace glint {
 
@@ -87,9 +88,9 @@ void SphericalLookup::look_up_vjp(
   texels_vjp(dL_dvalues, dL_dlevel0);
 }
 
-// Counting sort, on the host: in the order of the pixels within a key.
+// In the order of the pixels within a key; on the CPU a counting sort.
 void SphericalLookup::sort_taps() {
-  synchronize();
+  if (on_gpu()) return sort_taps_on_gpu();
   begins_.assign(shape_.first_texel(shape_.levels) + 1, 0);
   for (const std::uint32_t key : keys_)
     if (key != kNoTexel) ++begins_[key + 1];
@@ -100,6 +101,16 @@ void SphericalLookup::sort_taps() {
     if (keys_[i] != kNoTexel) taps_[next[keys_[i]]++] = static_cast<std::uint32_t>(i);
 }
 
+void SphericalLookup::sort_taps_on_gpu() {
+  gpu_ops.sort(keys_, taps_);
+  begins_.resize(shape_.first_texel(shape_.levels) + 1);
+  run_kernel(
+      begins_.size(),
+      kValueGrain,
+      FindTapBegins{std::as_const(keys_).on_device(), keys_.size(), begins_.on_device()}
+  );
+}
+
 void SphericalLookup::texels_vjp(const Image& dL_dvalues, FloatArray& dL_dlevel0) {
   const std::size_t pixels = values_.num_pixels();
   keys_.resize(2 * pixels);
@@ -108,7 +119,11 @@ void SphericalLookup::texels_vjp(const Image& dL_dvalues, FloatArray& dL_dlevel0
       pixels,
       kGrain,
       MapTaps{
-          shape_, directions_->on_device(), roughness_->on_device(), keys_.on_device(), weights_.on_device()}
+          shape_,
+          directions_->on_device(),
+          roughness_->on_device(),
+          keys_.on_device(),
+          weights_.on_device()}
   );
   sort_taps();
   dL_dtexels_.resize(texels_.size());

@@ -27,14 +27,14 @@ class SphericalLookup {
   // valid until the next call.
   const Image& look_up(const Image& directions, const Image& roughness);
   // Back through the last look_up(): fills dL_ddirections [H][W][3] and dL_droughness [H][W][1],
-  // adds to dL_dlevel0. On the CPU the same bytes for any number of threads. On a GPU it waits for
-  // the device: look-ups are sorted by texel on the host.
+  // adds to dL_dlevel0. The same bytes for any number of threads, and every time on a GPU.
   void look_up_vjp(
       const Image& dL_dvalues, Image& dL_ddirections, Image& dL_droughness, FloatArray& dL_dlevel0
   );
 
  private:
   void sort_taps();
+  void sort_taps_on_gpu();
   void texels_vjp(const Image& dL_dvalues, FloatArray& dL_dlevel0);
 
   MapShape shape_;

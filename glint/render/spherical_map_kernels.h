@@ -99,6 +99,24 @@ struct LookUpMapVjp {
   }
 };
 
+// Where the taps of each key begin among the sorted keys; the last entry: where they end.
+struct FindTapBegins {
+  const std::uint32_t* sorted;
+  std::size_t count;
+  std::uint32_t* begins;
+  GLINT_HD void operator()(std::size_t key) const {
+    std::size_t low = 0, high = count;
+    while (low < high) {
+      const std::size_t middle = (low + high) / 2;
+      if (sorted[middle] < key)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    begins[key] = static_cast<std::uint32_t>(low);
+  }
+};
+
 // What a look-up touches at one level: texels right of and below its key's, with these weights.
 struct TexelWeights {
   float here, right, below, below_right;
@@ -167,6 +185,7 @@ struct GatherMapTexels {
 };
 
 using SphericalMapKernels = KernelList<
+    FindTapBegins,
     CopyValues,
     AddValues,
     BuildMapLevel,

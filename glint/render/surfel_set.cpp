@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "glint/core/error.h"
+#include "glint/core/kernel.h"
+#include "glint/render/map_kernels.h"
 
 namespace glint {
 
@@ -49,8 +51,15 @@ const TraceGradient& trace_backward(
   return gradient;
 }
 
+bool is_finite(const FloatArray& values) {
+  constexpr int kRow = 1024;
+  const int rows = static_cast<int>((values.size() + kRow - 1) / kRow);
+  return sum_kernel({kRow, rows}, CountNotFinite{values.on_device(), values.size(), kRow}) == 0;
+}
+
 void check_finite(const SurfelCloud& cloud, const std::string& set_name) {
   cloud.for_each_array([&](const char* name, const FloatArray& array, std::size_t width) {
+    if (on_gpu() && is_finite(array)) return;
     for (std::size_t i = 0; i < array.size(); ++i)
       GLINT_CHECK(
           std::isfinite(array[i]),

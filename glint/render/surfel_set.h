@@ -76,6 +76,8 @@ const TraceGradient& trace_backward(
     TracePass& pass, const TraceOutputGradient& dL_doutput, SurfelCloud& dL_dcloud
 );
 
+// Whether all values are; looked at where ops run.
+bool is_finite(const FloatArray& values);
 // Errors (kBadPrediction): a parameter is not finite; names set, array and surfel.
 void check_finite(const SurfelCloud& cloud, const std::string& set_name);
 

@@ -9,6 +9,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
+#include "glint/render/void_steps.h"
 #include "glint/train/adam_kernels.h"
 
 namespace glint {
@@ -55,6 +56,7 @@ void update(const AdamArrays& a, float correction1, float correction2) {
   kernel.columns = a.rates.size();
   kernel.scale_v = 1 / correction2;
   for (std::size_t c = 0; c < a.rates.size(); ++c) kernel.rates[c] = a.rates[c] / correction1;
+  kernel.is_void = void_word();
   run_kernel(a.p->size(), kGrain, kernel);
 }
 

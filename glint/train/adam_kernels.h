@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "glint/core/kernel.h"
 #include "glint/core/real.h"
@@ -19,9 +20,14 @@ struct AdamKernel {
   float *p, *g, *m, *v;
   float rates[kMaxRates];  // over 1 - beta1^t
   std::size_t columns;
-  float scale_v;  // 1 / (1 - beta2^t)
+  float scale_v;                           // 1 / (1 - beta2^t)
+  const std::uint32_t* is_void = nullptr;  // void_steps.h; null: no
 
   GLINT_HD void operator()(std::size_t i) const {
+    if (is_void != nullptr && *is_void != 0) {
+      g[i] = 0;
+      return;
+    }
     const float rate = kOneRate ? rates[0] : rates[i % columns];
     m[i] = kBeta1 * m[i] + (1 - kBeta1) * g[i];
     v[i] = kBeta2 * v[i] + (1 - kBeta2) * g[i] * g[i];

@@ -8,6 +8,7 @@
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
 #include "glint/render/activations.h"
+#include "glint/render/void_steps.h"
 
 namespace glint {
 
@@ -44,7 +45,32 @@ std::pair<std::size_t, std::size_t> column_of(const SurfelCloud& cloud, const st
 }
 
 void forget(std::size_t column, std::size_t width, FloatArray& moments) {
-  for (std::size_t i = column; i < moments.size(); i += width) moments[i] = 0;
+  run_kernel(moments.size() / width, kGrain, ClearColumn{column, width, moments.on_device()});
+}
+
+Array<std::uint32_t> kept_rows(const std::vector<std::uint8_t>& keep) {
+  Array<std::uint32_t> rows;
+  rows.reserve(keep.size());
+  for (std::uint32_t row = 0; row < keep.size(); ++row)
+    if (keep[row] != 0) rows.push_back(row);
+  return rows;
+}
+
+// Rows of an array whose values are on the device alone stay there.
+void append_on_device(const Array<std::uint32_t>& rows, std::size_t width, FloatArray& array) {
+  const std::size_t first = array.size(), count = rows.size() * width;
+  array.resize(first + count);
+  run_kernel(count, kGrain, AppendRows{rows.on_device(), width, first, array.on_device()});
+}
+void keep_on_device(const Array<std::uint32_t>& rows, std::size_t width, FloatArray& array) {
+  FloatArray kept(rows.size() * width);
+  if (!kept.empty())
+    run_kernel(
+        kept.size(),
+        kGrain,
+        TakeRows{rows.on_device(), width, std::as_const(array).on_device(), kept.on_device()}
+    );
+  array = std::move(kept);
 }
 
 }  // namespace
@@ -70,13 +96,15 @@ void drop_lightest(std::size_t limit, DensifyRows& rows, DensifyCounts& counts) 
 }
 
 void lower_logits(float ceiling, std::size_t column, std::size_t width, FloatArray& logits) {
-  const float highest = logit(ceiling);
-  for (std::size_t i = column; i < logits.size(); i += width)
-    logits[i] = std::min(logits[i], highest);
+  run_kernel(
+      logits.size() / width, kGrain, LowerColumn{column, width, logit(ceiling), logits.on_device()}
+  );
 }
 
 void append_rows(SurfelCloud& cloud, const std::vector<std::uint32_t>& rows) {
+  const Array<std::uint32_t> list(rows.begin(), rows.end());
   cloud.for_each_array([&](const char*, FloatArray& array, std::size_t width) {
+    if (array.is_on_device_alone()) return append_on_device(list, width, array);
     array.reserve(array.size() + rows.size() * width);
     for (const std::uint32_t row : rows)
       for (std::size_t k = 0; k < width; ++k) array.push_back(array[row * width + k]);
@@ -95,8 +123,12 @@ static void keep_rows(Values& array, std::size_t width, const std::vector<std::u
 }
 
 void keep_rows(SurfelCloud& cloud, const std::vector<std::uint8_t>& keep) {
+  const Array<std::uint32_t> rows = kept_rows(keep);
   cloud.for_each_array([&](const char*, FloatArray& array, std::size_t width) {
-    keep_rows(array, width, keep);
+    if (array.is_on_device_alone())
+      keep_on_device(rows, width, array);
+    else
+      keep_rows(array, width, keep);
   });
 }
 
@@ -118,7 +150,7 @@ DensifyStatistics Densifier::statistics(std::size_t count) {
   gradient_sum_.resize(count, 0.0f);
   weight_sum_.resize(count, 0.0f);
   views_.resize(count, 0);
-  return {gradient_sum_.on_device(), weight_sum_.on_device(), views_.on_device()};
+  return {gradient_sum_.on_device(), weight_sum_.on_device(), views_.on_device(), void_word()};
 }
 
 float Densifier::scale_of(int rows) const {

@@ -10,11 +10,13 @@
 namespace glint {
 
 struct DensifyStatistics {
-  float* gradient_sums;  // [N]
-  float* weight_sums;    // [N] of the surfel's weights in pixels or rays
-  std::uint32_t* views;  // [N] in which the surfel was seen
+  float* gradient_sums;                    // [N]
+  float* weight_sums;                      // [N] of the surfel's weights in pixels or rays
+  std::uint32_t* views;                    // [N] in which the surfel was seen
+  const std::uint32_t* is_void = nullptr;  // void_steps.h; null: no
 
   GLINT_HD void add(std::size_t i, float gradient, float weight) const {
+    if (is_void != nullptr && *is_void != 0) return;
     gradient_sums[i] += gradient;
     weight_sums[i] += weight;
     ++views[i];
@@ -51,6 +53,41 @@ struct ObserveFootprint {
   }
 };
 
+// Appends rows: what was `first` values long ends with copies of rows of it.
+struct AppendRows {
+  const std::uint32_t* rows;
+  std::size_t width, first;
+  float* values;
+  GLINT_HD void operator()(std::size_t i) const {
+    values[first + i] = values[rows[i / width] * width + i % width];
+  }
+};
+struct TakeRows {
+  const std::uint32_t* rows;
+  std::size_t width;
+  const float* from;
+  float* to;
+  GLINT_HD void operator()(std::size_t i) const {
+    to[i] = from[rows[i / width] * width + i % width];
+  }
+};
+
+// Of one column of [N][width].
+struct LowerColumn {
+  std::size_t column, width;
+  float highest;
+  float* values;
+  GLINT_HD void operator()(std::size_t i) const {
+    float& value = values[i * width + column];
+    value = min_of(value, highest);
+  }
+};
+struct ClearColumn {
+  std::size_t column, width;
+  float* values;
+  GLINT_HD void operator()(std::size_t i) const { values[i * width + column] = 0; }
+};
+
 // |v| without overflow of the squares.
 GLINT_HD float safe_length(Vec3f v) {
   const float x = abs_of(v.x), y = abs_of(v.y), z = abs_of(v.z);
@@ -80,6 +117,14 @@ struct CountObservations {
   GLINT_HD void operator()(std::size_t i) const { views[i] += owned_pixels[i] > 0 ? 1 : 0; }
 };
 
-using DensifyKernels = KernelList<ObserveRaster, ObserveFootprint, ObserveTrace, CountObservations>;
+using DensifyKernels = KernelList<
+    ObserveRaster,
+    ObserveFootprint,
+    ObserveTrace,
+    CountObservations,
+    AppendRows,
+    TakeRows,
+    LowerColumn,
+    ClearColumn>;
 
 }  // namespace glint

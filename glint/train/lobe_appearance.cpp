@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <numeric>
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
@@ -83,9 +84,15 @@ LobeAppearance::LobeAppearance(
   std::fill_n(to_color_.biases(2).begin(), 3, 0.0f);
 }
 
-// On the host: how many there are decides the sizes of what follows.
+// On a GPU all are asked, since the host would have to wait for their number, and the answers of
+// the others cleared.
 void LobeAppearance::find_visible(const Array<std::uint8_t>& visible) {
-  synchronize();
+  if (on_gpu()) {
+    if (surfels_.size() == visible.size()) return;
+    surfels_.resize(visible.size());
+    std::iota(surfels_.begin(), surfels_.end(), 0u);
+    return;
+  }
   surfels_.clear();
   for (std::size_t i = 0; i < visible.size(); ++i)
     if (visible[i] != 0) surfels_.push_back(static_cast<std::uint32_t>(i));
@@ -137,7 +144,13 @@ const FloatArray& LobeAppearance::forward(
   run_kernel(
       3 * m, kGrain, AddToRows{colors.on_device(), surfels_.on_device(), 3, offsets_.on_device()}
   );
+  seen_ = &visible;
+  clear_unseen(offsets_);
   return offsets_;
+}
+
+void LobeAppearance::clear_unseen(FloatArray& rows) const {
+  if (on_gpu()) run_kernel(rows.size(), kGrain, ClearUnseen{seen_->on_device(), rows.on_device()});
 }
 
 const FloatArray& LobeAppearance::forward(const SurfelCloud& cloud, const Camera& camera) {
@@ -166,6 +179,7 @@ void LobeAppearance::backward(const FloatArray& dL_doffsets) {
       kGrain,
       GatherRows{dL_doffsets.on_device(), surfels_.on_device(), 3, dL_dcolors_.on_device()}
   );
+  clear_unseen(dL_dcolors_);
   dL_dinputs_.resize(inputs_.size());
   to_color_.backward(dL_dcolors_, &dL_dinputs_);
   dL_dnumbers_.resize(numbers_->size());

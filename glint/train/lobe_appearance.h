@@ -97,6 +97,7 @@ class LobeAppearance {
 
  private:
   void find_visible(const Array<std::uint8_t>& visible);
+  void clear_unseen(FloatArray& rows) const;
 
   LobeAppearanceConfig config_;
   std::size_t count_ = 0;
@@ -106,6 +107,7 @@ class LobeAppearance {
   // Of the last forward(); M visible surfels.
   FloatArray normals_;           // [N][3], where it was given a cloud
   Array<std::uint8_t> visible_;  // [N]
+  const Array<std::uint8_t>* seen_ = nullptr;
   LobeView view_{};
   Array<std::uint32_t> surfels_;         // [M]
   FloatArray seen_features_, inputs_;    // [M][feature], [M][input_width]

@@ -197,7 +197,22 @@ struct LobeInputsVjp {
   }
 };
 
-using LobeAppearanceKernels =
-    KernelList<WorldNormals, MarkInPyramid, GatherRows, AddToRows, LobeInputs, LobeInputsVjp>;
+// Rows of three with visible[row] == 0 become zero.
+struct ClearUnseen {
+  const std::uint8_t* visible;
+  float* rows;
+  GLINT_HD void operator()(std::size_t i) const {
+    if (visible[i / 3] == 0) rows[i] = 0;
+  }
+};
+
+using LobeAppearanceKernels = KernelList<
+    ClearUnseen,
+    WorldNormals,
+    MarkInPyramid,
+    GatherRows,
+    AddToRows,
+    LobeInputs,
+    LobeInputsVjp>;
 
 }  // namespace glint

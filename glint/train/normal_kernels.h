@@ -3,6 +3,9 @@
 // consistency with the depth map (normal_consistency.h, plane_consistency.h).
 #pragma once
 
+#include <cstdint>
+#include <cstring>
+
 #include "glint/core/kernel.h"
 #include "glint/render/depth_normal.h"
 #include "glint/scene/camera.h"
@@ -35,6 +38,51 @@ struct NormalPriorAt {
     unit_normal_vjp(composited, dL_dunit, gradient);
     add3(dL_dnormal, x, y, gradient);
     return static_cast<double>(factor * gated_normal_loss(unit, target, tau, along_axes));
+  }
+};
+
+// The depths that 1 % of the pixels with depth fall short of and exceed; 0: there are none.
+struct DepthRange {
+  float near = 0, far = 0;
+};
+// Depths as keys in their order; none: the largest.
+inline constexpr std::uint32_t kNoDepth = ~0u;
+struct DepthKeys {
+  const float* depth;
+  std::uint32_t* keys;
+  GLINT_HD void operator()(std::size_t i) const {
+    keys[i] = kNoDepth;
+    if (depth[i] > 0) memcpy(&keys[i], &depth[i], sizeof(float));
+  }
+};
+struct FindDepthRange {
+  const std::uint32_t* sorted;
+  std::size_t count;
+  DepthRange* range;
+  GLINT_HD void operator()(std::size_t) const {
+    std::size_t with_depth = 0, end = count;
+    while (with_depth < end) {
+      const std::size_t middle = (with_depth + end) / 2;
+      if (sorted[middle] == kNoDepth)
+        end = middle;
+      else
+        with_depth = middle + 1;
+    }
+    *range = {};
+    if (with_depth == 0) return;
+    const std::size_t tail = with_depth / 100;
+    memcpy(&range->near, &sorted[tail], sizeof(float));
+    memcpy(&range->far, &sorted[with_depth - 1 - tail], sizeof(float));
+  }
+};
+struct WeighByDepth {
+  const float* depth;
+  const DepthRange* range;
+  float* weights;
+  GLINT_HD void operator()(std::size_t i) const {
+    const float z = depth[i], near = range->near, far = range->far;
+    const float share = min_of(max_of((z - near) / (far - near), 0.0f), 1.0f);
+    weights[i] = !(z > 0) ? 0.0f : far > near ? 1 - share : 1.0f;
   }
 };
 
@@ -175,6 +223,9 @@ struct ConsistencyDepthVjp {
 
 using NormalKernels = KernelList<
     ConsistencyDepthVjp,
+    DepthKeys,
+    FindDepthRange,
+    WeighByDepth,
     CountNormals,
     NormalPriorAt<float>,
     NormalSmoothnessAt<float>,

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "glint/core/kernel.h"
+#include "glint/render/op_backends.h"
 #include "glint/train/check_fits.h"
 #include "glint/train/normal_kernels.h"
 #include "glint/train/share_kernels.h"
@@ -13,10 +14,8 @@ namespace glint {
 
 namespace {
 
-struct DepthRange {
-  float near = 0, far = 0;
-};
-// The depths that 1 % of the pixels with depth fall short of and exceed.
+constexpr std::size_t kGrain = 4096;  // pixels a block
+
 DepthRange central_range(const Image& depth) {
   std::vector<float> depths;
   std::copy_if(
@@ -32,6 +31,13 @@ DepthRange central_range(const Image& depth) {
     return depths[rank];
   };
   return {quantile(tail), quantile(static_cast<std::ptrdiff_t>(depths.size()) - 1 - tail)};
+}
+
+void find_range_on_gpu(const Image& depth, Array<DepthRange>& range) {
+  Array<std::uint32_t> keys(depth.num_pixels()), order;
+  run_kernel(keys.size(), kGrain, DepthKeys{depth.on_device(), keys.on_device()});
+  gpu_ops.sort(keys, order);
+  run_kernel(1, 1, FindDepthRange{std::as_const(keys).on_device(), keys.size(), range.on_device()});
 }
 
 }  // namespace
@@ -65,14 +71,17 @@ double NormalPriorLoss::evaluate(
 }
 
 Image inverse_depth_weight(const Image& depth) {
-  synchronize();
-  const auto [near, far] = central_range(depth);
+  Array<DepthRange> range(1);
+  if (on_gpu())
+    find_range_on_gpu(depth, range);
+  else
+    range[0] = central_range(depth);
   Image weights(depth.width(), depth.height(), 1);
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i) {
-    const float z = depth.data()[i];
-    if (!(z > 0)) continue;
-    weights.data()[i] = far > near ? 1 - std::clamp((z - near) / (far - near), 0.0f, 1.0f) : 1.0f;
-  }
+  run_kernel(
+      depth.num_pixels(),
+      kGrain,
+      WeighByDepth{depth.on_device(), range.on_device(), weights.on_device()}
+  );
   return weights;
 }
 

@@ -7,6 +7,8 @@
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
+#include "glint/render/surfel_set.h"
+#include "glint/render/void_steps.h"
 #include "glint/train/adam_kernels.h"
 
 namespace glint {
@@ -27,10 +29,12 @@ void TrainableArray::step(float rate) {
       values.on_device(), gradient.on_device(), first_.on_device(), second_.on_device(), {}, 1, 0};
   kernel.rates[0] = rate / (1 - std::pow(Kernel::kBeta1, static_cast<float>(steps_)));
   kernel.scale_v = 1 / (1 - std::pow(Kernel::kBeta2, static_cast<float>(steps_)));
+  kernel.is_void = void_word();
   run_kernel(values.size(), kGrain, kernel);
 }
 
 void TrainableArray::check_finite(const std::string& name) const {
+  if (on_gpu() && is_finite(values)) return;
   for (std::size_t i = 0; i < values.size(); ++i)
     GLINT_CHECK(
         std::isfinite(values[i]),

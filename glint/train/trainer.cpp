@@ -10,6 +10,7 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "glint/core/rng.h"
+#include "glint/render/void_steps.h"
 
 namespace glint {
 
@@ -24,6 +25,18 @@ Json log_line(const StepStats& stats, double seconds) {
       {"seconds", seconds}};
   for (const auto& [name, value] : stats.terms) line["terms"][name] = value;
   return line;
+}
+
+// On a GPU the host looks at losses this often; in between it waits for nothing.
+constexpr int kToldInterval = 20;
+
+void note_void_steps(int iteration, Json& events) {
+  const std::size_t count = take_void_steps();
+  if (count > 0)
+    events.push_back(
+        {{"iteration", iteration},
+         {"text", fmt::format("{} steps were left out: no room for their pairs yet", count)}}
+    );
 }
 
 void check_step(const Method& method, const StepStats& stats, const fs::path& checkpoint) {
@@ -78,22 +91,30 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
   Json events = Json::array();  // since the last line of the log
   for (int i = 0; i < options.run.iterations; ++i) {
     throw_if_interrupted();
+    const bool due = (i + 1) % options.log_interval == 0 || i + 1 == options.run.iterations;
+    const SilentStep silent(!due && i % kToldInterval != 0);
     const auto start = std::chrono::steady_clock::now();
     const StepStats stats = method.step(i);
+    end_silent_step();
     report.seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    check_step(method, stats, checkpoint);
-    report.last = stats;
     report.iterations = i + 1;
+    if (!SilentStep::now()) {
+      check_step(method, stats, checkpoint);
+      report.last = stats;
+      note_void_steps(i, events);
+    }
     progress.advance(
         1,
         fmt::format(
-            "loss {:.4f}  psnr {:.2f}  {} surfels", stats.loss, stats.psnr, stats.num_surfels
+            "loss {:.4f}  psnr {:.2f}  {} surfels",
+            report.last.loss,
+            report.last.psnr,
+            report.last.num_surfels
         )
     );
     for (const std::string& event : stats.events)
       events.push_back({{"iteration", i}, {"text", event}});
-    const bool due = (i + 1) % options.log_interval == 0 || i + 1 == options.run.iterations;
     if (on_disk && due) {
       Json line = log_line(stats, report.seconds);
       if (!events.empty()) line["events"] = std::exchange(events, Json::array());

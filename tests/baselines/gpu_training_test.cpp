@@ -53,6 +53,7 @@ TEST_CASE("Every method's first steps have the same losses on a GPU") {
 }
 
 TEST_CASE("Methods train to the same quality on a GPU") {
+  watch_memory(false);
   for (const char* id : {"2dgs", "glint"}) {
     const double expected = Training(id, kSteps, kSteps).test_psnr();
     for_each_gpu_backend([&](const std::string& backend) {

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// Silent steps (glint/core/device.h) have no more room than the steps before them needed. One that
+// needs more is void: the op that finds it out says so in a word on the device, the optimiser and
+// the statistics of density control see the word and leave everything as it is, and the next step
+// that is not silent makes room.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace glint {
+
+// Where ops write 1, and kernels that change a state look; null when steps are not silent.
+std::uint32_t* void_word();
+
+// Behind each silent step: counts it if it was void, and clears the word.
+void end_silent_step();
+// Void steps since the last call; waits for the device.
+std::size_t take_void_steps();
+
+}  // namespace glint

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// A steady step on a GPU: the host asks for nothing and gets no memory, and computes what any other
+// step does. On the host's kernels, whose counters are those of a device.
+#include <catch2/catch.hpp>
+
+#include "glint/method.h"
+#include "glint/render/void_steps.h"
+#include "glint/scene/ply.h"
+#include "tests/support/gpu_backends.h"
+#include "tests/support/small_room.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+// Density control is due at step 50; behind it all losses are there.
+constexpr int kPlanned = 60, kSteady = 56;
+
+struct Costs {
+  DeviceCounters counters;
+  int steps = 0;
+  DeviceCounters before = device_counters;
+  void add() {
+    const DeviceCounters& now = device_counters;
+    counters.launches += now.launches - before.launches;
+    counters.uploads += now.uploads - before.uploads;
+    counters.downloads += now.downloads - before.downloads;
+    counters.waits += now.waits - before.waits;
+    counters.allocations += now.allocations - before.allocations;
+    ++steps;
+  }
+};
+
+// Trains to the end, with silent steps from `silent_from` on; the cost of the last ones.
+Costs train_silently(Method& method, const Scene& scene, int silent_from) {
+  method.initialize(scene, {kPlanned, 0});
+  watch_memory(false);
+  Costs costs;
+  for (int i = 0; i < kPlanned; ++i) {
+    if (i == kSteady) watch_memory(true);
+    const SilentStep silent(i >= silent_from && i != kSteady - 5);
+    costs.before = device_counters;
+    method.step(i);
+    end_silent_step();
+    if (i >= kSteady) costs.add();
+  }
+  return costs;
+}
+
+std::string bytes_of(const Method& method) {
+  const TempFolder folder;
+  method.save(folder.path().string());
+  std::string bytes;
+  for (const fs::path& file : list_files(folder.path())) bytes += read_file(file);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("A steady step asks a GPU for nothing, whatever the method") {
+  use_host_kernels();
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
+    INFO(id);
+    const Scene scene = small_room();
+    const auto method = create_method(id);
+    const Costs costs = train_silently(*method, scene, 20);
+    CHECK(costs.steps == kPlanned - kSteady);
+    CHECK(costs.counters.downloads == 0);
+    CHECK(costs.counters.waits == 0);
+    CHECK(costs.counters.allocations == 0);
+    CHECK(costs.counters.launches > 10 * (kPlanned - kSteady));
+    WARN(
+        id << ": " << costs.counters.launches / static_cast<std::uint64_t>(costs.steps)
+           << " launches and " << costs.counters.uploads / static_cast<std::uint64_t>(costs.steps)
+           << " uploads a steady step"
+    );
+    CHECK(take_void_steps() == 0);
+  }
+  use_cpu();
+}
+
+TEST_CASE("A training of silent steps ends with the bytes of one that is told everything") {
+  use_host_kernels();
+  for (const char* id : {"2dgs", "pgsr", "ref-gs", "glint", "glint/release"}) {
+    INFO(id);
+    const Scene scene = small_room();
+    const auto told = create_method(id), silent = create_method(id);
+    train_silently(*told, scene, kPlanned);
+    train_silently(*silent, scene, 1);
+    CHECK(bytes_of(*told) == bytes_of(*silent));
+  }
+  use_cpu();
+}
