@@ -61,8 +61,28 @@ GLINT_HD float entry(const Box& box, Vec3f origin, Vec3f inverse, float far) {
   return in <= out * 1.00001f ? in : 2e30f;
 }
 
+// What a ray costs, for those who ask (tests); kernels count nothing.
+struct WalkCounts {
+  static constexpr bool kCounts = true;
+  std::uint32_t nodes = 0, discs = 0, hits = 0, searches = 0;
+  GLINT_HD void node() { ++nodes; }
+  GLINT_HD void disc() { ++discs; }
+  GLINT_HD void hit() { ++hits; }
+  GLINT_HD void search() { ++searches; }
+};
+struct NoCounts {
+  static constexpr bool kCounts = false;
+  GLINT_HD void node() {}
+  GLINT_HD void disc() {}
+  GLINT_HD void hit() {}
+  GLINT_HD void search() {}
+};
+
 // The nearest hits behind list.after.
-GLINT_HD void find_nearest(const Tree& tree, Vec3f origin, Vec3f direction, HitList& list) {
+template <class Counts>
+GLINT_HD void find_nearest(
+    const Tree& tree, Vec3f origin, Vec3f direction, HitList& list, Counts& counts
+) {
   constexpr int kStack = 64;  // levels: keys have 64 bits
   const auto safe = [](float v) { return abs_of(v) > 1e-20f ? 1 / v : (v < 0 ? -1e20f : 1e20f); };
   const Vec3f inverse{safe(direction.x), safe(direction.y), safe(direction.z)};
@@ -73,8 +93,10 @@ GLINT_HD void find_nearest(const Tree& tree, Vec3f origin, Vec3f direction, HitL
   while (size > 0) {
     const std::uint32_t index = stack[--size];
     const TreeNode& node = tree.nodes[index];
+    counts.node();
     if (entry(node.box, origin, inverse, list.last_t()) > list.last_t() * 1.00001f) continue;
     if (tree.is_leaf(index)) {
+      counts.disc();
       const std::uint32_t surfel = tree.order[index - (tree.count - 1)];
       const DiscSurfel& disc = tree.discs[surfel];
       const PlaneHit<float> hit = meet(disc, origin, direction);
@@ -124,6 +146,7 @@ struct DeviceHits {
   std::uint32_t *counts, *surfels;
 };
 
+template <class Counts = NoCounts>
 struct ForwardRays {
   Tree tree;
   DeviceTraceInput input;
@@ -131,6 +154,7 @@ struct ForwardRays {
   TraceCutoffs cutoffs;
   DeviceTraceOutput out;
   DeviceHits saved;
+  Counts* counts = nullptr;  // [rays], where they are asked for
 
   struct Sums {
     Vec3f color{}, normal{};
@@ -140,9 +164,11 @@ struct ForwardRays {
   GLINT_HD void operator()(std::size_t i) const {
     const Vec3f origin = rays.origin(i), direction = rays.direction(i);
     Sums sums;
+    Counts count;
     int hits = 0;
     if (is_ray(origin, direction) && input.count > 0)
-      hits = trace(origin, direction, saved.surfels + i * max_hits(), sums);
+      hits = trace(origin, direction, saved.surfels + i * max_hits(), sums, count);
+    if constexpr (Counts::kCounts) counts[i] = count;
     saved.counts[i] = static_cast<std::uint32_t>(hits);
     put3(out.color, i, sums.color);
     put3(out.normal, i, sums.normal);
@@ -152,18 +178,22 @@ struct ForwardRays {
   GLINT_HD std::size_t max_hits() const { return static_cast<std::size_t>(cutoffs.max_hits); }
 
  private:
-  GLINT_HD int trace(Vec3f origin, Vec3f direction, std::uint32_t* kept, Sums& sums) const {
+  GLINT_HD int trace(Vec3f origin, Vec3f direction, std::uint32_t* kept, Sums& sums, Counts& counts)
+      const {
     float basis[16];
     sh_basis(input.sh_degree, normalize(direction), basis);
     HitList list;
     list.after = {max_of(cutoffs.near, 0.0f), ~0u};
     int count = 0;
     do {
-      find_nearest(tree, origin, direction, list);
+      counts.search();
+      find_nearest(tree, origin, direction, list, counts);
       for (int k = 0; k < list.count && count < cutoffs.max_hits; ++k) {
         const int counted = composite(list.hits[k], origin, direction, basis, sums);
         if (counted < 0) return count;
-        if (counted > 0) kept[count++] = list.hits[k].surfel;
+        if (counted == 0) continue;
+        counts.hit();
+        kept[count++] = list.hits[k].surfel;
       }
       if (list.count > 0) list.after = list.hits[list.count - 1];
     } while (list.count == HitList::kCapacity && count < cutoffs.max_hits);

@@ -26,15 +26,9 @@ class TracePipeline {
 
   explicit TracePipeline(Exec& exec) : exec_(exec) {}
 
-  void forward(const DeviceTraceCall& call) {
-    call_ = call;
-    update_tree(call.input, call.cutoffs);
-    counts_.resize(call.num_rays);
-    hits_.resize(call.num_rays * static_cast<std::size_t>(call.cutoffs.max_hits));
-    exec_.for_each(
-        call.num_rays, ForwardRays{tree(), call.input, call.rays, call.cutoffs, call.out, saved()}
-    );
-  }
+  void forward(const DeviceTraceCall& call) { walk<NoCounts>(call, nullptr); }
+  // The same, and what each ray costs: counts [rays].
+  void forward(const DeviceTraceCall& call, WalkCounts* counts) { walk(call, counts); }
   // Of the last forward call.
   void backward(const DeviceTraceOutput& dL_dout, const DeviceTraceGradients& gradients) {
     sums_.resize(call_.input.count * kTraceSums);
@@ -66,6 +60,17 @@ class TracePipeline {
  private:
   static constexpr int kRebuildInterval = 16;  // updates; boxes loosen as surfels move
 
+  template <class Counts>
+  void walk(const DeviceTraceCall& call, Counts* counts) {
+    call_ = call;
+    update_tree(call.input, call.cutoffs);
+    counts_.resize(call.num_rays);
+    hits_.resize(call.num_rays * static_cast<std::size_t>(call.cutoffs.max_hits));
+    exec_.for_each(
+        call.num_rays,
+        ForwardRays<Counts>{tree(), call.input, call.rays, call.cutoffs, call.out, saved(), counts}
+    );
+  }
   void update_tree(const DeviceTraceInput& input, const TraceCutoffs& cutoffs) {
     const std::size_t n = input.count;
     const bool refit = order_.size() == n && ++updates_ % kRebuildInterval != 0;
