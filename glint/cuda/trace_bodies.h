@@ -49,16 +49,20 @@ GLINT_HD PlaneHit<float> meet(const DiscSurfel& d, Vec3f origin, Vec3f direction
   return intersect(plane.zeta, plane.det);
 }
 
-// Where a ray enters a box, behind 0; beyond `far`: it does not.
-GLINT_HD float entry(const Box& box, Vec3f origin, Vec3f inverse, float far) {
-  float in = 0, out = far;
+// Where a ray enters a box, behind 0; 2e30 where it does not, where that is behind `far`, or where
+// it leaves before `near`. An empty box has its near sides behind its far ones.
+GLINT_HD float entry(const Box& box, Vec3f origin, Vec3f inverse, float near, float far) {
+  constexpr float kRounding = 1.00001f;
+  float in = 0, out = 1e30f;
   for (int axis = 0; axis < 3; ++axis) {
+    const bool forward = inverse[axis] >= 0;
     const float a = (box.low[axis] - origin[axis]) * inverse[axis];
     const float b = (box.high[axis] - origin[axis]) * inverse[axis];
-    in = max_of(in, min_of(a, b));
-    out = min_of(out, max_of(a, b));
+    in = max_of(in, forward ? a : b);
+    out = min_of(out, forward ? b : a);
   }
-  return in <= out * 1.00001f ? in : 2e30f;
+  out *= kRounding;
+  return in <= out && out >= near && in <= far * kRounding ? in : 2e30f;
 }
 
 // What a ray costs, for those who ask (tests); kernels count nothing.
@@ -90,11 +94,14 @@ GLINT_HD void find_nearest(
   int size = 0;
   stack[size++] = 0;
   list.count = 0;
+  const auto enter = [&](const Box& box) {
+    return entry(box, origin, inverse, list.after.t, list.last_t());
+  };
   while (size > 0) {
     const std::uint32_t index = stack[--size];
     const TreeNode& node = tree.nodes[index];
     counts.node();
-    if (entry(node.box, origin, inverse, list.last_t()) > list.last_t() * 1.00001f) continue;
+    if (enter(node.box) > 1e30f) continue;
     if (tree.is_leaf(index)) {
       counts.disc();
       const std::uint32_t surfel = tree.order[index - (tree.count - 1)];
@@ -103,8 +110,8 @@ GLINT_HD void find_nearest(
       if (squared_radius(hit) <= disc.max_rho && hit.t < 1e30f) list.insert({hit.t, surfel});
       continue;
     }
-    const float left = entry(tree.nodes[node.left].box, origin, inverse, list.last_t());
-    const float right = entry(tree.nodes[node.right].box, origin, inverse, list.last_t());
+    const float left = enter(tree.nodes[node.left].box);
+    const float right = enter(tree.nodes[node.right].box);
     // The farther child first onto the stack.
     const bool left_first = left <= right;
     const float near = left_first ? left : right, far = left_first ? right : left;

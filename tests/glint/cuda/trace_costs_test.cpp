@@ -31,3 +31,14 @@ TEST_CASE("A ray's counted hits are those it composites, of discs it tested") {
   CHECK(hits > kSize.num_pixels());
   CHECK(hits == pipeline.num_hits());
 }
+
+TEST_CASE("Surfels that count nowhere cost a ray next to nothing") {
+  RoomScene room(2000);
+  const Rays rays = room_rays(kSize);
+  const MeanCounts before = mean_counts(room.arrays.view(), rays);
+  room.add_dead(2000);
+  const MeanCounts after = mean_counts(room.arrays.view(), rays);
+  CHECK(after.hits == before.hits);
+  CHECK(after.nodes < 1.02 * before.nodes);
+  CHECK(after.discs < 1.02 * before.discs);
+}
