@@ -130,7 +130,8 @@ inline DeviceTraceCall device_call(const TraceCall& call, const TraceOutput& out
       .rays = {call.rays.origins.data(), call.rays.directions.data()},
       .num_rays = call.rays.origins.num_pixels(),
       .cutoffs = cutoffs(call.settings),
-      .out = device_output(output)};
+      .out = device_output(output),
+      .width = static_cast<std::size_t>(call.rays.origins.width())};
 }
 
 template <class Exec>
