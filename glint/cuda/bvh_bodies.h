@@ -73,7 +73,8 @@ struct UniteBoxes {
   }
 };
 
-// Surfels that count nowhere come last, in a subtree of their own, whose box is empty.
+// Subtrees of their own for surfels as large as a good part of the scene, whose boxes would make
+// those of all others around them as large; and for those that count nowhere, whose box is empty.
 struct MortonKeys {
   DeviceTraceInput input;
   TraceCutoffs cutoffs;
@@ -82,10 +83,18 @@ struct MortonKeys {
   std::uint32_t* order;
 
   GLINT_HD void operator()(std::size_t i) const {
-    const Disc disc = disc_at(input, cutoffs, i);
-    keys[i] = disc.max_rho > 0 ? morton_code(disc.mean, bounds->low, bounds->high)
-                               : std::uint64_t{1} << 63;
-    order[i] = disc.surfel;
+    order[i] = static_cast<std::uint32_t>(i);
+    keys[i] = key(disc_at(input, cutoffs, i));
+  }
+
+ private:
+  GLINT_HD std::uint64_t key(const Disc& disc) const {
+    constexpr float kLarge = 0.1f;  // of the scene: least nodes visited, on made and trained scenes
+    constexpr std::uint64_t kNowhere = std::uint64_t{1} << 63, kSmall = std::uint64_t{1} << 62;
+    if (!(disc.max_rho > 0)) return kNowhere;
+    const float radius2 = disc.max_rho * max_of(length2(disc.h0), length2(disc.h1));
+    const bool small = radius2 < square(kLarge * widest(bounds->high - bounds->low));
+    return (small ? kSmall : 0) | morton_code(disc.mean, bounds->low, bounds->high) >> 1;
   }
 };
 

@@ -59,7 +59,8 @@ struct DeviceHits {
   }
 };
 
-template <class Counts>
+// kHits: that a search finds at once.
+template <int kHits, class Counts>
 struct FindHits {
   static constexpr int kThreads = 128;
   using Shared = WalkStack<kThreads>;
@@ -89,31 +90,36 @@ struct FindHits {
       const Vec3f origin = rays.origin(i), direction = rays.direction(i);
       if (is_ray(origin, direction)) {
         const WalkedRay ray(origin, direction);
-        TreeWalk<kThreads, Counts> walk(tree, ray, cutoffs, stack, thread, count);
-        hits = keep(walk, place, count);
+        TreeWalk<NearestList<kHits>, Shared, Counts> walk(tree, ray, stack, thread, count);
+        hits = keep(walk, ray, place, count);
       }
       if constexpr (Counts::kCounts) counts[i] = count;
     }
     saved.counts[place] = static_cast<std::uint32_t>(hits);
   }
+  // Those that count, up to where the ray stops.
   template <class Walk>
-  GLINT_HD int keep(Walk& walk, std::size_t place, Counts& counts) const {
-    NearestList list(cutoffs.near);
+  GLINT_HD int keep(Walk& walk, const WalkedRay& ray, std::size_t place, Counts& counts) const {
+    NearestList<kHits> list(cutoffs.near);
     float transmittance = 1;
     int hits = 0;
     for (bool more = cutoffs.max_hits > 0; more;) {
-      list.start(transmittance, cutoffs.min_transmittance);
+      list.start();
       walk.nearest(list);
-      more = list.finish([&](const WalkedHit& hit) {
-        transmittance =
-            blend_step(transmittance, hit.alpha, cutoffs.min_transmittance).transmittance;
+      more = list.give([&](std::uint32_t surfel) {
+        const std::uint32_t slot = tree.slot_of[surfel];
+        const Disc& disc = tree.discs[slot];
+        const PlaneHit<float> hit = meet(disc, ray.origin, ray.direction);
+        const float alpha = alpha_of(disc, hit, cutoffs.max_rho).alpha;
+        if (alpha < cutoffs.min_alpha) return true;
+        transmittance = blend_step(transmittance, alpha, cutoffs.min_transmittance).transmittance;
         if (transmittance < 0) return false;
         if (hits == saved.rows) {
           *too_many = 1;
           return false;
         }
         counts.hit();
-        saved.slot(hits++, place) = tree.slot_of[hit.surfel];
+        saved.slot(hits++, place) = slot;
         return hits < cutoffs.max_hits;
       });
     }

@@ -27,7 +27,7 @@ struct DeviceTraceCall {
 // Memory for hits is of a size that the host knows: as many as the last calls had, with a margin.
 // Calls that may wait look whether they fit and make room. Silent ones (SilentStep) drop what does
 // not fit, the same hits each time, and say so in a word on the device.
-template <class Exec>
+template <class Exec, int kHits = 16>
 class TracePipeline {
  public:
   template <class T>
@@ -70,13 +70,21 @@ class TracePipeline {
     exec_.download(counts_, saved_.places, counts.data());
     return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   }
-  // Not 0: silent calls dropped hits since it was last cleared. On the device.
-  Buffer<std::uint32_t>& silent_overflow() { return silent_overflow_; }
+  // Whether silent calls dropped hits since this was last asked; if so, there is more room from now
+  // on. Waits for the device.
+  bool dropped_hits() {
+    if (read(silent_overflow_) == 0) return false;
+    exec_.fill_zero(silent_overflow_);
+    rows_ *= 2;
+    hits_a_place_ *= 2;
+    return true;
+  }
 
  private:
   static constexpr int kFirstRows = 64;    // hits of a ray for which there is room at first
   static constexpr float kFirstHits = 32;  // of a place, on average, in backward()
-  static constexpr float kMargin = 1.25f;
+  static constexpr float kMargin = 1.5f;   // above what a call had; views differ
+  static constexpr float kKept = 0.9f;     // of the room that there was, at least
 
   // ---- forward
 
@@ -108,10 +116,10 @@ class TracePipeline {
     saved_.counts = counts_.data();
     saved_.slots = slots_.data();
     if (!SilentStep::now()) exec_.fill_zero(overflow_);
-    constexpr std::size_t kThreads = FindHits<Counts>::kThreads;
+    constexpr std::size_t kThreads = FindHits<kHits, Counts>::kThreads;
     exec_.launch(
         (saved_.places + kThreads - 1) / kThreads,
-        FindHits<Counts>{
+        FindHits<kHits, Counts>{
             tree_.tree(),
             call_.input.count,
             call_.rays,
@@ -140,7 +148,9 @@ class TracePipeline {
     if (!SilentStep::now()) {
       exec_.for_each(1, CopyWord{first_hits_.data() + saved_.places, overflow_.data()});
       const auto hits = static_cast<float>(read(overflow_));
-      hits_a_place_ = 1 + kMargin * hits / std::max(places, 1.0f);
+      const float room = 1 + kMargin * hits / std::max(places, 1.0f);
+      hits_a_place_ = std::max(room, known_ ? kKept * hits_a_place_ : 0.0f);
+      known_ = true;
     }
     const auto capacity = static_cast<std::uint32_t>(hits_a_place_ * places);
     hits_.resize(capacity);
@@ -190,6 +200,7 @@ class TracePipeline {
   DeviceHits saved_{};
   int rows_ = kFirstRows;
   float hits_a_place_ = kFirstHits;
+  bool known_ = false;  // from a call
   Buffer<std::uint32_t> counts_, slots_, first_hits_, order_, overflow_, silent_overflow_;
   Buffer<std::uint64_t> keys_;
   Buffer<HitGradient> hits_;

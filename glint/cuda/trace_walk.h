@@ -26,60 +26,51 @@ struct NoCounts {
 
 inline constexpr float kNoHit = 2e30f, kFarthest = 1e30f;
 
-struct WalkedHit {
-  float t, alpha;
+// A hit's place on its ray.
+struct HitKey {
+  float t;
   std::uint32_t surfel;
-  GLINT_HD bool before(const WalkedHit& other) const {
+  GLINT_HD bool before(const HitKey& other) const {
     return t < other.t || (t == other.t && surfel < other.surfel);
   }
 };
 
 // The first hits behind `after`, in order. In registers: no index depends on the data.
+template <int kCapacity>
 class NearestList {
  public:
-  static constexpr int kCapacity = 8;
-
-  GLINT_HD explicit NearestList(float near) : after_{max_of(near, 0.0f), 0, ~0u} {}
-  // What the ray has left behind `after`.
-  GLINT_HD void start(float transmittance, float min_transmittance) {
-    transmittance_ = transmittance;
-    min_transmittance_ = min_transmittance;
-    last_t_ = kFarthest;
-    unrolled<kCapacity>([&](int k) { hits_[k] = {kNoHit, 0, ~0u}; });
+  GLINT_HD explicit NearestList(float near) : after_{max_of(near, 0.0f), ~0u} {}
+  GLINT_HD void start() {
+    unrolled<kCapacity>([&](int k) { hits_[k] = none(); });
   }
   GLINT_HD float after_t() const { return after_.t; }
-  // Hits behind it do not matter: the list is full, or the ray has stopped there.
-  GLINT_HD float last_t() const { return last_t_; }
-  GLINT_HD bool wants(float t) const { return t >= after_.t && t <= last_t_; }
-  GLINT_HD void insert(WalkedHit hit) {
-    if (!after_.before(hit)) return;
+  // Hits behind it do not matter.
+  GLINT_HD float last_t() const { return min_of(hits_[kCapacity - 1].t, kFarthest); }
+  GLINT_HD void insert(HitKey hit) {
+    if (!(hit.t <= last_t()) || !after_.before(hit)) return;
     unrolled<kCapacity>([&](int k) {
       if (!hit.before(hits_[k])) return;
-      const WalkedHit moved = hits_[k];
+      const HitKey moved = hits_[k];
       hits_[k] = hit;
       hit = moved;
     });
-    last_t_ = hits_[kCapacity - 1].t;
-    float transmittance = transmittance_;
-    unrolled<kCapacity>([&](int k) {
-      if (transmittance < 0) return;
-      transmittance = blend_step(transmittance, hits_[k].alpha, min_transmittance_).transmittance;
-      if (transmittance < 0) last_t_ = hits_[k].t;
-    });
-    last_t_ = min_of(last_t_, kFarthest);
   }
-  // f(hit) for each in order until it returns false; whether there may be more behind them.
+  // f(surfel) for each in order until it returns false; whether there may be more behind them.
   template <class F>
-  GLINT_HD bool finish(F&& f) {
-    bool more = true;
-    unrolled<kCapacity>([&](int k) { more = more && hits_[k].t < kFarthest && f(hits_[k]); });
-    after_ = hits_[kCapacity - 1];
-    return more;
+  GLINT_HD bool give(F&& f) {
+    const bool full = hits_[kCapacity - 1].t < kFarthest;
+    while (hits_[0].t < kFarthest) {
+      if (!f(hits_[0].surfel)) return false;
+      after_ = hits_[0];
+      unrolled<kCapacity - 1>([&](int k) { hits_[k] = hits_[k + 1]; });
+      hits_[kCapacity - 1] = none();
+    }
+    return full;
   }
 
  private:
-  WalkedHit after_, hits_[kCapacity];
-  float transmittance_ = 1, min_transmittance_ = 0, last_t_ = kFarthest;
+  GLINT_HD static HitKey none() { return {kNoHit, ~0u}; }
+  HitKey after_, hits_[kCapacity];
 };
 
 struct Tree {
@@ -91,9 +82,9 @@ struct Tree {
 
 // What is still to be walked: a thread's part of its block's memory. It may be full: what does not
 // fit is walked disc by disc, which is correct and, that deep in the tree, short.
-template <int kThreads>
+template <int kThreads, int kRoom = 24>
 struct WalkStack {
-  static constexpr int kDepth = 24;
+  static constexpr int kDepth = kRoom;
   float entries[kDepth][kThreads];
   ChildRef children[kDepth][kThreads];
 };
@@ -114,7 +105,8 @@ struct WalkedRay {
 
 // Where a ray enters a child, behind 0; kNoHit where it does not, where that is behind what the
 // list wants, or where it leaves before. An empty box has its near sides behind its far ones.
-GLINT_HD float entry(const WideNode& node, int k, const WalkedRay& ray, const NearestList& list) {
+template <class List>
+GLINT_HD float entry(const WideNode& node, int k, const WalkedRay& ray, const List& list) {
   constexpr float kRounding = 1.00001f;
   float in = 0, out = kFarthest;
   for (int axis = 0; axis < 3; ++axis) {
@@ -128,25 +120,15 @@ GLINT_HD float entry(const WideNode& node, int k, const WalkedRay& ray, const Ne
   return in <= out && out >= list.after_t() && in <= list.last_t() * kRounding ? in : kNoHit;
 }
 
-template <int kThreads, class Counts>
+template <class List, class Stack, class Counts>
 class TreeWalk {
  public:
   GLINT_HD TreeWalk(
-      const Tree& tree,
-      const WalkedRay& ray,
-      const TraceCutoffs& cutoffs,
-      WalkStack<kThreads>& stack,
-      int thread,
-      Counts& counts
+      const Tree& tree, const WalkedRay& ray, Stack& stack, int thread, Counts& counts
   )
-      : tree_(tree),
-        ray_(ray),
-        cutoffs_(cutoffs),
-        stack_(stack),
-        thread_(thread),
-        counts_(counts) {}
+      : tree_(tree), ray_(ray), stack_(stack), thread_(thread), counts_(counts) {}
 
-  GLINT_HD void nearest(NearestList& list) {
+  GLINT_HD void nearest(List& list) {
     counts_.search();
     size_ = 0;
     open(0, list);
@@ -163,7 +145,7 @@ class TreeWalk {
 
  private:
   // Pushes the children that the ray enters, the nearest last.
-  GLINT_HD void open(std::uint32_t index, NearestList& list) {
+  GLINT_HD void open(std::uint32_t index, List& list) {
     counts_.node();
     const WideNode& node = tree_.wide[index];
     float entries[kWidth];
@@ -185,8 +167,8 @@ class TreeWalk {
       if (entries[k] < kFarthest) push(entries[k], children[k], list);
     });
   }
-  GLINT_HD void push(float entry, ChildRef child, NearestList& list) {
-    if (size_ < WalkStack<kThreads>::kDepth) {
+  GLINT_HD void push(float entry, ChildRef child, List& list) {
+    if (size_ < Stack::kDepth) {
       stack_.entries[size_][thread_] = entry;
       stack_.children[size_][thread_] = child;
       ++size_;
@@ -197,21 +179,18 @@ class TreeWalk {
       test(node.first, node.count, list);
     }
   }
-  GLINT_HD void test(std::uint32_t first, std::uint32_t count, NearestList& list) {
+  GLINT_HD void test(std::uint32_t first, std::uint32_t count, List& list) {
     for (std::uint32_t slot = first; slot < first + count; ++slot) {
       counts_.disc();
       const Disc& disc = tree_.discs[slot];
       const PlaneHit<float> hit = meet(disc, ray_.origin, ray_.direction);
-      if (!(squared_radius(hit) <= disc.max_rho) || !list.wants(hit.t)) continue;
-      const float alpha = alpha_of(disc, hit, cutoffs_.max_rho).alpha;
-      if (alpha >= cutoffs_.min_alpha) list.insert({hit.t, alpha, disc.surfel});
+      if (squared_radius(hit) <= disc.max_rho) list.insert({hit.t, disc.surfel});
     }
   }
 
   const Tree& tree_;
   const WalkedRay& ray_;
-  const TraceCutoffs& cutoffs_;
-  WalkStack<kThreads>& stack_;
+  Stack& stack_;
   int thread_, size_ = 0;
   Counts& counts_;
 };

@@ -8,7 +8,7 @@
 namespace glint::gpu {
 
 inline constexpr int kWidth = 4;
-inline constexpr std::uint32_t kLeafDiscs = 4;
+inline constexpr std::uint32_t kLeafDiscs = 2;
 
 // A child: an inner node's number, or a leaf's first slot and its number of discs.
 struct ChildRef {

@@ -19,13 +19,14 @@ GLINT_HD std::uint64_t spread_bits(std::uint64_t v) {
   return (v | v << 2) & 0x1249249249249249ull;
 }
 
+GLINT_HD float widest(Vec3f size) { return max_of(max_of(size.x, max_of(size.y, size.z)), 1e-30f); }
+
 // Of the (2^21)^3 cells of a cube around a box, the place of the one that holds `point`. Cells are
 // cubes, too, so that one point far away makes them larger but not longer: in a box of 1000 m
 // they are half a millimetre wide.
 GLINT_HD std::uint64_t morton_code(Vec3f point, Vec3f low, Vec3f high) {
   constexpr float kCells = 1 << kMortonBits;
-  const Vec3f size = high - low;
-  const float width = max_of(max_of(size.x, max_of(size.y, size.z)), 1e-30f);
+  const float width = widest(high - low);
   std::uint64_t code = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const float cell = min_of(kCells - 1, kCells * ((point[axis] - low[axis]) / width));
