@@ -25,13 +25,13 @@ GLINT_HD float half_area(const Box& box) {
   return size.x < 0 ? -1.0f : size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-// 64 bytes.
 struct alignas(16) Disc {
   Vec3f mean, h0, h1, normal;
   float opacity;
   float max_rho;  // squared radius in sigma beyond which it does not count; not positive: nowhere
   std::uint32_t surfel;
 };
+static_assert(sizeof(Disc) == 64);
 struct TraceCutoffs {
   float near, max_rho, min_alpha, min_transmittance;
   int max_hits;

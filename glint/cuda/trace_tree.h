@@ -8,9 +8,9 @@
 
 namespace glint::gpu {
 
-// Bodies are the same text as long as their fields are.
+// In all that discs depend on.
 inline bool same(const TraceCutoffs& a, const TraceCutoffs& b) {
-  return a.max_rho == b.max_rho && a.min_alpha == b.min_alpha;  // all that discs depend on
+  return a.max_rho == b.max_rho && a.min_alpha == b.min_alpha;
 }
 inline bool same(const DeviceTraceInput& a, const DeviceTraceInput& b) {
   return a.count == b.count && a.means == b.means && a.scales == b.scales &&
@@ -39,9 +39,9 @@ class TraceTree {
   Tree tree() const { return {wide_.data(), nodes_.data(), discs_.data(), slot_of_.data()}; }
 
  private:
-  // Updates; boxes grow into each other as surfels move. A build costs no more than a handful of
-  // launches and one sort, a sixteenth of it a call less than it would cost to measure whether it
-  // pays and to wait for the answer.
+  // Updates; boxes grow into each other as surfels move. Not by how much: the answer would have to
+  // come to the host, and a sixteenth of a build, one sort of all surfels and five small kernels,
+  // is little beside the refit of every call.
   static constexpr int kRebuildInterval = 16;
 
   void build() {

@@ -31,11 +31,12 @@ struct ChildRef {
 };
 static_assert(kLeafDiscs <= 8);
 
-// Two or one line of a GPU's cache. Boxes that are not there are empty.
+// A line of a GPU's cache. Boxes that are not there are empty.
 struct alignas(32 * kWidth) WideNode {
   float low[3][kWidth], high[3][kWidth];
   ChildRef children[kWidth];
 };
+static_assert(sizeof(WideNode) == 128);
 
 // f(0), ..., f(kCount - 1) with constants, so that arrays indexed by them stay in registers.
 template <int kCount, class F, int kFirst = 0>

@@ -33,6 +33,15 @@ TEST_CASE("The GPU's tracer on the host follows the cut-offs") {
   }
 }
 
+TEST_CASE("The GPU's tracer on the host does what the CPU's does in a room") {
+  RoomScene room(5000);
+  room.add_large(50);
+  room.add_outlier();
+  room.add_dead(500);
+  check_as_on_cpu(room.arrays, room_rays({48, 27}), {});
+  check_as_on_cpu(room.arrays, scattered_rays({48, 27}), {});
+}
+
 TEST_CASE("Rays that search again and again find every hit once") {
   Rng rng(7);
   const TraceArrays arrays = random_arrays(800, rng);
