@@ -1,76 +1,14 @@
 // SPDX-License-Identifier: MIT
 // A binary tree over surfels in Morton order, built and refitted on the device [Karras12:
 // "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees"]. Inner nodes
-// 0..n-2, leaves n-1..2n-2; leaf n-1+i holds the i-th surfel of the order. Node 0 is the root.
+// 0..n-2, leaves n-1..2n-2; leaf n-1+i is slot i: the i-th surfel of the order. Node 0 is the root.
+// Rays walk what wide_nodes.h makes of it.
 #pragma once
 
-#include "glint/core/vec.h"
-#include "glint/cuda/block.h"
-#include "glint/render/activations.h"
-#include "glint/render/blend.h"
+#include "glint/cuda/trace_discs.h"
 #include "glint/render/morton.h"
 
 namespace glint::gpu {
-
-struct Box {
-  Vec3f low, high;
-};
-GLINT_HD Box empty_box() { return {{1e30f, 1e30f, 1e30f}, {-1e30f, -1e30f, -1e30f}}; }
-GLINT_HD Box union_of(const Box& a, const Box& b) {
-  return {
-      {min_of(a.low.x, b.low.x), min_of(a.low.y, b.low.y), min_of(a.low.z, b.low.z)},
-      {max_of(a.high.x, b.high.x), max_of(a.high.y, b.high.y), max_of(a.high.z, b.high.z)}};
-}
-
-// A surfel as rays see it.
-struct DiscSurfel {
-  Vec3f mean, h0, h1, normal;
-  float opacity;
-  float max_rho;  // squared radius in sigma beyond which it does not count; not positive: nowhere
-};
-struct TraceCutoffs {
-  float near, max_rho, min_alpha, min_transmittance;
-  int max_hits;
-};
-struct DeviceTraceInput {
-  std::size_t count;
-  int sh_degree;
-  const float *means, *scales, *rotations, *opacities, *sh_dc, *sh_rest;
-};
-
-struct MakeDiscs {
-  DeviceTraceInput input;
-  TraceCutoffs cutoffs;
-  DiscSurfel* discs;
-
-  GLINT_HD void operator()(std::size_t i) const {
-    const float *m = input.means + 3 * i, *q = input.rotations + 4 * i;
-    const Mat3f r = rotation_matrix(Vec4f{q[0], q[1], q[2], q[3]});
-    DiscSurfel d;
-    d.mean = {m[0], m[1], m[2]};
-    d.h0 = input.scales[2 * i] * column(r, 0);
-    d.h1 = input.scales[2 * i + 1] * column(r, 1);
-    d.normal = column(r, 2);
-    d.opacity = input.opacities[i];
-    const Vec3f sum = d.mean + d.h0 + d.h1;
-    const bool finite = abs_of(sum.x + sum.y + sum.z) < 1e30f;  // false for NaN
-    d.max_rho = finite ? max_rho_of(d.opacity, cutoffs.max_rho, cutoffs.min_alpha) : -1.0f;
-    discs[i] = d;
-  }
-};
-
-// The box of a disc with a margin for rounding; empty where it counts nowhere.
-GLINT_HD Box box_of(const DiscSurfel& d) {
-  Box box = empty_box();
-  if (!(d.max_rho > 0)) return box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float spread = sqrt_of(d.max_rho * (d.h0[axis] * d.h0[axis] + d.h1[axis] * d.h1[axis]));
-    const float half = 1.0001f * spread + 1e-6f * abs_of(d.mean[axis]);
-    box.low[axis] = d.mean[axis] - half;
-    box.high[axis] = d.mean[axis] + half;
-  }
-  return box;
-}
 
 // The union of a block's boxes, to the first.
 template <int kThreads, class Block>
@@ -81,14 +19,14 @@ GLINT_HD void unite(Block& block, Box* boxes) {
     });
 }
 
-// Boxes of the centres of runs of discs, one a block.
+// Boxes of the centres of runs of surfels, one a block.
 struct BoundCenters {
   static constexpr int kThreads = 256;
   struct Shared {
     Box boxes[kThreads];
   };
-  const DiscSurfel* discs;
-  std::size_t count;
+  DeviceTraceInput input;
+  TraceCutoffs cutoffs;
   Box* out;  // [blocks]
 
   template <class Block>
@@ -96,13 +34,18 @@ struct BoundCenters {
     block.each([&](int thread) {
       const std::size_t i =
           static_cast<std::size_t>(block.index) * kThreads + static_cast<std::size_t>(thread);
-      const bool counts = i < count && discs[i].max_rho > 0;
-      shared.boxes[thread] = counts ? Box{discs[i].mean, discs[i].mean} : empty_box();
+      shared.boxes[thread] = i < input.count ? center_of(i) : empty_box();
     });
     unite<kThreads>(block, shared.boxes);
     block.each([&](int thread) {
       if (thread == 0) out[block.index] = shared.boxes[0];
     });
+  }
+
+ private:
+  GLINT_HD Box center_of(std::size_t i) const {
+    const Disc disc = disc_at(input, cutoffs, i);
+    return disc.max_rho > 0 ? Box{disc.mean, disc.mean} : empty_box();
   }
 };
 // One box of many, by one block.
@@ -130,26 +73,52 @@ struct UniteBoxes {
   }
 };
 
-// Keys are (Morton code, index): all different.
+// Subtrees of their own for surfels as large as a good part of the scene, whose boxes would make
+// those of all others around them as large; and for those that count nowhere, whose box is empty.
 struct MortonKeys {
-  const DiscSurfel* discs;
+  DeviceTraceInput input;
+  TraceCutoffs cutoffs;
   const Box* bounds;
   std::uint64_t* keys;
   std::uint32_t* order;
 
   GLINT_HD void operator()(std::size_t i) const {
-    const std::uint32_t code =
-        discs[i].max_rho > 0 ? morton_code(discs[i].mean, bounds->low, bounds->high) : ~0u;
-    keys[i] = std::uint64_t{code} << 32 | i;
     order[i] = static_cast<std::uint32_t>(i);
+    keys[i] = key(disc_at(input, cutoffs, i));
+  }
+
+ private:
+  GLINT_HD std::uint64_t key(const Disc& disc) const {
+    constexpr float kLarge = 0.1f;  // of the scene: least nodes visited, on made and trained scenes
+    constexpr std::uint64_t kNowhere = std::uint64_t{1} << 63, kSmall = std::uint64_t{1} << 62;
+    if (!(disc.max_rho > 0)) return kNowhere;
+    const float radius2 = disc.max_rho * max_of(length2(disc.h0), length2(disc.h1));
+    const bool small = radius2 < square(kLarge * widest(bounds->high - bounds->low));
+    return (small ? kSmall : 0) | morton_code(disc.mean, bounds->low, bounds->high) >> 1;
+  }
+};
+
+// Discs in the order of the tree.
+struct PlaceDiscs {
+  DeviceTraceInput input;
+  TraceCutoffs cutoffs;
+  const std::uint32_t* order;
+  Disc* discs;             // by slot
+  std::uint32_t* slot_of;  // [surfels]
+
+  GLINT_HD void operator()(std::size_t slot) const {
+    const std::uint32_t surfel = order[slot];
+    discs[slot] = disc_at(input, cutoffs, surfel);
+    slot_of[surfel] = static_cast<std::uint32_t>(slot);
   }
 };
 
 inline constexpr std::uint32_t kNoParent = ~0u;
-struct TreeNode {
+struct alignas(16) TreeNode {
   Box box;
   std::uint32_t left, right;  // inner nodes
   std::uint32_t parent;
+  std::uint32_t first, count;  // slots below
 };
 
 GLINT_HD int leading_zeros(std::uint64_t v) {
@@ -160,7 +129,8 @@ GLINT_HD int leading_zeros(std::uint64_t v) {
 #endif
 }
 
-// Inner node i: the range of keys it covers and where that splits [Karras12 Sec. 4].
+// Inner node i: the range of keys it covers and where that splits [Karras12 Sec. 4]. Equal keys are
+// told apart by their places, as if those were written behind them.
 struct BuildNodes {
   const std::uint64_t* keys;
   int count;  // of leaves, at least 2
@@ -192,13 +162,17 @@ struct BuildNodes {
  private:
   // Length of the common prefix of two keys, -1 outside.
   GLINT_HD int common(int i, int j) const {
-    return j < 0 || j >= count ? -1 : leading_zeros(keys[i] ^ keys[j]);
+    if (j < 0 || j >= count) return -1;
+    const int zeros = leading_zeros(keys[i] ^ keys[j]);
+    return zeros < 64 ? zeros : 64 + leading_zeros(static_cast<std::uint64_t>(i ^ j));
   }
   GLINT_HD void link(int i, int split, int first, int last) const {
     const auto leaf = [&](int k) { return static_cast<std::uint32_t>(count - 1 + k); };
     TreeNode& node = nodes[i];
     node.left = first == split ? leaf(split) : static_cast<std::uint32_t>(split);
     node.right = last == split + 1 ? leaf(split + 1) : static_cast<std::uint32_t>(split + 1);
+    node.first = static_cast<std::uint32_t>(first);
+    node.count = static_cast<std::uint32_t>(last - first + 1);
     nodes[node.left].parent = nodes[node.right].parent = static_cast<std::uint32_t>(i);
     if (i == 0) node.parent = kNoParent;
   }
@@ -218,15 +192,16 @@ GLINT_HD std::uint32_t count_up(std::uint32_t* counter) {
 
 // From leaf i up: the second child to come makes its parent's box.
 struct FitBoxes {
-  const DiscSurfel* discs;
-  const std::uint32_t* order;
+  const Disc* discs;
   std::size_t count;
   TreeNode* nodes;
   std::uint32_t* arrived;  // [inner nodes] zero
 
   GLINT_HD void operator()(std::size_t i) const {
-    std::uint32_t node = static_cast<std::uint32_t>(count - 1 + i);
-    nodes[node].box = box_of(discs[order[i]]);
+    auto node = static_cast<std::uint32_t>(count - 1 + i);
+    nodes[node].box = box_of(discs[i]);
+    nodes[node].first = static_cast<std::uint32_t>(i);
+    nodes[node].count = 1;
     while (node != 0 && (node = nodes[node].parent) != kNoParent) {
       if (count_up(&arrived[node]) == 0) return;
       nodes[node].box = union_of(nodes[nodes[node].left].box, nodes[nodes[node].right].box);

@@ -132,7 +132,8 @@ inline DeviceTraceCall device_call(const TraceCall& call, TraceOutput& output) {
       .rays = {call.rays.origins.on_device(), call.rays.directions.on_device()},
       .num_rays = call.rays.origins.num_pixels(),
       .cutoffs = cutoffs(call.settings),
-      .out = device_output(output)};
+      .out = device_output(output),
+      .width = static_cast<std::size_t>(call.rays.origins.width())};
 }
 
 template <class Exec>

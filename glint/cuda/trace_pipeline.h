@@ -2,10 +2,13 @@
 // The order of kernels that traces rays, forward and backward, for an executor (raster_pipeline.h).
 #pragma once
 
+#include <bit>
 #include <numeric>
 #include <vector>
 
-#include "glint/cuda/trace_bodies.h"
+#include "glint/core/device.h"
+#include "glint/cuda/trace_gather_bodies.h"
+#include "glint/cuda/trace_tree.h"
 
 namespace glint::gpu {
 
@@ -16,96 +19,193 @@ struct DeviceTraceCall {
   std::size_t num_rays;
   TraceCutoffs cutoffs;
   DeviceTraceOutput out;
+  std::size_t width = 0;  // of the image that rays are, or 0
+  std::uint64_t revision =
+      0;  // another number when the surfels are others or have moved; 0: not known
 };
 
-template <class Exec>
+// Memory for hits is of a size that the host knows: as many as the last calls had, with a margin.
+// Calls that may wait look whether they fit and make room. Silent ones (SilentStep) drop what does
+// not fit, the same hits each time, and say so in a word on the device.
+template <class Exec, int kHits = 16>
 class TracePipeline {
  public:
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
 
-  explicit TracePipeline(Exec& exec) : exec_(exec) {}
-
-  void forward(const DeviceTraceCall& call) {
-    call_ = call;
-    update_tree(call.input, call.cutoffs);
-    counts_.resize(call.num_rays);
-    hits_.resize(call.num_rays * static_cast<std::size_t>(call.cutoffs.max_hits));
-    exec_.for_each(
-        call.num_rays, ForwardRays{tree(), call.input, call.rays, call.cutoffs, call.out, saved()}
-    );
+  explicit TracePipeline(Exec& exec) : exec_(exec), tree_(exec) {
+    silent_overflow_.resize(1);
+    overflow_.resize(1);
+    exec_.fill_zero(silent_overflow_);
   }
+
+  void forward(const DeviceTraceCall& call) { trace<NoCounts>(call, nullptr); }
+  // The same, and what each ray costs: counts [rays].
+  void forward(const DeviceTraceCall& call, WalkCounts* counts) { trace(call, counts); }
   // Of the last forward call.
   void backward(const DeviceTraceOutput& dL_dout, const DeviceTraceGradients& gradients) {
-    sums_.resize(call_.input.count * kTraceSums);
-    exec_.fill_zero(sums_);
-    exec_.for_each(
-        call_.num_rays,
-        BackwardRays{
-            discs_.data(),
-            call_.input,
-            call_.rays,
-            call_.cutoffs,
-            call_.out,
-            dL_dout,
-            saved(),
-            sums_.data(),
-            gradients.origins,
-            gradients.directions}
-    );
-    exec_.for_each(call_.input.count, DiscVjp{call_.input, sums_.data(), gradients});
+    const HitGradients hits = make_room();
+    with_sh_degree(call_.input.sh_degree, [&]<int kDegree>() {
+      exec_.for_each(
+          saved_.places,
+          BackwardRays<kDegree>{
+              tree_.tree().discs,
+              call_.input,
+              call_.rays,
+              call_.cutoffs,
+              call_.out,
+              dL_dout,
+              saved_,
+              hits,
+              gradients.origins,
+              gradients.directions}
+      );
+      if (call_.input.count > 0) gather<kDegree>(hits, dL_dout, gradients);
+    });
   }
 
   // Contributors of all rays of the last forward call. Waits for the device.
   std::size_t num_hits() {
-    std::vector<std::uint32_t> counts(call_.num_rays);
-    exec_.download(counts_, call_.num_rays, counts.data());
+    std::vector<std::uint32_t> counts(saved_.places);
+    exec_.download(counts_, saved_.places, counts.data());
     return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+  }
+  // Whether silent calls dropped hits since this was last asked; if so, there is more room from now
+  // on. Waits for the device.
+  bool dropped_hits() {
+    if (read(silent_overflow_) == 0) return false;
+    exec_.fill_zero(silent_overflow_);
+    rows_ *= 2;
+    hits_a_place_ *= 2;
+    return true;
   }
 
  private:
-  static constexpr int kRebuildInterval = 16;  // updates; boxes loosen as surfels move
+  static constexpr int kFirstRows = 64;    // hits of a ray for which there is room at first
+  static constexpr float kFirstHits = 32;  // of a place, on average, in backward()
+  static constexpr float kMargin = 1.5f;   // above what a call had; views differ
+  static constexpr float kKept = 0.9f;     // of the room that there was, at least
 
-  void update_tree(const DeviceTraceInput& input, const TraceCutoffs& cutoffs) {
-    const std::size_t n = input.count;
-    const bool refit = order_.size() == n && ++updates_ % kRebuildInterval != 0;
-    discs_.resize(n);
-    exec_.for_each(n, MakeDiscs{input, cutoffs, discs_.data()});
-    if (n == 0) return;
-    if (!refit) build(n);
-    arrived_.resize(n);
-    exec_.fill_zero(arrived_);
-    exec_.for_each(n, FitBoxes{discs_.data(), order_.data(), n, nodes_.data(), arrived_.data()});
+  // ---- forward
+
+  template <class Counts>
+  void trace(const DeviceTraceCall& call, Counts* counts) {
+    call_ = call;
+    call_.rays.count = call.num_rays;
+    call_.rays.width = call.width;
+    tree_.update(call.input, call.cutoffs, call.revision);
+    saved_.places = call_.rays.places();
+    counts_.resize(saved_.places);
+    find(counts);
+    while (saved_.rows < call.cutoffs.max_hits && !SilentStep::now() && read(overflow_) != 0) {
+      rows_ = 2 * saved_.rows;
+      find(counts);
+    }
+    with_sh_degree(call.input.sh_degree, [&]<int kDegree>() {
+      exec_.for_each(
+          saved_.places,
+          CompositeRays<kDegree>{
+              tree_.tree().discs, call_.input, call_.rays, call_.cutoffs, saved_, call_.out}
+      );
+    });
   }
-  void build(std::size_t n) {
-    constexpr std::size_t kThreads = BoundCenters::kThreads;
-    const std::size_t blocks = (n + kThreads - 1) / kThreads;
-    updates_ = 0;
-    partial_bounds_.resize(blocks);
-    bounds_.resize(1);
-    keys_.resize(n);
-    order_.resize(n);
-    nodes_.resize(2 * n - 1);
-    exec_.launch(blocks, BoundCenters{discs_.data(), n, partial_bounds_.data()});
-    exec_.launch(1, UniteBoxes{partial_bounds_.data(), blocks, bounds_.data()});
-    exec_.for_each(n, MortonKeys{discs_.data(), bounds_.data(), keys_.data(), order_.data()});
-    exec_.sort_pairs(n, 64, keys_, order_);
-    exec_.for_each(n - 1, BuildNodes{keys_.data(), static_cast<int>(n), nodes_.data()});
+  template <class Counts>
+  void find(Counts* counts) {
+    saved_.rows = std::min(rows_, call_.cutoffs.max_hits);
+    slots_.resize(saved_.places * static_cast<std::size_t>(saved_.rows));
+    saved_.counts = counts_.data();
+    saved_.slots = slots_.data();
+    if (!SilentStep::now()) exec_.fill_zero(overflow_);
+    constexpr std::size_t kThreads = FindHits<kHits, Counts>::kThreads;
+    exec_.launch(
+        (saved_.places + kThreads - 1) / kThreads,
+        FindHits<kHits, Counts>{
+            tree_.tree(),
+            call_.input.count,
+            call_.rays,
+            call_.cutoffs,
+            saved_,
+            overflow_word(),
+            counts}
+    );
   }
-  Tree tree() {
-    return {nodes_.data(), order_.data(), discs_.data(), static_cast<std::uint32_t>(discs_.size())};
+  std::uint32_t* overflow_word() {
+    return SilentStep::now() ? silent_overflow_.data() : overflow_.data();
   }
-  DeviceHits saved() { return {counts_.data(), hits_.data()}; }
+  // Waits for the device.
+  std::uint32_t read(const Buffer<std::uint32_t>& word) {
+    std::uint32_t value = 0;
+    exec_.download(word, 1, &value);
+    return value;
+  }
+
+  // ---- backward
+
+  // Places of the hits, and memory for what is known of each.
+  HitGradients make_room() {
+    exec_.exclusive_sum_on_device(counts_, saved_.places, first_hits_);
+    const auto places = static_cast<float>(saved_.places);
+    if (!SilentStep::now()) {
+      exec_.for_each(1, CopyWord{first_hits_.data() + saved_.places, overflow_.data()});
+      const auto hits = static_cast<float>(read(overflow_));
+      const float room = 1 + kMargin * hits / std::max(places, 1.0f);
+      hits_a_place_ = std::max(room, known_ ? kKept * hits_a_place_ : 0.0f);
+      known_ = true;
+    }
+    const auto capacity = static_cast<std::uint32_t>(hits_a_place_ * places);
+    hits_.resize(capacity);
+    keys_.resize(capacity);
+    order_.resize(capacity);
+    return {first_hits_.data(), capacity, hits_.data(), keys_.data(), order_.data()};
+  }
+  template <int kDegree>
+  void gather(
+      const HitGradients& hits,
+      const DeviceTraceOutput& dL_dout,
+      const DeviceTraceGradients& gradients
+  ) {
+    const std::size_t n = call_.input.count, windows = (hits.capacity + kLongRun - 1) / kLongRun;
+    sort(hits);
+    windows_.resize(2 * windows * kTraceSums<kDegree>);
+    const SortedHits sorted{
+        tree_.tree().discs,
+        call_.input,
+        call_.rays,
+        call_.cutoffs,
+        dL_dout,
+        hits.hits,
+        keys_.data(),
+        order_.data(),
+        runs_.data(),
+        hits.capacity};
+    exec_.launch(windows, SumWindows<kDegree>{sorted, windows_.data()});
+    exec_.launch(n, GatherSurfels<kDegree>{sorted, windows_.data(), gradients});
+  }
+  // By slot, those of a slot in the order of the places.
+  void sort(const HitGradients& hits) {
+    const std::size_t n = call_.input.count;
+    exec_.for_each(
+        hits.capacity,
+        PadKeys{hits.first + saved_.places, n, hits.keys, overflow_word(), hits.capacity}
+    );
+    exec_.sort_pairs(hits.capacity, static_cast<int>(std::bit_width(n)), keys_, order_);
+    runs_.resize(n);
+    exec_.fill_zero(runs_);
+    exec_.for_each(hits.capacity, FindRuns{keys_.data(), n, hits.capacity, runs_.data()});
+  }
 
   Exec& exec_;
+  TraceTree<Exec> tree_;
   DeviceTraceCall call_{};
-  int updates_ = 0;
-  Buffer<DiscSurfel> discs_;
-  Buffer<Box> partial_bounds_, bounds_;
+  DeviceHits saved_{};
+  int rows_ = kFirstRows;
+  float hits_a_place_ = kFirstHits;
+  bool known_ = false;  // from a call
+  Buffer<std::uint32_t> counts_, slots_, first_hits_, order_, overflow_, silent_overflow_;
   Buffer<std::uint64_t> keys_;
-  Buffer<std::uint32_t> order_, arrived_, counts_, hits_;
-  Buffer<TreeNode> nodes_;
-  Buffer<float> sums_;
+  Buffer<HitGradient> hits_;
+  Buffer<HitRun> runs_;
+  Buffer<float> windows_;
 };
 
 }  // namespace glint::gpu

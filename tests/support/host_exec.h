@@ -97,6 +97,13 @@ class HostExec {
     std::exclusive_scan(counts.data(), counts.data() + count, sums.data(), 0u);
     return count == 0 ? 0 : sums.data()[count - 1] + counts.data()[count - 1];
   }
+  // The same with the sum of all at sums[count].
+  void exclusive_sum_on_device(
+      const Buffer<std::uint32_t>& counts, std::size_t count, Buffer<std::uint32_t>& sums
+  ) {
+    sums.resize(count + 1);
+    std::inclusive_scan(counts.data(), counts.data() + count, sums.data() + 1);
+  }
   // Stable, by the low `bits` bits of the keys.
   void sort_pairs(
       std::size_t count, int bits, Buffer<std::uint64_t>& keys, Buffer<std::uint32_t>& values
