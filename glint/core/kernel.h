@@ -13,6 +13,7 @@
 
 #include "glint/core/device.h"
 #include "glint/core/image.h"
+#include "glint/core/kernel_trace.h"
 #include "glint/core/parallel.h"
 
 namespace glint {
@@ -38,11 +39,13 @@ namespace detail {
 // kernel(i) for i in [0, count), `grain` at a time on a thread.
 template <class Kernel>
 void run_kernel(std::size_t count, std::size_t grain, const Kernel& kernel) {
-  if (!on_gpu())
+  if (!on_gpu()) {
+    const TracedKernel traced(typeid(Kernel));
     return parallel_for_blocks(count, grain, [&](std::size_t begin, std::size_t end) {
       const Kernel local = kernel;  // its numbers in registers, whatever the kernel writes
       for (std::size_t i = begin; i < end; ++i) local(i);
     });
+  }
   if (OnGpu<Kernel>::run == nullptr) detail::throw_no_gpu_kernel(typeid(Kernel).name());
   OnGpu<Kernel>::run(count, kernel);
 }
@@ -68,7 +71,10 @@ auto sum_over_pixels(ImageSize size, F&& term) {
 // too, and another.
 template <class Kernel>
 SumOf<Kernel> sum_kernel(ImageSize size, const Kernel& kernel) {
-  if (!on_gpu()) return sum_over_pixels(size, kernel);
+  if (!on_gpu()) {
+    const TracedKernel traced(typeid(Kernel));
+    return sum_over_pixels(size, kernel);
+  }
   if (SumOnGpu<Kernel>::run == nullptr) detail::throw_no_gpu_kernel(typeid(Kernel).name());
   return SumOnGpu<Kernel>::run(size, kernel);
 }

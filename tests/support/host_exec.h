@@ -10,6 +10,7 @@
 #include <numeric>
 #include <vector>
 
+#include "glint/core/kernel_trace.h"
 #include "glint/cuda/block.h"
 
 namespace glint::test {
@@ -75,10 +76,12 @@ class HostExec {
   }
   template <class F>
   void for_each(std::size_t count, F f) {
+    const TracedKernel traced(typeid(F));
     for (std::size_t i = 0; i < count; ++i) f(i);
   }
   template <class Body>
   void launch(std::size_t blocks, const Body& body) {
+    const TracedKernel traced(typeid(Body));
     for (std::size_t i = 0; i < blocks; ++i) {
       HostBlock<Body::kThreads> block;
       block.index = static_cast<int>(i);
