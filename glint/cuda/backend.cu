@@ -58,8 +58,9 @@ CudaDevice look() {
   if (status == cudaSuccess) status = try_kernel();
   if (status != cudaSuccess) {
     cudaGetLastError();  // forgotten
-    device.why_not = "driver for CUDA " + device.driver + ", program for " +
-                     version_text(CUDART_VERSION) + ": " + cudaGetErrorString(status);
+    device.why_not = driver_text(driver, CUDART_VERSION) + ": " + cudaGetErrorString(status);
+    if (const std::string advice = advice_for(status); !advice.empty())
+      device.why_not += "; " + advice;
     return device;
   }
   device.name = properties.name;

@@ -10,13 +10,14 @@
 #include <cub/device/device_scan.cuh>
 #include <utility>
 
+#include "glint/core/kernel_trace.h"
 #include "glint/cuda/block.h"
 #include "glint/cuda/cuda_error.h"
 
 namespace glint::gpu {
 
 inline void check_cuda(cudaError_t status, const char* what) {
-  if (status != cudaSuccess) throw_cuda_error(what, cudaGetErrorString(status));
+  if (status != cudaSuccess) throw_cuda_error(what, status, cudaGetErrorString(status));
 }
 
 template <class T>
@@ -92,6 +93,7 @@ class DeviceExec {
   void for_each(std::size_t count, F f) {
     constexpr unsigned kThreads = 256;
     if (count == 0) return;
+    const TracedKernel traced(typeid(F), stream_);
     const auto blocks = static_cast<unsigned>((count + kThreads - 1) / kThreads);
     run_elements<<<blocks, kThreads, 0, stream_>>>(count, f);
     check_cuda(cudaGetLastError(), "launching a kernel");
@@ -99,6 +101,7 @@ class DeviceExec {
   template <class Body>
   void launch(std::size_t blocks, const Body& body) {
     if (blocks == 0) return;
+    const TracedKernel traced(typeid(Body), stream_);
     run_blocks<<<static_cast<unsigned>(blocks), Body::kThreads, 0, stream_>>>(body);
     check_cuda(cudaGetLastError(), "launching a kernel");
   }
@@ -109,6 +112,7 @@ class DeviceExec {
     sums.resize(count);
     if (count == 0) return 0;
     const auto n = static_cast<int>(count);
+    const TracedKernel traced(typeid(ExclusiveSum), stream_);
     with_scratch([&](void* scratch, std::size_t& bytes) {
       return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts.data(), sums.data(), n, stream_);
     });
@@ -129,6 +133,7 @@ class DeviceExec {
     other_keys_.resize(count);
     other_values_.resize(count);
     const auto n = static_cast<int>(count);
+    const TracedKernel traced(typeid(SortPairs), stream_);
     with_scratch([&](void* scratch, std::size_t& bytes) {
       return cub::DeviceRadixSort::SortPairs(
           scratch,
@@ -148,6 +153,9 @@ class DeviceExec {
   }
 
  private:
+  struct ExclusiveSum {};  // CUB's kernels, as KernelTrace names them
+  struct SortPairs {};
+
   // CUB: once to ask for the size of its scratch memory, once to run.
   template <class F>
   void with_scratch(F&& run) {
