@@ -4,7 +4,7 @@
 #   ./gpu_check.sh [--device cuda|cpu] [--seconds N] [--iterations N] [steps...]
 # steps: machine tests scale perf train profile sanitizer. Done within N seconds (570): each step has its share
 # and gets what those before it left. To $OUT (default ./gpu_out), so that a kill loses nothing: summary.md and
-# log.txt as they grow, and all files in gpu_check.tar.gz, made anew after every check.
+# log.txt as they grow, and all files in gpu_check.tar.gz, made anew before every check.
 # Exit 4: a check failed; 6: no kernel runs here, nothing else was tried. --device cpu rehearses without a GPU.
 set -uo pipefail
 
@@ -60,7 +60,7 @@ row() { printf '| %s | %s | %s |\n' "$1" "$2" "$3" | tee -a "$summary" >&2; }
 fail() { row "$1" "**failed**: $2" "${3:-}"; failed=$((failed + 1)); }
 skip() { row "$1" "not done: $2" ""; undone=$((undone + 1)); }
 
-# Always a whole archive: the new one takes the old one's place.
+# Always a whole archive: the new one takes the place of the one before.
 pack() {
   cp "$summary" "$log" "$files/"
   tar -czf "$out/gpu_check.tar.gz.part" -C "$work" gpu_check && mv "$out/gpu_check.tar.gz.part" "$out/gpu_check.tar.gz"
@@ -74,6 +74,7 @@ check() {
   left=$(until_share "$share")
   [ "$left" -ge 2 ] || { skip "$name" "no time left"; return 1; }
   [ "$limit" -le "$left" ] || limit=$left
+  pack  # with what was kept since the last check
   echo "== $name: $*" >>"$log"
   timeout --kill-after=3 "$limit" "$@" 2>>"$log" | tee -a "$log" >"$work/last"
   code=${PIPESTATUS[0]}
@@ -87,13 +88,12 @@ check() {
       else fail "$name" "not done after $limit s" "$took"; fi ;;
     *) fail "$name" "exit code $code: ${last_line:0:300}" "$took" ;;
   esac
-  pack
   return "$code"
 }
 keep() { cp "$work/last" "$files/$1"; }
 
 # The numbers of a `--json` file: one key's, or "op value" of each row.
-number() { sed -n "s/^ *\"$1\": \([-0-9.e+]*\),*$/\1/p" "$2" | tail -n 1; }
+number() { sed -n "s/^ *\"$1\": \([-0-9.e+]*\),*$/\1/p" "$2" | head -n 1; }
 times() {
   awk -F'"' '/"op":/ { op = $4 } /"ms":/ { gsub(/[^-0-9.e+]/, "", $3); printf "%s%s %.2f", n++ ? ", " : "", op, $3 }' "$1"
 }
@@ -178,7 +178,7 @@ step_perf() {
 # train_and_score METHOD DEVICE ITERATIONS: prints the PSNR on success.
 train_and_score() {
   local name="$1, $2, $3 iterations" run=$work/$1-$2-$3 score=$files/$1-$2-$3
-  check "train $name" 150 glint-bench train --quiet --dataset scene.safetensors --method "$1" --device "$2" \
+  check "train $name" 150 glint-bench train --quiet --dataset "$work/scene.safetensors" --method "$1" --device "$2" \
     --iterations "$3" --run "$run" --json || return
   cp "$work/last" "$score-train.json"
   cp "$run/log.jsonl" "$score-log.jsonl"
@@ -218,6 +218,8 @@ compare_devices() {
 
 step_train() {
   local method
+  [ -f scene.safetensors.gz ] || { skip training "the bundle has no scene"; return; }
+  gunzip -c scene.safetensors.gz >"$work/scene.safetensors" || { fail training "scene.safetensors.gz is damaged"; return; }
   train_and_score glint "$device" "$long" && row "" "" "$(training_split "$files/glint-$device-$long-log.jsonl")"
   for method in glint 2dgs envgs; do
     train_and_score "$method" "$device" "$short"
@@ -226,10 +228,10 @@ step_train() {
   done
 }
 
-# The four kernels of a glint step that take longest, one launch each.
+# The four kernels of ours in a glint step that take longest.
 longest_kernels() {
   awk -F'"' '/"op":/ { op = $4 } /"kernel":/ { kernel = $4; sub(/<.*/, "", kernel); sub(/.*::/, "", kernel) }
-    /"ms":/ && op == "glint training step" { gsub(/[^-0-9.e+]/, "", $3); print $3, kernel }' "$files/kernels-${sizes[0]}-$1.json" | sort -rg | awk '!seen[$2]++ { print $2 }' | head -n 4
+    /"ms":/ && op == "glint training step" && kernel !~ /^(ExclusiveSum|SortPairs)$/ { gsub(/[^-0-9.e+]/, "", $3); print $3, kernel }' "$files/kernels-${sizes[0]}-$1.json" | sort -rg | awk '!seen[$2]++ { print $2 }' | head -n 4
 }
 
 step_profile() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "glint/cuda/card_lock.h"
 #include "glint/cuda/device_exec.cuh"
 #include "glint/cuda/ops.h"
 
@@ -83,6 +84,8 @@ void use_cuda() {
   if (!device.usable) throw_cuda_error("finding a device", device.why_not.c_str());
   static const DeviceBackend backend{device.name.c_str(), allocate, release, fill_floats, wait};
   use_executor<DeviceExec>(backend);
+  char card[32] = "";
+  if (cudaDeviceGetPCIBusId(card, sizeof card, 0) == cudaSuccess) warn_of_sharing(card);
 }
 
 double measure_copy_bandwidth(std::size_t bytes) {

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "glint/core/device_lost.h"
+#include "glint/cuda/card_lock.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -55,4 +56,14 @@ TEST_CASE("A card that is too small is told with what is needed and what is free
 
 TEST_CASE("Versions of driver and program are told as people know them") {
   CHECK(driver_text(12020, 13000) == "driver for CUDA 12.2, program for CUDA 13.0");
+}
+
+TEST_CASE("A card that a process has is not to be had by a second one") {
+  const test::TempFolder folder;
+  const std::string place = folder.path().string();
+  CHECK(take_card("0000:18:00.0", place));
+  CHECK_FALSE(take_card("0000:18:00.0", place)
+  );  // another opening of the file is as another process
+  CHECK(take_card("0000:3b:00.0", place));
+  CHECK(take_card("0000:18:00.0", place + "/nowhere"));
 }
