@@ -40,6 +40,8 @@ strip_to() {
 
 # Of ptxas: kernel, registers, bytes of stack frame, of spills, of shared memory.
 resource_table() {
+  local words=$build/cuda_resources.txt  # where the build keeps them apart
+  [ -f $words ] || words=$log
   awk '
     /Compiling entry function/ { split($0, part, "\x27"); kernel = part[2] }
     /bytes stack frame/ { frame = $1; spills = $5 + $9 }
@@ -48,19 +50,19 @@ resource_table() {
       shared = match($0, /[0-9]+ bytes smem/) ? substr($0, RSTART, RLENGTH - 11) : 0
       if (kernel != "") printf "%9d %9d %9d %9d  %s\n", registers, frame, spills, shared, kernel
       kernel = ""; frame = spills = 0
-    }' $log | c++filt | sed 's/glint::gpu:://g; s/glint:://g; s/(anonymous namespace):://g' | sort -k5 | uniq
+    }' $words | c++filt | sed 's/glint::gpu:://g; s/glint:://g; s/(anonymous namespace):://g' | sort -k5 | uniq
 }
 
 mkdir -p build
 configure -DGLINT_CUDA_FMAD=OFF
-mapfile -t tests < <(cmake --build $build --target help | grep -o '^test_glint_cuda_[a-z0-9_]*' | sort -u)
 rm -rf $bundle
 mkdir -p $bundle/lib/cxx
-build "${tests[@]}"
-strip_to $bundle/bin/no-fmad "${tests[@]/#/$build/tests/}"
+build gpu_tests
+strip_to $bundle/bin/no-fmad $build/tests/gpu_tests
 configure -DGLINT_CUDA_FMAD=ON
-build glint-bench gpu-probe "${tests[@]}"
-programs=("$build/bin/glint-bench" "$build/bin/gpu-probe" "${tests[@]/#/$build/tests/}")
+mapfile -t scale < <(cmake --build $build --target help | grep -ox 'test_glint_cuda_scale: phony' | sed 's/:.*//')
+build glint-bench gpu-probe gpu_tests "${scale[@]}"
+programs=("$build/bin/glint-bench" "$build/bin/gpu-probe" "$build/tests/gpu_tests" "${scale[@]/#/$build/tests/}")
 strip_to $bundle/bin "${programs[@]}"
 { printf '%9s %9s %9s %9s  %s\n' registers frame spills shared "kernel (bytes; CUDA architectures $arch)"; resource_table; } \
   >$bundle/resources.txt
@@ -100,7 +102,7 @@ else
   scripts/build.sh release glint-bench
   if [ -z "$scene" ]; then
     scene=data/bundle/room_1
-    build/release/bin/glint-bench dataset make glassroom --scene room_1 --width 480 --height 270 --views 10 \
+    build/release/bin/glint-bench dataset make glassroom --scene room_1 --width 480 --height 270 --views 8 \
       --spp 8 --out $scene >&2
   fi
   build/release/bin/glint-bench dataset pack "$scene" $bundle/scene.safetensors --test-truth-only >&2
@@ -108,7 +110,7 @@ fi
 $bundle/glint-bench dataset info $bundle/scene.safetensors >&2
 gzip $bundle/scene.safetensors  # floats of normals and depth: half of it
 
-cudnn=$(find -L /usr/lib /usr/local/cuda -name 'libcudnn*.so.[0-9]*.*' -type f -printf '%s\n' 2>/dev/null |
+cudnn=$({ find /usr/lib /usr/local/cuda/ -name 'libcudnn*.so.[0-9]*.*' -type f -printf '%s\n' 2>/dev/null || true; } |
   awk '{ sum += $1 } END { if (NR) printf "here it has %.0f MiB", sum / 1048576; else print "none is installed here" }')
 cat >$bundle/BUNDLE.md <<ABOUT
 Commit $(git describe --always --dirty), CUDA architectures $arch, needs ${glibc/_/ } or newer. Without cuDNN ($cudnn,

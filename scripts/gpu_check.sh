@@ -117,15 +117,10 @@ step_machine() {
   exit 6
 }
 
-# run_tests FOLDER: its programs, apart from the large one; every difference from the CPU goes to a list.
+# run_tests NAME SECONDS PROGRAM: every difference from the CPU goes to a list.
 run_tests() {
-  local program found=0
-  for program in "$1"/test_*; do
-    if [ ! -x "$program" ] || [ "$(basename "$program")" = test_glint_cuda_scale ]; then continue; fi
-    found=1
-    check "$program" 60 env GLINT_DIFFERENCES="$files/differences-$(basename "$1").txt" "$program" -d yes
-  done
-  [ $found = 1 ] || skip "tests of $1" "not in the bundle"
+  [ -x "$3" ] || { skip "$1" "not in the bundle"; return; }
+  check "$1" "$2" env GLINT_DIFFERENCES="$files/differences-$(tr -c 'a-z0-9\n' - <<<"$1").txt" "$3" -d yes
 }
 
 # The largest difference from the CPU, in parts of what is allowed.
@@ -139,15 +134,13 @@ tell_differences() {
 }
 
 step_tests() {
-  run_tests bin
-  run_tests bin/no-fmad
-  tell_differences
+  run_tests "tests of ops" 60 bin/gpu_tests
+  run_tests "tests of ops, no fmad" 60 bin/no-fmad/gpu_tests
 }
 
 step_scale() {
-  [ -x bin/test_glint_cuda_scale ] || { skip "parity at 100k surfels, 480x270" "not in the bundle"; return; }
-  check "parity at 100k surfels, 480x270" 60 env GLINT_DIFFERENCES="$files/differences-scale.txt" \
-    bin/test_glint_cuda_scale -d yes
+  run_tests "parity at scale" 60 bin/test_glint_cuda_scale
+  tell_differences
 }
 
 # perf NAME SECONDS FILE OPTIONS...
@@ -249,14 +242,10 @@ step_profile() {
 # Some virtual machines do not let it in: that says nothing about us.
 step_sanitizer() {
   command -v compute-sanitizer >/dev/null || { skip compute-sanitizer "neither here nor in the bundle"; return; }
-  local tool program name
-  for tool in memcheck synccheck racecheck; do
-    for program in bin/test_glint_cuda_*; do
-      name=$(basename "$program")
-      if [ ! -x "$program" ] || [ "$name" = test_glint_cuda_scale ]; then continue; fi
-      check "$tool $name" 60 compute-sanitizer --require-cuda-init=no --tool "$tool" --error-exitcode 1 "$program" && continue
-      if grep -q "Device not supported" "$log"; then skip compute-sanitizer "it does not support this machine"; return; fi
-    done
+  local tool
+  for tool in memcheck synccheck racecheck initcheck; do
+    check "$tool" 60 compute-sanitizer --require-cuda-init=no --tool $tool --error-exitcode 1 bin/gpu_tests && continue
+    if grep -q "Device not supported" "$log"; then skip compute-sanitizer "it does not support this machine"; return; fi
   done
 }
 

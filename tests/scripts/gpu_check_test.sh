@@ -24,9 +24,9 @@ new_bundle() {
   echo scene | gzip >"$bundle/scene.safetensors.gz"
   stand_in gpu-probe 'echo kernel ran'
   stand_in nvidia-smi 'echo a card'
-  stand_in test_glint_cuda_ops \
+  stand_in gpu_tests \
     'printf "1.0e-05\t1.0e-04\tcard\ttest\tarray\n" >>"$GLINT_DIFFERENCES"; echo "require ${GLINT_REQUIRE_GPU:-0}"'
-  cp "$bundle/bin/test_glint_cuda_ops" "$bundle/bin/no-fmad/"
+  cp "$bundle/bin/gpu_tests" "$bundle/bin/no-fmad/"
   stand_in compute-sanitizer 'echo "$@"'
   stand_in ncu 'echo "$@"'
   stand_in glint-bench '
@@ -57,20 +57,20 @@ expect "a training is split" has 'step 100.00 ms (median), densification 2.00 s,
 expect "the longest kernel is profiled" has 'profile of Blend'
 expect "sanitizers do not ask for CUDA" grep -q -- '--require-cuda-init=no --tool racecheck' "$OUT/log.txt"
 expect "a GPU is required" grep -q 'require 1' "$OUT/log.txt"
-expect "what is not there is said" has 'parity at 100k surfels, 480x270 | not done: not in the bundle'
-for file in summary.md log.txt resources.txt probe.txt differences-bin.txt differences-no-fmad.txt steps-480x270-20000.json \
+expect "what is not there is said" has 'parity at scale | not done: not in the bundle'
+for file in summary.md log.txt resources.txt probe.txt differences-tests-of-ops.txt differences-tests-of-ops--no-fmad.txt steps-480x270-20000.json \
   kernels-480x270-100000.json ops.json glint-cuda-2000-log.jsonl envgs-cpu-200-eval.json glint-cuda-200.png; do
   expect "$file is in the archive" archived "$file"
 done
 expect "the folder has few files" [ "$(find "$OUT" -type f | wc -l)" = 3 ]
-order=$(grep -oE '^\| (nvidia-smi|bin/test|steps, 480|steps, 240|train glint|profile|memcheck)' "$OUT/summary.md" | uniq | tr -d '\n')
-expect "the order: $order" [ "$order" = '| nvidia-smi| bin/test| steps, 480| steps, 240| train glint| profile| memcheck' ]
+order=$(grep -oE '^\| (nvidia-smi|tests of ops|steps, 480|steps, 240|train glint|profile|memcheck)' "$OUT/summary.md" | uniq | tr -d '\n')
+expect "the order: $order" [ "$order" = '| nvidia-smi| tests of ops| steps, 480| steps, 240| train glint| profile| memcheck' ]
 
 PSNR_OF_CPU=1 run train
 expect "devices apart: exit 4" [ $? = 4 ]
 expect "devices apart are told" has 'glint on both devices | \*\*failed\*\*: more than 0.1 dB apart'
 
-stand_in test_glint_cuda_ops 'echo "1 of 3 failed"; exit 1'
+stand_in gpu_tests 'echo "1 of 3 failed"; exit 1'
 run tests
 expect "a failed test: exit 4" [ $? = 4 ]
 expect "a failed test is told" has '\*\*failed\*\*: exit code 1: 1 of 3 failed'
@@ -83,7 +83,7 @@ expect "an archive all the same" archived summary.md
 
 # The clock: what hangs gets its step's share, and what comes after has its own.
 new_bundle
-stand_in test_glint_cuda_ops 'echo begun; sleep 60'
+stand_in gpu_tests 'echo begun; sleep 60'
 start=$SECONDS
 run --seconds 60 tests perf
 expect "a share that is used up is no failure" [ $? = 0 ]

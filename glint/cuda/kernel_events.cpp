@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "glint/cuda/kernel_events.h"
 
-#include <cuda_runtime.h>
+#include <cuda_runtime_api.h>
 
 #include <vector>
 
