@@ -73,7 +73,7 @@ ldd "${programs[@]}" | sed -n 's|.* => \(/[^ ]*\) .*|\1|p' | sort -u |
   while IFS= read -r library; do cp -L "$library" $bundle/lib/; done
 # An older glibc may refuse our C++ runtime, but has one of its own that will do.
 mv $bundle/lib/libstdc++.so.6 $bundle/lib/libgcc_s.so.1 $bundle/lib/cxx/
-glibc=$(objdump -T $bundle/bin/glint-bench $bundle/lib/*.so* | grep -o 'GLIBC_2\.[0-9]*' | sort -uV | tail -n 1)
+glibc=$(objdump -T $bundle/bin/g* $bundle/lib/*.so* | grep -o 'GLIBC_2\.[0-9]*' | sort -uV | tail -n 1)
 
 cat >$bundle/environment.sh <<'ENVIRONMENT'
 # To be sourced: the bundle's libraries, with its C++ runtime where that runs here.

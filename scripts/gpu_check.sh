@@ -117,20 +117,21 @@ step_machine() {
   exit 6
 }
 
+# The largest difference from the CPU in a list, in parts of what is allowed.
+tell_differences() {
+  [ -f "$1" ] || return
+  row "" "$(grep -c . "$1") arrays compared" "$(awk -F'\t' '
+    $1 / $2 >= most { most = $1 / $2; where = $5 " in: " $4 ", " $3 }
+    END { printf "most: %.3f of the allowed, %s", most, where }' "$1")"
+}
+
 # run_tests NAME SECONDS PROGRAM: every difference from the CPU goes to a list.
 run_tests() {
   [ -x "$3" ] || { skip "$1" "not in the bundle"; return; }
-  check "$1" "$2" env GLINT_DIFFERENCES="$files/differences-$(tr -c 'a-z0-9\n' - <<<"$1").txt" "$3" -d yes
-}
-
-# The largest difference from the CPU, in parts of what is allowed.
-tell_differences() {
   local list
-  for list in "$files"/differences-*.txt; do
-    [ -f "$list" ] || continue
-    row "$(basename "$list" .txt)" "$(grep -c . "$list") arrays" \
-      "$(awk -F'\t' '$1 / $2 >= most { most = $1 / $2; where = $5 " in: " $4 ", " $3 } END { printf "most: %.3f of the allowed, %s", most, where }' "$list")"
-  done
+  list=$files/differences-$(tr -c 'a-z0-9\n' - <<<"$1").txt
+  check "$1" "$2" env GLINT_DIFFERENCES="$list" "$3" -d yes
+  tell_differences "$list"
 }
 
 step_tests() {
@@ -138,17 +139,14 @@ step_tests() {
   run_tests "tests of ops, no fmad" 60 bin/no-fmad/gpu_tests
 }
 
-step_scale() {
-  run_tests "parity at scale" 60 bin/test_glint_cuda_scale
-  tell_differences
-}
+step_scale() { run_tests "parity at scale" 60 bin/test_glint_cuda_scale; }
 
 # perf NAME SECONDS FILE OPTIONS...
 perf() {
   local name=$1 limit=$2 file=$3
   shift 3
   check "$name" "$limit" glint-bench perf --quiet --device "$device" --json --runs "$runs" "$@" && keep "$file" &&
-    row "" "" "$(times "$files/$file" | cut -c1-400)"
+    row "" "" "$(times "$files/$file")"
 }
 
 step_perf() {

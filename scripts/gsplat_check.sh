@@ -65,7 +65,7 @@ source ./environment.sh
 
 value() { sed -n "s/^ *\"$1\": \([-0-9.e+]*\),*$/\1/p" "$work/theirs"; }
 ours() { awk -F'"' -v op="$1" '/"op":/ { at = $4 == op } at && /"ms":/ { gsub(/[^-0-9.e+]/, "", $3); print $3 }' "$work/ours"; }
-line() { awk -v name="$1" -v a="$2" -v b="$3" 'BEGIN { printf "| %s | %.3f | %.3f | %s |\n", name, a, b, b > 0 ? sprintf("%.2f", a / b) : "-" }' | tee -a "$table" >&2; }
+line() { awk -v name="$1" -v a="$2" -v b="$3" 'BEGIN { printf "| %s | %.3f | %.3f | %s |\n", name, a, b, (b > 0 ? sprintf("%.2f", a / b) : "-") }' | tee -a "$table" >&2; }
 compare() {
   local size=(--width "$1" --height "$2" --surfels "$3")
   [ "$(left)" -ge 10 ] || { echo "gsplat_check: no time left for $*" | tee -a "$log" >&2; return 1; }
