@@ -111,7 +111,7 @@ step_machine() {
     check doctor 15 glint-bench doctor && keep doctor.txt
     return
   fi
-  check "a kernel runs" 20 gpu-probe && keep probe.txt && check doctor 15 glint-bench doctor && keep doctor.txt && return
+  check "a kernel runs" 40 gpu-probe && keep probe.txt && check doctor 15 glint-bench doctor && keep doctor.txt && return
   fail "everything else" "no kernel of ours runs on this machine"
   finish_summary
   exit 6
@@ -259,7 +259,7 @@ finish_summary() {
   echo "| step | result | |"; echo "|---|---|---|"; } >"$summary"
 [ ! -f resources.txt ] || cp resources.txt "$files/"
 # Up to when each step may go on.
-declare -A ends=([machine]=20 [tests]=60 [scale]=120 [perf]=270 [train]=390 [profile]=450 [sanitizer]=565)
+declare -A ends=([machine]=45 [tests]=60 [scale]=120 [perf]=270 [train]=390 [profile]=450 [sanitizer]=565)
 for step in "${all_steps[@]}"; do
   share=${ends[$step]}
   if wanted "$step"; then "step_$step"; fi
