@@ -49,7 +49,7 @@ if [ "$device" = cuda ]; then
   sizes=(480x270 240x135 960x540) counts=(20000 100000 500000) runs=9 long=${iterations:-2000} short=200
   export GLINT_REQUIRE_GPU=1
 else
-  sizes=(240x135) counts=(2000) runs=1 long=${iterations:-60} short=20
+  sizes=(240x135) counts=(2000) runs=1 long=${iterations:-30} short=10
 fi
 
 # Whole seconds until a share of the time, in 570ths, is used up.
@@ -169,7 +169,7 @@ step_perf() {
 # train_and_score METHOD DEVICE ITERATIONS: prints the PSNR on success.
 train_and_score() {
   local name="$1, $2, $3 iterations" run=$work/$1-$2-$3 score=$files/$1-$2-$3
-  check "train $name" 150 glint-bench train --quiet --dataset "$work/scene.safetensors" --method "$1" --device "$2" \
+  check "train $name" 200 glint-bench train --quiet --dataset "$work/scene.safetensors" --method "$1" --device "$2" \
     --iterations "$3" --run "$run" --json || return
   cp "$work/last" "$score-train.json"
   cp "$run/log.jsonl" "$score-log.jsonl"
