@@ -14,6 +14,7 @@
 
 #include "glint/core/arrays.h"
 #include "glint/core/image.h"
+#include "glint/core/kernel_trace.h"
 #include "glint/core/parallel.h"
 
 namespace glint {
@@ -40,11 +41,13 @@ namespace detail {
 // kernel(i) for i in [0, count), `grain` at a time on a thread.
 template <class Kernel>
 void run_kernel(std::size_t count, std::size_t grain, const Kernel& kernel) {
-  if (!on_gpu())
+  if (!on_gpu()) {
+    const TracedKernel traced(typeid(Kernel));
     return parallel_for_blocks(count, grain, [&](std::size_t begin, std::size_t end) {
       const Kernel local = kernel;  // its numbers in registers, whatever the kernel writes
       for (std::size_t i = begin; i < end; ++i) local(i);
     });
+  }
   if (OnGpu<Kernel>::run == nullptr) detail::throw_no_gpu_kernel(typeid(Kernel).name());
   OnGpu<Kernel>::run(count, kernel);
 }
@@ -88,17 +91,19 @@ Sum unknown() {
 template <class Kernel>
 void sum_kernel_to(ImageSize size, const Kernel& kernel, Array<SumOf<Kernel>>& sum) {
   sum.resize(1);
-  if (on_gpu())
-    detail::sum_on_gpu(size, kernel, sum.device_for_overwriting());
-  else
-    sum[0] = sum_over_pixels(size, kernel);
+  if (on_gpu()) return detail::sum_on_gpu(size, kernel, sum.device_for_overwriting());
+  const TracedKernel traced(typeid(Kernel));
+  sum[0] = sum_over_pixels(size, kernel);
 }
 
 // The same for the host, which waits for the GPU. Sums that are only told: in a silent step they
 // are not known (NaN), and nothing that is computed may depend on them.
 template <class Kernel>
 SumOf<Kernel> sum_kernel(ImageSize size, const Kernel& kernel) {
-  if (!on_gpu()) return sum_over_pixels(size, kernel);
+  if (!on_gpu()) {
+    const TracedKernel traced(typeid(Kernel));
+    return sum_over_pixels(size, kernel);
+  }
   if (SilentStep::now()) {
     detail::sum_on_gpu(size, kernel, nullptr);
     return unknown<SumOf<Kernel>>();

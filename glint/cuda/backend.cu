@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "glint/cuda/card_lock.h"
 #include "glint/cuda/device_exec.cuh"
 #include "glint/cuda/ops.h"
 
@@ -83,8 +84,9 @@ CudaDevice look() {
   if (status == cudaSuccess) status = try_kernel();
   if (status != cudaSuccess) {
     cudaGetLastError();  // forgotten
-    device.why_not = "driver for CUDA " + device.driver + ", program for " +
-                     version_text(CUDART_VERSION) + ": " + cudaGetErrorString(status);
+    device.why_not = driver_text(driver, CUDART_VERSION) + ": " + cudaGetErrorString(status);
+    if (const std::string advice = advice_for(status); !advice.empty())
+      device.why_not += "; " + advice;
     return device;
   }
   device.name = properties.name;
@@ -101,7 +103,7 @@ void* CudaMemory::allocate(std::size_t bytes) {
   if (block != nullptr) return block;
   std::size_t free = 0, total = 0;
   cudaMemGetInfo(&free, &total);
-  throw_no_room(cuda_device().name.c_str(), bytes, free, total, pool().bytes_in_use());
+  throw_out_of_memory(bytes, free, total);
 }
 void CudaMemory::release(void* block) noexcept { pool().release(block); }
 
@@ -124,6 +126,8 @@ void use_cuda() {
       .fill = fill_floats,
       .synchronize = wait};
   use_executor<DeviceExec>(backend);
+  char card[32] = "";
+  if (cudaDeviceGetPCIBusId(card, sizeof card, 0) == cudaSuccess) warn_of_sharing(card);
 }
 
 double measure_copy_bandwidth(std::size_t bytes) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "glint/core/device.h"
+#include "glint/core/kernel_trace.h"
 #include "glint/cuda/block.h"
 #include "glint/cuda/cuda_error.h"
 #include "glint/cuda/device_buffer.h"
@@ -18,7 +19,7 @@
 namespace glint::gpu {
 
 inline void check_cuda(cudaError_t status, const char* what) {
-  if (status != cudaSuccess) throw_cuda_error(what, cudaGetErrorString(status));
+  if (status != cudaSuccess) throw_cuda_error(what, status, cudaGetErrorString(status));
 }
 
 // The device's memory, from a pool; errors (kEnvironment): there is no room.
@@ -58,6 +59,7 @@ class DeviceExec {
     constexpr unsigned kThreads = 256;
     if (count == 0) return;
     ++device_counters.launches;
+    const TracedKernel traced(typeid(F), stream_);
     const auto blocks = static_cast<unsigned>((count + kThreads - 1) / kThreads);
     run_elements<<<blocks, kThreads, 0, stream_>>>(count, f);
     check_cuda(cudaGetLastError(), "launching a kernel");
@@ -66,6 +68,7 @@ class DeviceExec {
   void launch(std::size_t blocks, const Body& body) {
     if (blocks == 0) return;
     ++device_counters.launches;
+    const TracedKernel traced(typeid(Body), stream_);
     run_blocks<<<static_cast<unsigned>(blocks), Body::kThreads, 0, stream_>>>(body);
     check_cuda(cudaGetLastError(), "launching a kernel");
   }
@@ -76,6 +79,7 @@ class DeviceExec {
     sums.resize(count);
     if (count == 0) return 0;
     const auto n = static_cast<int>(count);
+    const TracedKernel traced(typeid(ExclusiveSum), stream_);
     with_scratch([&](void* scratch, std::size_t& bytes) {
       return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts.data(), sums.data(), n, stream_);
     });
@@ -112,6 +116,7 @@ class DeviceExec {
     other_keys_.resize(count);
     other_values_.resize(count);
     const auto n = static_cast<int>(count);
+    const TracedKernel traced(typeid(SortPairs), stream_);
     with_scratch([&](void* scratch, std::size_t& bytes) {
       return cub::DeviceRadixSort::SortPairs(
           scratch,
@@ -131,6 +136,9 @@ class DeviceExec {
   }
 
  private:
+  struct ExclusiveSum {};  // CUB's kernels, as KernelTrace names them
+  struct SortPairs {};
+
   // CUB: once to ask for the size of its scratch memory, once to run.
   template <class F>
   void with_scratch(F&& run) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "glint/core/rng.h"
@@ -16,13 +17,19 @@ namespace glint {
 
 namespace {
 
-Json log_line(const StepStats& stats, double seconds) {
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Json log_line(const StepStats& stats, const TrainReport& report) {
   Json line = {
       {"iteration", stats.iteration},
       {"loss", stats.loss},
       {"psnr", stats.psnr},
       {"num_surfels", stats.num_surfels},
-      {"seconds", seconds}};
+      {"seconds", report.seconds},
+      {"saving_seconds", report.saving_seconds}};
   for (const auto& [name, value] : stats.terms) line["terms"][name] = value;
   return line;
 }
@@ -55,6 +62,34 @@ void check_step(const Method& method, const StepStats& stats, const fs::path& ch
   for (const auto& [name, value] : stats.terms)
     GLINT_CHECK(std::isfinite(value), kBadPrediction, "{}: loss term {} is {}", where, name, value);
   throw Error(ExitCode::kBadPrediction, fmt::format("{}: the loss is {}", where, stats.loss));
+}
+
+// Written beside the last one and put in its place: whatever fails half-way, one is whole.
+void save_checkpoint(const Method& method, const fs::path& checkpoint) {
+  fs::path fresh = checkpoint;
+  fresh += ".tmp";
+  synchronize();
+  method.check_finite();
+  fs::remove_all(fresh);
+  method.save(fresh.string());
+  fs::remove_all(checkpoint);
+  fs::rename(fresh, checkpoint);
+}
+
+// `step()`; where the device is lost, the error also says what is left of the run.
+template <class F>
+auto on_device(int iteration, const fs::path& checkpoint, F&& step) {
+  try {
+    return step();
+  } catch (const DeviceLost& lost) {
+    throw DeviceLost(fmt::format(
+        "training stopped at iteration {}, {}: {}",
+        iteration,
+        fs::exists(checkpoint) ? "the last checkpoint is in " + checkpoint.string()
+                               : "before the first checkpoint",
+        lost.what()
+    ));
+  }
 }
 
 }  // namespace
@@ -93,11 +128,13 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
     throw_if_interrupted();
     const bool due = (i + 1) % options.log_interval == 0 || i + 1 == options.run.iterations;
     const SilentStep silent(!due && i % kToldInterval != 0);
-    const auto start = std::chrono::steady_clock::now();
-    const StepStats stats = method.step(i);
-    end_silent_step();
-    report.seconds +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto start = Clock::now();
+    const StepStats stats = on_device(i, checkpoint, [&] {
+      StepStats result = method.step(i);
+      end_silent_step();
+      return result;
+    });
+    report.seconds += seconds_since(start);
     report.iterations = i + 1;
     if (!SilentStep::now()) {
       check_step(method, stats, checkpoint);
@@ -116,14 +153,14 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
     for (const std::string& event : stats.events)
       events.push_back({{"iteration", i}, {"text", event}});
     if (on_disk && due) {
-      Json line = log_line(stats, report.seconds);
+      Json line = log_line(stats, report);
       if (!events.empty()) line["events"] = std::exchange(events, Json::array());
       append_line(options.folder / "log.jsonl", line.dump());
     }
     if (on_disk && (i + 1) % options.save_interval == 0) {
-      synchronize();
-      method.check_finite();
-      method.save(checkpoint.string());
+      const auto save = Clock::now();
+      on_device(i, checkpoint, [&] { save_checkpoint(method, checkpoint); });
+      report.saving_seconds += seconds_since(save);
     }
   }
   synchronize();

@@ -20,14 +20,16 @@ struct TrainOptions {
 
 struct TrainReport {
   int iterations = 0;
-  double seconds = 0;  // of steps only: no loading, logging or saving
+  double seconds = 0;         // of steps only: no loading, logging or saving
+  double saving_seconds = 0;  // of checkpoints
   std::size_t num_surfels = 0;
   StepStats last;
 };
 
 // Initialises and trains. Errors: what the method throws; kBadPrediction when the loss or a
 // parameter stops being finite (names the term or parameter and the iteration; the last good state
-// is in folder/checkpoint); Interrupted before the next step after Ctrl-C.
+// is in folder/checkpoint); DeviceLost, which says where the last checkpoint is; Interrupted before
+// the next step after Ctrl-C.
 TrainReport train(Method& method, const Scene& scene, const TrainOptions& options);
 
 // Random order of the training views without replacement, reshuffled when all were seen.

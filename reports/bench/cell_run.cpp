@@ -4,6 +4,7 @@
 #include <chrono>
 #include <new>
 
+#include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf_volume.h"
@@ -116,6 +117,8 @@ class CellRun {
       run_stages();
     } catch (const Interrupted&) {
       throw;
+    } catch (const DeviceLost&) {
+      throw;  // no other cell could run
     } catch (const std::exception& error) {
       record_.metrics.clear();
       record_.failure = failure_of(error, clock_.stage(), spec_.folder);

@@ -59,27 +59,39 @@ std::string ratio(double value) { return value > 0 ? fmt::format("{:.2f}x", valu
 
 }  // namespace
 
-std::vector<PerfRow> run_perf(const PerfOptions& options) {
+bool PerfOptions::wants(std::string_view name) const {
+  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+    end = only.find('|', begin);
+    if (glob_match(std::string_view(only).substr(begin, end - begin), name)) return true;
+  }
+  return false;
+}
+
+std::vector<PerfCase> make_perf_cases(const PerfOptions& options) {
   std::vector<PerfCase> cases;
   for (const auto& [id, registered] : Registry<PerfCases>::all())
-    for (PerfCase& c : registered.make(options)) cases.push_back(std::move(c));
+    for (PerfCase& c : registered.make(options))
+      if (options.wants(c.name)) cases.push_back(std::move(c));
+  return cases;
+}
+
+std::vector<PerfRow> run_perf(const PerfOptions& options) {
+  const std::vector<PerfCase> cases = make_perf_cases(options);
   std::vector<PerfRow> rows;
   const int max_threads = std::thread::hardware_concurrency() > 1 && !on_gpu() ? 2 : 1;
   Progress progress("perf", cases.size() * static_cast<std::size_t>(max_threads));
-  for (const PerfCase& c : cases) {
-    if (!glob_match(options.only, c.name)) continue;
+  for (const PerfCase& c : cases)
     for (int threads = 1; threads <= max_threads; ++threads) {
       rows.push_back(measure(c, threads, options.runs));
       if (threads > 1) rows.back().thread_ratio = rows[rows.size() - 2].ms / rows.back().ms;
       progress.advance(1, c.name);
     }
-  }
   set_num_threads(0);
   return rows;
 }
 
-Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) {
-  Json json = {
+Json perf_setting(const PerfOptions& options) {
+  return {
       {"cpu", this_machine().cpu},
       {"device", device_name()},
       {"width", options.width},
@@ -88,6 +100,10 @@ Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) 
       {"overlap", options.overlap},
       {"runs", options.runs},
       {"rows", Json::array()}};
+}
+
+Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) {
+  Json json = perf_setting(options);
   if (on_gpu()) json["copy_bytes_per_second"] = gpu::measure_copy_bandwidth(kCopyBytes);
   for (const PerfRow& row : rows)
     json["rows"].push_back(

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "glint/core/config.h"
+#include "glint/core/files.h"
 #include "glint/core/registry.h"
 
 namespace glint {
@@ -40,24 +41,46 @@ struct PerfOptions {
   // boxes of about 45 surfels, as in a 2DGS trained on GlassRoom for 1500 steps; 1.5: about 15.
   float overlap = 2.6f;
   int runs = 15;           // of each case, after one warm-up
-  std::string only = "*";  // glob over case names
+  std::string only = "*";  // globs over case names, any of them: "2dgs*|glint*"
+
+  bool wants(std::string_view name) const;
 };
 
 // Registered with GLINT_REGISTER(PerfCases, {"raster", raster_cases}); run in the order of ids.
+// Nothing is made for cases that are not wanted: methods with all their sets take a while.
 struct PerfCases {
   std::string id;
   std::vector<PerfCase> (*make)(const PerfOptions& options);
 };
 
+// Those that are wanted.
+std::vector<PerfCase> make_perf_cases(const PerfOptions& options);
+
 // Every case at 1 and 2 threads (1 only where the machine has one), or on the GPU in use. Runs of
 // SIMD and scalar alternate, so a machine that slows down slows both.
 std::vector<PerfRow> run_perf(const PerfOptions& options);
+
+// The same cases, once more for each kernel in them, with what is between kernels left out.
+struct KernelRow {
+  std::string op, kernel;
+  double launches = 0;  // of one run
+  double ms = 0;        // of one run: by the device's clock, on the CPU by the host's
+};
+// Of each op, the longest first. On the CPU, rasterising and tracing are no kernels.
+std::vector<KernelRow> run_kernel_times(const PerfOptions& options);
+
+// The surfels and cameras that ops are timed on, for other programs to be timed on: surfels.ply
+// and camera.json (pixels; cam_from_world: 3x4, by rows) in `folder`.
+void write_perf_scene(const PerfOptions& options, const fs::path& folder);
 
 // Seconds of one training step of a method (id and config as create_method takes them) on the scene
 // of the ops: the least of a few, after one to warm up.
 double seconds_of_step(const std::string& method, const Json& config, const PerfOptions& options);
 
+Json perf_setting(const PerfOptions& options);  // with empty "rows"
 Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows);
 std::string perf_to_text(const PerfOptions& options, const std::vector<PerfRow>& rows);
+Json kernels_to_json(const PerfOptions& options, const std::vector<KernelRow>& rows);
+std::string kernels_to_text(const PerfOptions& options, const std::vector<KernelRow>& rows);
 
 }  // namespace glint

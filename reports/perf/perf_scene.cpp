@@ -6,6 +6,7 @@
 #include "glint/core/rng.h"
 #include "glint/render/activations.h"
 #include "glint/render/spherical_harmonics.h"
+#include "glint/scene/ply.h"
 
 namespace glint {
 
@@ -101,6 +102,25 @@ Scene perf_scene(const PerfOptions& options) {
     scene.points.colors.push_back({0.5f, 0.5f, 0.5f});
   }
   return scene;
+}
+
+void write_perf_scene(const PerfOptions& options, const fs::path& folder) {
+  write_surfel_ply(folder / "surfels.ply", perf_cloud(options));
+  const Camera camera = perf_scene(options).train.front().camera;
+  Json rows = Json::array();
+  for (int i = 0; i < 3; ++i) {
+    const Vec3d r = camera.rotation_cam_from_world.rows[i];
+    rows.push_back({r.x, r.y, r.z, camera.translation_cam_from_world[i]});
+  }
+  const Json json = {
+      {"width", camera.width},
+      {"height", camera.height},
+      {"fx", camera.fx},
+      {"fy", camera.fy},
+      {"cx", camera.cx},
+      {"cy", camera.cy},
+      {"cam_from_world", rows}};
+  write_file(folder / "camera.json", json.dump(2) + "\n");
 }
 
 }  // namespace glint

@@ -49,27 +49,35 @@ struct RasterState {
   double pairs() const { return static_cast<double>(rasterizer.num_pixel_pairs()); }
 };
 
+constexpr const char* kForward = "rasterize forward";
+constexpr const char* kBackward = "rasterize forward + backward";
+constexpr const char* kShade = "activate + SH degree 3";
+constexpr const char* kShadeBackward = "activate + SH degree 3, backward";
+
 std::vector<PerfCase> raster_cases(const PerfOptions& options) {
+  if (!options.wants(kForward) && !options.wants(kBackward) && !options.wants(kShade) &&
+      !options.wants(kShadeBackward))
+    return {};
   const auto s = std::make_shared<RasterState>(options);
   s->forward(false);
   s->backward();
   const auto pairs = [s] { return s->pairs(); };
   const auto surfels = [s] { return static_cast<double>(s->cloud.size()); };
   return {
-      {"rasterize forward",
+      {kForward,
        "pairs",
        pairs,
        [s] { s->forward(false); },
        [s] { s->forward(true); },
        [s] { return s->bytes(1, 1); }},
-      {"rasterize forward + backward",
+      {kBackward,
        "pairs",
        pairs,
        [s] { s->forward(false), s->backward(); },
        [s] { s->forward(true), s->backward(); },
        [s] { return s->bytes(3, 3); }},
-      {"activate + SH degree 3", "surfels", surfels, [s] { s->shade(); }, {}},
-      {"activate + SH degree 3, backward", "surfels", surfels, [s] { s->shade_vjp(); }, {}}};
+      {kShade, "surfels", surfels, [s] { s->shade(); }, {}},
+      {kShadeBackward, "surfels", surfels, [s] { s->shade_vjp(); }, {}}};
 }
 
 }  // namespace

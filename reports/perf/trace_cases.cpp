@@ -121,10 +121,21 @@ struct TraceState {
   }
 };
 
+std::string case_name(const std::string& scene, double hits_per_ray) {
+  return fmt::format("trace {} {:.1f} hits/ray", scene, hits_per_ray);
+}
+
+// The names have hits that only a run tells: any number will do.
+bool may_be_wanted(const PerfOptions& options, const std::string& scene) {
+  const std::string some = case_name(scene, 0);
+  return options.wants(some) || options.wants(some + " backward") ||
+         options.only.find("hits/ray") != std::string::npos;
+}
+
 void add_cases(
     const std::string& name, const std::shared_ptr<TraceState>& s, std::vector<PerfCase>& cases
 ) {
-  const std::string forward = fmt::format("trace {} {:.1f} hits/ray", name, s->hits_per_ray());
+  const std::string forward = case_name(name, s->hits_per_ray());
   const auto hits = [s] { return s->hits(); };
   cases.push_back({forward, "hits", hits, [s] { s->forward(); }, {}});
   if (s->settings.triangles) return;
@@ -133,18 +144,19 @@ void add_cases(
 
 std::vector<PerfCase> trace_cases(const PerfOptions& options) {
   std::vector<PerfCase> cases;
-  const auto add = [&](const char* name, TraceScene scene, bool triangles) {
-    add_cases(name, std::make_shared<TraceState>(std::move(scene), triangles), cases);
+  const auto add = [&](const char* name, bool triangles, auto&& scene) {
+    if (may_be_wanted(options, name))
+      add_cases(name, std::make_shared<TraceState>(scene(), triangles), cases);
   };
-  add("100k", incoherent(options, options.overlap), false);
+  add("100k", false, [&] { return incoherent(options, options.overlap); });
   // As many hits as in the published measurement of bare traversals.
-  add("100k", incoherent(options, 1.75f), false);
+  add("100k", false, [&] { return incoherent(options, 1.75f); });
   if (!on_gpu() && SurfelBvh::has_triangles())
-    add("triangles", incoherent(options, options.overlap), true);
+    add("triangles", true, [&] { return incoherent(options, options.overlap); });
   // What mirrored rays meet early in GLINT's training: faint surfels about as large as their
   // distances; and late: fewer and so large that their boxes overlap everywhere.
-  add("fog", mirrored_fog({15, 5, 0.11f, 0.1f}), false);
-  add("large surfels", mirrored_fog({12, 5, 0.2f, 0.3f}), false);
+  add("fog", false, [] { return mirrored_fog({15, 5, 0.11f, 0.1f}); });
+  add("large surfels", false, [] { return mirrored_fog({12, 5, 0.2f, 0.3f}); });
   return cases;
 }
 

@@ -130,12 +130,12 @@ std::vector<PerfCase> training_cases(const PerfOptions& options) {
   std::vector<PerfCase> cases = {
       photometric_case(options), normal_case(options), adam_case(options)};
   if (!on_gpu()) cases.push_back(ssim_metric_case());
+  const auto add = [&](const std::string& name, const std::string& id, const Json& config) {
+    if (options.wants(name)) cases.push_back(step_case(name, id, config, options));
+  };
   for (const auto& [id, spec] : Registry<MethodSpec>::all())
-    if (spec.overrides.empty())
-      cases.push_back(step_case(id + " training step", id, Json::object(), options));
-  cases.push_back(step_case(
-      "glint step, transmission traced", "glint", Json{{"transmission", "trace"}}, options
-  ));
+    if (spec.overrides.empty()) add(id + " training step", id, Json::object());
+  add("glint step, transmission traced", "glint", Json{{"transmission", "trace"}});
   return cases;
 }
 

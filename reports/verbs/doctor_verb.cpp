@@ -5,6 +5,7 @@
 #include "glint/core/machine.h"
 #include "glint/core/parallel.h"
 #include "glint/cuda/backend.h"
+#include "glint/cuda/require_gpu.h"
 #include "glint/drawing/canvas.h"
 #include "metrics/feature_net.h"
 
@@ -32,12 +33,19 @@ std::string gib(std::uint64_t bytes) {
   return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / static_cast<double>(kGiB));
 }
 
-std::string cuda_text() {
+// No device is no failure, but where there has to be one.
+Examined cuda() {
   const gpu::CudaDevice& device = gpu::cuda_device();
-  if (!device.usable) return "no: " + device.why_not;
-  return fmt::format(
+  if (!device.usable)
+    return {
+        "cuda",
+        "no: " + device.why_not,
+        !gpu::gpu_required(),
+        "GLINT_REQUIRE_GPU is set; unset it to work on the CPU"};
+  const std::string text = fmt::format(
       "{}, {}, driver for CUDA {}", device.name, gib(device.memory_bytes), device.driver
   );
+  return {"cuda", text, true, ""};
 }
 
 // Which networks LPIPS has weights of.
@@ -84,7 +92,7 @@ std::vector<Examined> examine(const CommonOptions& common) {
        fmt::format("{} free for {}", gib(disk), common.out),
        disk >= kNeededDisk,
        "2 GiB are needed; free some or choose another --out"},
-      {"cuda", cuda_text(), true, ""},
+      cuda(),
       {"networks", feature_net_libraries.here() ? feature_net_libraries() : "none", true, ""},
       lpips_weights(),
       font(),

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "glint/core/error.h"
+#include "glint/core/device_lost.h"
 #include "glint/method.h"
 #include "reports/records/scene_source.h"
 
@@ -15,7 +15,7 @@ namespace glint {
 
 struct FakeConfig {
   float grey = 0.5f;  // of every rendered pixel
-  std::string fails;  // "", "initialize", "step", "loss", "render"
+  std::string fails;  // "", "initialize", "step", "loss", "render", "device"
   template <class V>
   void visit(V&& v) {
     v("grey", grey, "colour");
@@ -35,6 +35,7 @@ class FakeMethod final : public Method {
   }
   StepStats step(int iteration) override {
     fail_at("step");
+    if (config_.fails == "device") throw DeviceLost("fake device lost");
     StepStats stats;
     stats.iteration = iteration;
     stats.loss = config_.fails == "loss" ? std::numeric_limits<double>::quiet_NaN() : 0.1;

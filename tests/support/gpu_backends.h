@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The GPU backends that tests compare with the CPU: its kernels run on the host, always, and the
-// CUDA device where there is one.
+// CUDA device where there is one, or has to be (GLINT_REQUIRE_GPU=1).
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -13,6 +13,8 @@
 #include "glint/core/image.h"
 #include "glint/cuda/backend.h"
 #include "glint/cuda/ops.h"
+#include "glint/cuda/require_gpu.h"
+#include "tests/support/difference_list.h"
 #include "tests/support/host_exec.h"
 
 namespace glint::test {
@@ -56,6 +58,7 @@ void for_each_gpu_backend(F&& f) {
   f("kernels on the host");
   use_cpu();
   if (!gpu::cuda_device().usable) {
+    if (gpu::gpu_required()) FAIL("no CUDA device: " << gpu::cuda_device().why_not);
     WARN("no CUDA device: " << gpu::cuda_device().why_not);
     return;
   }
@@ -95,7 +98,11 @@ void check_same_as_cpu(double tolerance, Run&& run) {
     const auto found = run();
     for (const auto& [name, values] : expected) {
       INFO(name);
-      CHECK(relative_difference(found.at(name), values) < tolerance);
+      const double difference = relative_difference(found.at(name), values);
+      list_difference(
+          Catch::getResultCapture().getCurrentTestName(), backend, name, difference, tolerance
+      );
+      CHECK(difference < tolerance);
     }
   });
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "glint/core/device.h"
+#include "glint/core/kernel_trace.h"
 #include "glint/cuda/block.h"
 #include "tests/support/host_memory.h"
 
@@ -73,12 +74,14 @@ class HostExec {
   void for_each(std::size_t count, F f) {
     ++device_counters.launches;
     const OpenMemory open(OpenMemory::kDevice);
+    const TracedKernel traced(typeid(F));
     for (std::size_t i = 0; i < count; ++i) f(i);
   }
   template <class Body>
   void launch(std::size_t blocks, const Body& body) {
     ++device_counters.launches;
     const OpenMemory open(OpenMemory::kDevice);
+    const TracedKernel traced(typeid(Body));
     for (std::size_t i = 0; i < blocks; ++i) {
       HostBlock<Body::kThreads> block;
       block.index = static_cast<int>(i);

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "glint/core/device_lost.h"
 #include "glint/core/progress.h"
 #include "tests/support/temp_folder.h"
 
@@ -15,7 +16,7 @@ using namespace glint;
 namespace {
 
 // A method whose loss stops being finite at a given iteration.
-class Exploding final : public Method {
+class Exploding : public Method {
  public:
   explicit Exploding(int at) : at_(at) {}
   void initialize(const Scene&, const RunOptions&) override {}
@@ -38,6 +39,24 @@ class Exploding final : public Method {
 
  private:
   int at_;
+};
+
+// One whose device is lost in a step, or in the middle of the n-th save.
+class Losing final : public Exploding {
+ public:
+  Losing(int in_step, int in_save) : Exploding(-1), in_step_(in_step), in_save_(in_save) {}
+  StepStats step(int iteration) override {
+    if (iteration == in_step_) throw DeviceLost("gone");
+    return Exploding::step(iteration);
+  }
+  void save(const std::string& folder) const override {
+    write_file(fs::path(folder) / "state", fmt::format("of save {}", ++saves_));
+    if (saves_ == in_save_) throw DeviceLost("gone");
+  }
+
+ private:
+  int in_step_, in_save_;
+  mutable int saves_ = 0;
 };
 
 Scene one_view() {
@@ -69,6 +88,34 @@ TEST_CASE(
     CHECK(std::string(error.what()).find("sharpness") != std::string::npos);
   }
   CHECK(read_file(folder / "checkpoint" / "state") == "good");
+}
+
+TEST_CASE("A device that is lost ends training with the last checkpoint kept whole") {
+  set_quiet(true);
+  const test::TempFolder temporary;
+  const fs::path& folder = temporary.path();
+  TrainOptions options;
+  options.run.iterations = 100;
+  options.folder = folder;
+  options.save_interval = 10;
+  const auto message_of = [&](int in_step, int in_save) {
+    Losing method(in_step, in_save);
+    return test::error_of(ExitCode::kEnvironment, [&] {
+      try {
+        train(method, one_view(), options);
+      } catch (const DeviceLost&) {
+        throw;  // still known as such
+      } catch (...) {
+        FAIL("another error");
+      }
+    });
+  };
+  CHECK_THAT(message_of(5, -1), Catch::Contains("iteration 5, before the first checkpoint: gone"));
+  CHECK_THAT(message_of(25, -1), Catch::Contains("iteration 25, the last checkpoint is in "));
+  CHECK(read_file(folder / "checkpoint" / "state") == "of save 2");
+  // Lost while a checkpoint is written: the one before is there.
+  CHECK_THAT(message_of(-1, 3), Catch::Contains("iteration 29, the last checkpoint is in "));
+  CHECK(read_file(folder / "checkpoint" / "state") == "of save 2");
 }
 
 TEST_CASE("Events between two lines of the log stand in the second, with their iteration") {

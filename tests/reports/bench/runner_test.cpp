@@ -283,6 +283,22 @@ TEST_CASE("a method that throws becomes a failure record and the others go on") 
   }
 }
 
+TEST_CASE(
+    "a device that is lost ends the profile; what was finished stays, and the rest goes on later"
+) {
+  const test::TempFolder folder;
+  RunnerOptions options = fake_run(folder.path());
+  options.assignments = {"fake/other.fails=device"};  // the second of four
+  CHECK_THROWS_AS(run_profile(options), DeviceLost);
+  const auto records = read_records(folder.path() / "records.jsonl");
+  REQUIRE(records.size() == 1);
+  CHECK(records[0].ok());
+  options.assignments.clear();
+  const RunSummary summary = run_profile(options);
+  CHECK(summary.reused == 1);
+  CHECK(summary.ran == 3);
+}
+
 TEST_CASE("a loss that is not finite is told apart from bad input") {
   const test::TempFolder folder;
   RunnerOptions options = fake_run(folder.path());

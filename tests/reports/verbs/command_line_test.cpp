@@ -66,6 +66,16 @@ TEST_CASE("doctor exits with 6 where weights of LPIPS cannot be used") {
   ::unsetenv("GLINT_LPIPS_WEIGHTS");
 }
 
+TEST_CASE("doctor exits with 6 where there has to be a GPU and is none") {
+  const int without = gpu::cuda_device().usable ? 0 : 6;
+  ::setenv("GLINT_REQUIRE_GPU", "1", 1);
+  CHECK(run({"doctor"}) == without);
+  ::setenv("GLINT_REQUIRE_GPU", "0", 1);
+  CHECK(run({"doctor"}) == 0);
+  ::unsetenv("GLINT_REQUIRE_GPU");
+  CHECK(run({"doctor"}) == 0);
+}
+
 TEST_CASE("a GPU is used where there is one; asking for it elsewhere exits with 6") {
   const bool has_gpu = gpu::cuda_device().usable;
   CHECK(run({"plan", "--device", "cuda"}) == (has_gpu ? 0 : 6));
