@@ -220,6 +220,22 @@ GLINT_HD int batch_size(std::uint32_t first, std::uint32_t end) {
 using DeviceMaps = RasterMaps<PointerMap>;
 using DeviceKept = KeptMaps<PointerMap>;
 
+// f(thread, float out[kN]) for every thread, out zero before; where it returns true for some thread
+// of a warp, p[i] += the warp's sum of out[i].
+template <int kN, class Block, class F>
+GLINT_HD void add_over_warps(Block& block, F&& f, float* p) {
+  block.each_warp([&](auto& warp) {
+    using Warp = std::remove_reference_t<decltype(warp)>;
+    typename Warp::template PerLane<Row<kN>> out{};
+    typename Warp::template PerLane<Row<(kN + kWarp - 1) / kWarp>> totals{};
+    if (warp.ballot([&](int lane) { return f(warp.thread(lane), out[lane].v); }) == 0) return;
+    warp.template sums<kN>(out, totals);
+    warp.each([&](int lane) {
+      for (int i = lane; i < kN; i += kWarp) block.add(p + i, totals[lane].v[i / kWarp]);
+    });
+  });
+}
+
 template <class Code>
 struct ForwardTile {
   static constexpr int kThreads = kTileThreads;
@@ -243,7 +259,8 @@ struct ForwardTile {
       block.each([&](int thread) { shared.load(pass, first, range.end, thread); });
       const int size = batch_size(first, range.end);
       for (int k = 0; k < size; ++k)
-        block.template add_over_warps<1>(
+        add_over_warps<1>(
+            block,
             [&](int thread, float* weight) {
               return step(block, shared, k, pixels[thread], sums[thread], *weight);
             },
@@ -322,7 +339,8 @@ struct BackwardTile {
       block.each([&](int thread) { shared.load(pass, first, range.end, thread); });
       const int size = batch_size(first, range.end);
       for (int k = 0; k < size; ++k)
-        block.template add_over_warps<kSums>(
+        add_over_warps<kSums>(
+            block,
             [&](int thread, float* sums) {
               return step(shared, k, pixels[thread], states[thread], sums);
             },
