@@ -164,8 +164,18 @@ class DeviceBlock {
   __device__ void add(float* p, float value) { atomicAdd(p, value); }
 };
 
+// Blocks of a kernel that share a multiprocessor, by which the compiler shares out registers:
+// kBlocksAtOnce, where a kernel has an opinion.
 template <class Body>
-__global__ void __launch_bounds__(Body::kThreads) run_blocks(Body body) {
+constexpr int blocks_at_once() {
+  if constexpr (requires { Body::kBlocksAtOnce; })
+    return Body::kBlocksAtOnce;
+  else
+    return 1;
+}
+
+template <class Body>
+__global__ void __launch_bounds__(Body::kThreads, blocks_at_once<Body>()) run_blocks(Body body) {
   __shared__ typename Body::Shared shared;
   DeviceBlock<Body::kThreads> block;
   body(block, shared);

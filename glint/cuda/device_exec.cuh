@@ -122,6 +122,18 @@ class DeviceExec {
     check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
     return last[0] + last[1];
   }
+  // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count].
+  template <class T>
+  void exclusive_sum_on_device(const Buffer<T>& counts, std::size_t count, Buffer<T>& sums) {
+    sums.resize(count + 1);
+    check_cuda(cudaMemsetAsync(sums.data(), 0, sizeof(T), stream_), "clearing memory");
+    if (count == 0) return;
+    with_scratch([&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceScan::InclusiveSum(
+          scratch, bytes, counts.data(), sums.data() + 1, static_cast<int>(count), stream_
+      );
+    });
+  }
   void sort_pairs(
       std::size_t count, int bits, Buffer<std::uint64_t>& keys, Buffer<std::uint32_t>& values
   ) {

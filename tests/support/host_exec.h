@@ -58,6 +58,12 @@ class HostExec {
     std::exclusive_scan(counts.data(), counts.data() + count, sums.data(), 0u);
     return count == 0 ? 0 : sums.data()[count - 1] + counts.data()[count - 1];
   }
+  // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count].
+  template <class T>
+  void exclusive_sum_on_device(const Buffer<T>& counts, std::size_t count, Buffer<T>& sums) {
+    sums.resize(count + 1);
+    std::partial_sum(counts.data(), counts.data() + count, sums.data() + 1);
+  }
   // Stable, by the low `bits` bits of the keys.
   void sort_pairs(
       std::size_t count, int bits, Buffer<std::uint64_t>& keys, Buffer<std::uint32_t>& values

@@ -82,6 +82,69 @@ struct Fixture {
   RasterCall call() const { return {input, camera, settings}; }
 };
 
+RasterOutputGradient random_gradient(const Case& c, std::uint64_t seed) {
+  Rng rng(seed);
+  RasterOutputGradient gradient = room(c.size, c.channels, 0);
+  for_each_map(
+      {c.channels, true, true},
+      [&](const char*, int, Image& map) {
+        for (float& value : map.values()) value = rng.normal();
+      },
+      gradient
+  );
+  return gradient;
+}
+
+// Room for everything, full of numbers that are to be overwritten.
+RasterGradient gradient_room(const Case& c) {
+  RasterGradient gradient;
+  RasterGradient::for_each_array(
+      {c.channels, true, true, true},
+      [&](const char*, std::size_t width, FloatArray& values) {
+        values.assign(width * static_cast<std::size_t>(c.surfels), -1.0f);
+      },
+      gradient
+  );
+  if (!c.statistics) gradient.screen_abs.clear();
+  return gradient;
+}
+
+using Bytes = std::vector<float>;
+void append(std::span<const float> values, Bytes& all) {
+  all.insert(all.end(), values.begin(), values.end());
+}
+
+// All that a pass forward and back writes.
+Bytes run_both_ways(
+    RasterPipeline<HostExec>& gpu,
+    const Fixture& f,
+    const Case& c,
+    std::uint32_t* overflow = nullptr
+) {
+  RasterOutput maps = room(c.size, c.channels, f.arrays.count());
+  RasterGradient gradient = gradient_room(c);
+  DeviceRasterCall call = device_call(f.call(), maps);
+  call.overflow = overflow;
+  gpu.forward(call);
+  gpu.backward(device_maps(random_gradient(c, 5)), device_gradients(gradient));
+  Bytes all;
+  for_each_map(
+      f.call().maps(),
+      [&](const char*, int channels, const Image& map) {
+        if (channels > 0) append(map.values(), all);
+      },
+      maps
+  );
+  append(maps.visibility, all);
+  if (c.statistics) append(maps.owned_pixels, all);
+  RasterGradient::for_each_array(
+      f.call().maps(),
+      [&](const char*, std::size_t, const FloatArray& values) { append(values, all); },
+      gradient
+  );
+  return all;
+}
+
 }  // namespace
 
 TEST_CASE("The GPU's rasteriser on the host makes the CPU's maps") {
@@ -117,27 +180,12 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
   for (const Case& c : kCases) {
     CAPTURE(c.size.width, c.surfels);
     const Fixture f(c, seed++);
-    Rng rng(seed);
     RasterOutput maps = room(c.size, c.channels, f.arrays.count());
-    RasterOutputGradient dL_doutput = maps;
-    for_each_map(
-        {c.channels, true, true},
-        [&](const char*, int, Image& map) {
-          for (float& value : map.values()) value = rng.normal();
-        },
-        dL_doutput
-    );
+    const RasterOutputGradient dL_doutput = random_gradient(c, seed);
     Rasterizer cpu;
     cpu.forward(f.call());
     const RasterGradient& expected = cpu.backward(dL_doutput);
-    RasterGradient actual = expected;
-    RasterGradient::for_each_array(
-        {},
-        [](const char*, std::size_t, FloatArray& values) {
-          std::fill(values.begin(), values.end(), -1.0f);
-        },
-        actual
-    );
+    RasterGradient actual = gradient_room(c);
     HostExec exec;
     RasterPipeline<HostExec> gpu(exec);
     gpu.forward(device_call(f.call(), maps));
@@ -151,6 +199,22 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
         actual,
         expected
     );
+  }
+}
+
+TEST_CASE("The GPU's rasteriser gives the same bytes in any order of threads, warps and blocks") {
+  std::uint64_t seed = 21;
+  for (const Case& c : kCases) {
+    CAPTURE(c.size.width, c.surfels);
+    const Fixture f(c, seed++);
+    std::vector<Bytes> results;
+    for (const std::uint64_t order : {0, 1, 2, 3}) {
+      const HostOrder in_order(order);
+      HostExec exec;
+      RasterPipeline<HostExec> gpu(exec);
+      results.push_back(run_both_ways(gpu, f, c));
+    }
+    for (const Bytes& result : results) CHECK(result == results[0]);
   }
 }
 
