@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "glint/cuda/ops.h"
+#include "tests/support/gpu_backends.h"
 #include "tests/support/host_exec.h"
 #include "tests/support/random_scene.h"
 
@@ -216,6 +217,88 @@ TEST_CASE("The GPU's rasteriser gives the same bytes in any order of threads, wa
     }
     for (const Bytes& result : results) CHECK(result == results[0]);
   }
+}
+
+TEST_CASE("Silent steps of the GPU's rasteriser wait for nothing and give the bytes of loud ones") {
+  use_host_kernels();
+  const Case& c = kCases[3];
+  const Fixture f(c, 31);
+  HostExec exec;
+  RasterPipeline<HostExec> gpu(exec);
+  std::uint32_t overflow = 0;
+  {  // without a call before it that waited there is no room: it waits, too
+    const SilentStep silent(true);
+    const Bytes first = run_both_ways(gpu, f, c, &overflow);
+    RasterPipeline<HostExec> fresh(exec);
+    const SilentStep loud(false);
+    CHECK(run_both_ways(fresh, f, c) == first);
+  }
+  const Bytes expected = run_both_ways(gpu, f, c, &overflow);
+  const std::size_t pairs = gpu.num_pairs(), slots = gpu.num_slots();
+  const SilentStep silent(true);
+  CHECK(run_both_ways(gpu, f, c, &overflow) == expected);
+  CHECK(gpu.num_slots() == slots + slots / 2 + 1);
+  CHECK(gpu.num_pairs() == pairs);
+  CHECK(overflow == 0);
+  use_cpu();
+}
+
+TEST_CASE("Where a silent step of the GPU's rasteriser lacks room, it says so and shows nothing") {
+  use_host_kernels();
+  const Case& small = kCases[3];
+  Case large = small;
+  large.surfels *= 3;
+  const Fixture few(small, 41), many(large, 41);
+  HostExec exec;
+  RasterPipeline<HostExec> gpu(exec);
+  const Bytes expected = run_both_ways(gpu, many, large);
+  RasterPipeline<HostExec> learned(exec);
+  run_both_ways(learned, few, small);
+  std::uint32_t overflow = 0;
+  {
+    const SilentStep silent(true);
+    const Bytes nothing = run_both_ways(learned, many, large, &overflow);
+    CHECK(std::all_of(nothing.begin(), nothing.end(), [](float v) { return v == 0; }));
+    CHECK(overflow == 1);
+    run_both_ways(learned, few, small, &overflow);
+    CHECK(overflow == 1);  // stays until its owner clears it
+    CHECK(learned.num_pairs() < gpu.num_pairs());
+  }
+  CHECK(run_both_ways(learned, many, large, &overflow) == expected);
+  const SilentStep silent(true);
+  overflow = 0;
+  CHECK(run_both_ways(learned, many, large, &overflow) == expected);
+  CHECK(overflow == 0);
+  use_cpu();
+}
+
+TEST_CASE("Where only the gradients lack room, they are zero") {
+  use_host_kernels();
+  const Case& c = kCases[3];
+  const Fixture f(c, 51);
+  Fixture hidden(c, 51);  // the same pairs without any hit
+  for (float& z : hidden.near_limit.values()) z = 1e6f;
+  hidden.input.near_limit = hidden.near_limit;
+  HostExec exec;
+  RasterPipeline<HostExec> gpu(exec), fresh(exec);
+  const Bytes expected = run_both_ways(fresh, f, c);
+  run_both_ways(gpu, hidden, c);
+  std::uint32_t overflow = 0;
+  const SilentStep silent(true);
+  const Bytes found = run_both_ways(gpu, f, c, &overflow);
+  CHECK(overflow == 1);
+  std::size_t gradients = 0;
+  RasterGradient::for_each_array(f.call().maps(), [&](const char*, std::size_t width) {
+    gradients += width * static_cast<std::size_t>(c.surfels);
+  });
+  const std::size_t maps = expected.size() - gradients;
+  CHECK(std::equal(
+      expected.begin(), expected.begin() + static_cast<std::ptrdiff_t>(maps), found.begin()
+  ));
+  CHECK(std::all_of(found.begin() + static_cast<std::ptrdiff_t>(maps), found.end(), [](float v) {
+    return v == 0;
+  }));
+  use_cpu();
 }
 
 TEST_CASE("The GPU's rasteriser on the host does without surfels") {
