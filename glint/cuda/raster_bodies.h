@@ -107,15 +107,14 @@ struct SplatBatch {
   }
 };
 
-// f(warp, first, size, shared) for all warps and batches of the block's tile, front to back, while
-// live(thread) holds for some thread of the block.
+// f(warp, size of the batch) for all warps of a block and all batches of its tile's pairs `range`,
+// front to back, while live(thread) holds for some thread. Returns the end of the last batch.
 template <class Block, class Live, class F>
-GLINT_HD void for_each_batch(
-    Block& block, SplatBatch& shared, const DeviceLists& lists, Live&& live, F&& f
+GLINT_HD std::uint32_t for_each_batch(
+    Block& block, SplatBatch& shared, const DeviceLists& lists, PairRange range, Live&& live, F&& f
 ) {
-  const PairRange range = lists.ranges[block.index];
-  for (std::uint32_t first = range.begin; first < range.end; first += kTileThreads) {
-    if (!block.any(live)) break;
+  std::uint32_t first = range.begin;
+  while (first < range.end && block.any(live)) {
     const std::uint32_t left = range.end - first;
     const int size = static_cast<int>(left < kTileThreads ? left : std::uint32_t{kTileThreads});
     block.each([&](int thread) {
@@ -123,7 +122,9 @@ GLINT_HD void for_each_batch(
         shared.load(lists, block.index, first + static_cast<std::uint32_t>(thread), thread);
     });
     block.each_warp([&](auto& warp) { f(warp, size); });
+    first += static_cast<std::uint32_t>(size);
   }
+  return first;
 }
 
 template <class Warp, class T>
@@ -143,6 +144,7 @@ struct ForwardTile {
   DeviceMaps out;
   DeviceKept kept;
   DeviceSlots slots;
+  std::uint32_t* ends;  // [tiles] of the pairs that were looked at
 
   template <class Block>
   GLINT_HD void operator()(Block& block, Shared& shared) const {
@@ -153,7 +155,8 @@ struct ForwardTile {
       sums[thread].clear();
     });
     const auto live = [&](int thread) { return pixels[thread].live(); };
-    for_each_batch(block, shared, pass.lists, live, [&](auto& warp, int size) {
+    const PairRange range = pass.lists.ranges[block.index];
+    const auto composite = [&](auto& warp, int size) {
       for (int first = 0; first < size; first += kWarp) {
         if (warp.ballot([&](int lane) { return live(warp.thread(lane)); }) == 0) break;
         std::uint32_t near = warp.ballot([&](int lane) {
@@ -162,8 +165,12 @@ struct ForwardTile {
         for (; near != 0; near &= near - 1)
           step(warp, shared, first + lowest_bit(near), pixels, sums);
       }
+    };
+    const std::uint32_t end = for_each_batch(block, shared, pass.lists, range, live, composite);
+    block.each([&](int thread) {
+      if (thread == 0) ends[block.index] = end;
+      store(pixels[thread], sums[thread]);
     });
-    block.each([&](int thread) { store(pixels[thread], sums[thread]); });
   }
 
  private:
@@ -230,6 +237,7 @@ struct BackwardTile {
   TilePass pass;
   DeviceMaps out, dL_dout;
   DeviceKept kept;
+  const std::uint32_t* ends;    // of the forward pass
   const std::uint32_t* ranks;   // see DeviceSlots
   const PairCounts* first_row;  // of each surfel, in `rows`
   const PairTotals* totals;     // of rows
@@ -244,8 +252,11 @@ struct BackwardTile {
       pixels[thread].start(pass, block.index, thread);
       if (pixels[thread].inside(pass)) start(pixels[thread].index(pass), states[thread]);
     });
-    const auto live = [&](int thread) { return pixels[thread].live(); };
-    for_each_batch(block, shared, pass.lists, live, [&](auto& warp, int size) {
+    // Not while pixels are live: every row that the forward pass made is written, even where
+    // rounding stops a pixel earlier than there.
+    const PairRange range{pass.lists.ranges[block.index].begin, ends[block.index]};
+    const auto always = [](int) { return true; };
+    for_each_batch(block, shared, pass.lists, range, always, [&](auto& warp, int size) {
       PerLane<decltype(warp), std::uint32_t> row;
       for (int first = 0; first < size; first += kWarp) {
         std::uint32_t seen = warp.ballot([&](int lane) {

@@ -38,7 +38,9 @@ class RasterPipeline {
     lists_.make(exec_, call.surfels, call.camera, call.overflow);
     begin_pass();
     with_pass_code(pass_.has, [&]<class Code>() {
-      exec_.launch(lists_.num_tiles(), ForwardTile<Code>{pass_, call.out, kept_, slots()});
+      exec_.launch(
+          lists_.num_tiles(), ForwardTile<Code>{pass_, call.out, kept_, slots(), ends_.data()}
+      );
     });
     end_pass();
   }
@@ -55,7 +57,16 @@ class RasterPipeline {
       sums_.resize(n * Tile::kSums);
       exec_.launch(
           lists_.num_tiles(),
-          Tile{pass_, call_.out, dL_dout, kept_, ranks_.data(), first, totals, rows_.data()}
+          Tile{
+              pass_,
+              call_.out,
+              dL_dout,
+              kept_,
+              ends_.data(),
+              ranks_.data(),
+              first,
+              totals,
+              rows_.data()}
       );
       exec_.launch(
           blocks_of_sums(), SumRows<Tile::kSums>{n, first, totals, rows_.data(), sums_.data()}
@@ -98,6 +109,7 @@ class RasterPipeline {
     ranks_.resize(lists_.num_slots());
     if (call_.has.statistics) owned_.resize(lists_.num_slots());
     exec_.fill_zero(visibility_);
+    ends_.resize(lists_.num_tiles());
     fit_kept();
   }
   void end_pass() {
@@ -137,6 +149,7 @@ class RasterPipeline {
   Buffer<float> visibility_;  // of slots
   Buffer<std::uint8_t> owned_;
   Buffer<std::uint32_t> ranks_;
+  Buffer<std::uint32_t> ends_;  // of tiles
   Buffer<PairCounts> num_rows_;
   CountedRoom<Exec> counted_rows_;
   Buffer<float> rows_, sums_;
