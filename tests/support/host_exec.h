@@ -62,6 +62,7 @@ class HostExec {
   template <class T>
   void exclusive_sum_on_device(const Buffer<T>& counts, std::size_t count, Buffer<T>& sums) {
     sums.resize(count + 1);
+    sums.data()[0] = T{};
     std::partial_sum(counts.data(), counts.data() + count, sums.data() + 1);
   }
   // Stable, by the low `bits` bits of the keys.
