@@ -4,6 +4,8 @@
 // exclusive_sum_on_device, sort_pairs, download and fill_zero. docs/gpu_raster.md: what it costs.
 #pragma once
 
+#include <cstring>
+
 #include "glint/cuda/raster_sums.h"
 #include "glint/cuda/splat_lists.h"
 
@@ -32,14 +34,21 @@ class RasterPipeline {
   using BufferMap = Buffer<float>;
 
   explicit RasterPipeline(Exec& exec) : exec_(exec) {}
+  RasterPipeline(const RasterPipeline&) = delete;
+  RasterPipeline& operator=(const RasterPipeline&) = delete;
 
-  void forward(const DeviceRasterCall& call) {
+  // `other`: one that has just rasterised the same surfels with the same camera, if there is such a
+  // one, to use its splats and lists: surfels on their own, say, behind those behind an interface.
+  // Features, near limit and maps may differ. It must rasterise nothing else before backward().
+  // Where its arrays or its camera are others, it is not used.
+  void forward(const DeviceRasterCall& call, RasterPipeline* other = nullptr) {
     call_ = call;
-    lists_.make(exec_, call.surfels, call.camera, call.overflow);
+    lists_ = other != nullptr && other->has_lists_of(call) ? other->lists_ : &own_lists_;
+    if (lists_ == &own_lists_) own_lists_.make(exec_, call.surfels, call.camera, call.overflow);
     begin_pass();
     with_pass_code(pass_.has, [&]<class Code>() {
       exec_.launch(
-          lists_.num_tiles(), ForwardTile<Code>{pass_, call.out, kept_, slots(), ends_.data()}
+          lists_->num_tiles(), ForwardTile<Code>{pass_, call.out, kept_, slots(), ends_.data()}
       );
     });
     end_pass();
@@ -56,7 +65,7 @@ class RasterPipeline {
       rows_.resize(std::size_t{room.pairs} * Tile::kSums);
       sums_.resize(n * Tile::kSums);
       exec_.launch(
-          lists_.num_tiles(),
+          lists_->num_tiles(),
           Tile{
               pass_,
               call_.out,
@@ -81,12 +90,19 @@ class RasterPipeline {
   }
 
   // Of the last forward call. They wait for the device.
-  std::size_t num_pairs() { return lists_.num_pairs(exec_); }
-  std::size_t num_pixel_pairs() { return lists_.num_pixel_pairs(exec_); }
+  std::size_t num_pairs() { return lists_->num_pairs(exec_); }
+  std::size_t num_pixel_pairs() { return lists_->num_pixel_pairs(exec_); }
   std::size_t num_rows() { return counted_rows_.read(exec_).pairs; }  // of the last backward call
-  std::size_t num_slots() const { return lists_.num_slots(); }
+  bool has_own_lists() const { return lists_ == &own_lists_; }
+  std::size_t num_slots() const { return lists_->num_slots(); }
 
  private:
+  bool has_lists_of(const DeviceRasterCall& call) const {
+    const DeviceSurfels &a = call_.surfels, &b = call.surfels;
+    return lists_->num_tiles() > 0 && a.count == b.count && a.means == b.means &&
+           a.scales == b.scales && a.rotations == b.rotations && a.opacities == b.opacities &&
+           std::memcmp(&call_.camera, &call.camera, sizeof call.camera) == 0;
+  }
   std::size_t num_pixels() const {
     return static_cast<std::size_t>(pass_.lists.width) *
            static_cast<std::size_t>(pass_.lists.height);
@@ -99,17 +115,17 @@ class RasterPipeline {
   }
   void begin_pass() {
     pass_ = {
-        .lists = lists_.lists(),
+        .lists = lists_->lists(),
         .features = call_.surfels.features,
         .near_limit = call_.near_limit,
         .near_plane = call_.camera.near_plane,
         .has = call_.has,
         .range = call_.range};
-    visibility_.resize(lists_.num_slots());
-    ranks_.resize(lists_.num_slots());
-    if (call_.has.statistics) owned_.resize(lists_.num_slots());
+    visibility_.resize(lists_->num_slots());
+    ranks_.resize(lists_->num_slots());
+    if (call_.has.statistics) owned_.resize(lists_->num_slots());
     exec_.fill_zero(visibility_);
-    ends_.resize(lists_.num_tiles());
+    ends_.resize(lists_->num_tiles());
     fit_kept();
   }
   void end_pass() {
@@ -143,7 +159,8 @@ class RasterPipeline {
   Exec& exec_;
   DeviceRasterCall call_{};
   TilePass pass_{};
-  SplatLists<Exec> lists_;
+  SplatLists<Exec> own_lists_;
+  SplatLists<Exec>* lists_ = &own_lists_;  // of the last forward call
   KeptMaps<BufferMap> kept_memory_;
   DeviceKept kept_;
   Buffer<float> visibility_;  // of slots

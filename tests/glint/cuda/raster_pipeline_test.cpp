@@ -120,13 +120,14 @@ Bytes run_both_ways(
     RasterPipeline<HostExec>& gpu,
     const Fixture& f,
     const Case& c,
-    std::uint32_t* overflow = nullptr
+    std::uint32_t* overflow = nullptr,
+    RasterPipeline<HostExec>* other = nullptr
 ) {
   RasterOutput maps = room(c.size, c.channels, f.arrays.count());
   RasterGradient gradient = gradient_room(c);
   DeviceRasterCall call = device_call(f.call(), maps);
   call.overflow = overflow;
-  gpu.forward(call);
+  gpu.forward(call, other);
   gpu.backward(device_maps(random_gradient(c, 5)), device_gradients(gradient));
   Bytes all;
   for_each_map(
@@ -299,6 +300,33 @@ TEST_CASE("Where only the gradients lack room, they are zero") {
     return v == 0;
   }));
   use_cpu();
+}
+
+TEST_CASE("A second pass of the GPU's rasteriser over the same surfels uses the lists of the first"
+) {
+  const Case& c = kCases[2];
+  const Fixture behind(c, 61);
+  Fixture alone(c, 61);
+  alone.input = behind.input;  // the same arrays
+  alone.input.near_limit = {};
+  HostExec exec;
+  RasterPipeline<HostExec> first(exec), second(exec), apart(exec);
+  const Bytes expected_behind = run_both_ways(first, behind, c);
+  const Bytes expected_alone = run_both_ways(apart, alone, c);
+  CHECK(expected_behind != expected_alone);
+  CHECK(run_both_ways(second, alone, c, nullptr, &first) == expected_alone);
+  CHECK(!second.has_own_lists());
+  RasterPipeline<HostExec> third(exec);  // by way of the second
+  CHECK(run_both_ways(third, behind, c, nullptr, &second) == expected_behind);
+  CHECK(!third.has_own_lists());
+
+  alone.camera.fx *= 1.5;  // another view
+  const Bytes other_view = run_both_ways(apart, alone, c);
+  CHECK(run_both_ways(second, alone, c, nullptr, &first) == other_view);
+  CHECK(second.has_own_lists());
+  const Fixture other(c, 62);  // other surfels
+  CHECK(run_both_ways(second, other, c, nullptr, &first) == run_both_ways(apart, other, c));
+  CHECK(second.has_own_lists());
 }
 
 TEST_CASE("The GPU's rasteriser on the host does without surfels") {
