@@ -15,12 +15,13 @@ struct LargeScene {
 };
 
 // Sizes on the screen as trained ones have; a few of every awkward kind.
-inline LargeScene large_scene(std::size_t surfels = kManySurfels, ImageSize size = kLargeSize) {
+inline LargeScene large_scene(double max_opacity = 1) {
   Rng rng(2024);
   LargeScene scene;
-  scene.camera = random_camera(rng, size);
+  scene.camera = random_camera(rng, kLargeSize);
   RandomSurfels options;
-  options.count = surfels;
+  options.count = kManySurfels;
+  options.max_opacity = max_opacity;
   options.min_sigma_px = 0.3;
   options.max_sigma_px = 6;
   options.edge_on = options.behind = options.tiny = 0.02;

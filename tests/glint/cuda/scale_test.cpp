@@ -20,8 +20,9 @@ const LargeScene& scene() {
 // Arrays of the scene where the backend in use can read them.
 struct SceneArrays {
   FloatArray means, scales, rotations, opacities, features;
-  SceneArrays() {
-    const SurfelArrays& from = scene().arrays;
+  Camera camera;
+  explicit SceneArrays(const LargeScene& scene) : camera(scene.camera) {
+    const SurfelArrays& from = scene.arrays;
     means.assign(from.means.begin(), from.means.end());
     scales.assign(from.scales.begin(), from.scales.end());
     rotations.assign(from.rotations.begin(), from.rotations.end());
@@ -38,7 +39,7 @@ struct SceneArrays {
     input.features = features;
     RasterSettings settings;
     settings.with_distortion = settings.with_statistics = settings.scalar = true;
-    return {input, scene().camera, settings};
+    return {input, camera, settings};
   }
 };
 
@@ -59,7 +60,7 @@ RasterOutputGradient gradient_of_maps() {
 
 using Results = std::map<std::string, std::vector<float>>;
 Results run() {
-  const SceneArrays arrays;
+  const SceneArrays arrays(scene());
   const RasterCall call = arrays.call();
   Rasterizer rasterizer;
   const RasterOutput& out = rasterizer.forward(call);
@@ -127,7 +128,7 @@ TEST_CASE("The GPU's rasteriser makes the CPU's maps and gradients of 100,000 su
 }
 
 TEST_CASE("Lists of 100,000 surfels are complete and sorted") {
-  const SceneArrays arrays;
+  const SceneArrays arrays(scene());
   const RasterCall call = arrays.call();
   HostExec exec;
   SplatLists<HostExec> splats;
@@ -159,4 +160,43 @@ TEST_CASE("Lists of 100,000 surfels are complete and sorted") {
   }
   CHECK(listed == pairs);
   CHECK(wrong == 0);
+}
+
+// For docs/gpu_raster.md: test_glint_cuda_scale "[counts]".
+TEST_CASE("Pairs, slots and rows of 100,000 surfels", "[.counts]") {
+  use_host_kernels();
+  for (const double max_opacity : {1.0, 0.1}) {
+    const SceneArrays arrays(large_scene(max_opacity));
+    const RasterCall call = arrays.call();
+    RasterOutput out;
+    for_each_map(
+        call.maps(),
+        [](const char*, int channels, Image& map) { fit(map, kLargeSize, channels); },
+        out
+    );
+    for (FloatArray* array : {&out.visibility, &out.owned_pixels, &out.radii})
+      array->resize(kManySurfels);
+    out.in_view.resize(kManySurfels);
+    RasterGradient gradient;
+    RasterGradient::for_each_array(
+        call.maps(),
+        [](const char*, std::size_t width, FloatArray& values) {
+          values.resize(width * kManySurfels);
+        },
+        gradient
+    );
+    HostExec exec;
+    RasterPipeline<HostExec> gpu(exec);
+    gpu.forward(device_call(call, out));
+    gpu.backward(device_maps(gradient_of_maps()), device_gradients(gradient));
+    WARN(
+        "opacities up to " << max_opacity << ": "
+                           << std::count(out.in_view.begin(), out.in_view.end(), 1) << " in view, "
+                           << gpu.num_pairs() << " pairs, " << gpu.num_slots() << " slots, "
+                           << gpu.num_rows() << " rows"
+    );
+    CHECK(gpu.num_rows() <= gpu.num_slots());
+    CHECK(gpu.num_slots() <= 8 * gpu.num_pairs());
+  }
+  use_cpu();
 }
