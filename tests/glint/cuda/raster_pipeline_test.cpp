@@ -51,6 +51,7 @@ const Case kCases[] = {
     {{17, 33}, 200, 5, true, true, true, false},
     {{50, 31}, 700, 4, false, true, true, true},
     {{33, 31}, 300, 7, false, true, true, true},
+    {{20, 41}, 300, 6, true, false, false, false},
     {{70, 40}, 1500, 3, true, false, false, true},
 };
 
