@@ -95,17 +95,15 @@ class DeviceExec {
     check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
     return last[0] + last[1];
   }
-  // The same without waiting: the sum of all goes to sums[count].
-  void exclusive_sum_on_device(
-      const Buffer<std::uint32_t>& counts, std::size_t count, Buffer<std::uint32_t>& sums
-  ) {
+  // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count].
+  template <class T>
+  void exclusive_sum_on_device(const Buffer<T>& counts, std::size_t count, Buffer<T>& sums) {
     sums.resize(count + 1);
-    check_cuda(cudaMemsetAsync(sums.data(), 0, sizeof(std::uint32_t), stream_), "clearing memory");
+    check_cuda(cudaMemsetAsync(sums.data(), 0, sizeof(T), stream_), "clearing memory");
     if (count == 0) return;
-    const auto n = static_cast<int>(count);
     with_scratch([&](void* scratch, std::size_t& bytes) {
       return cub::DeviceScan::InclusiveSum(
-          scratch, bytes, counts.data(), sums.data() + 1, n, stream_
+          scratch, bytes, counts.data(), sums.data() + 1, static_cast<int>(count), stream_
       );
     });
   }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The order of kernels that makes a rasterisation, forward and backward, for an executor: the GPU's
 // (device_exec.cuh) or the tests' on the host. An executor offers Buffer<T>, for_each, launch,
-// exclusive_sum, sort_pairs and fill_zero.
+// exclusive_sum_on_device, sort_pairs, download and fill_zero. docs/gpu_raster.md: what it costs.
 #pragma once
 
-#include <vector>
+#include <cstring>
 
-#include "glint/cuda/raster_bodies.h"
+#include "glint/cuda/raster_sums.h"
+#include "glint/cuda/splat_lists.h"
 
 namespace glint::gpu {
 
@@ -19,6 +20,9 @@ struct DeviceRasterCall {
   DistortionRange range;
   DeviceMaps out;
   DeviceSeen seen;
+  // A word on the device that becomes 1 where a silent step (glint/core/device.h) had too little
+  // room: then nothing was listed, and maps or gradients are those of no surfels. May be null.
+  std::uint32_t* overflow = nullptr;
 };
 
 template <class Exec>
@@ -30,114 +34,121 @@ class RasterPipeline {
   using BufferMap = Buffer<float>;
 
   explicit RasterPipeline(Exec& exec) : exec_(exec) {}
+  RasterPipeline(const RasterPipeline&) = delete;
+  RasterPipeline& operator=(const RasterPipeline&) = delete;
 
-  void forward(const DeviceRasterCall& call) {
+  // `other`: one that has just rasterised the same surfels with the same camera, if there is such a
+  // one, to use its splats and lists: surfels on their own, say, behind those behind an interface.
+  // Features, near limit and maps may differ. It must rasterise nothing else before backward().
+  // Where its arrays or its camera are others, it is not used.
+  void forward(const DeviceRasterCall& call, RasterPipeline* other = nullptr) {
     call_ = call;
-    list_tiles(call.surfels, call.camera);
-    exec_.for_each(call.surfels.count, ResetSeen{num_tiles_.data(), call.seen});
-    if (call.has.statistics)
-      exec_.for_each(
-          call.surfels.count,
-          ScreenRadii{call.surfels, call.camera, num_tiles_.data(), call.seen.radii}
-      );
-    fit_kept();
-    pass_.splats = splats_.data();
-    pass_.features = call.surfels.features;
-    pass_.pairs = pair_surfels_.data();
-    pass_.ranges = ranges_.data();
-    pass_.near_limit = call.near_limit;
-    pass_.near_plane = call.camera.near_plane;
-    pass_.has = call.has;
-    pass_.range = call.range;
+    lists_ = other != nullptr && other->has_lists_of(call) ? other->lists_ : &own_lists_;
+    if (lists_ == &own_lists_) own_lists_.make(exec_, call.surfels, call.camera, call.overflow);
+    begin_pass();
     with_pass_code(pass_.has, [&]<class Code>() {
       exec_.launch(
-          ranges_.size(),
-          ForwardTile<Code>{pass_, call.out, kept_, call.seen.visibility, call.seen.owned_pixels}
+          lists_->num_tiles(), ForwardTile<Code>{pass_, call.out, kept_, slots(), ends_.data()}
       );
     });
+    end_pass();
   }
 
   // Of the last forward call.
   void backward(const DeviceMaps& dL_dout, const DeviceGradients& gradients) {
+    const std::size_t n = call_.surfels.count;
+    const PairRoom room = counted_rows_.count(exec_, num_rows_, n, call_.overflow);
     with_pass_code(pass_.has, [&]<class Code>() {
       using Tile = BackwardTile<Code>;
-      gradient_sums_.resize(call_.surfels.count * Tile::kSums);
-      exec_.fill_zero(gradient_sums_);
-      exec_.launch(ranges_.size(), Tile{pass_, call_.out, dL_dout, kept_, gradient_sums_.data()});
+      const PairCounts* first = counted_rows_.first();
+      const PairTotals* totals = counted_rows_.totals();
+      rows_.resize(std::size_t{room.pairs} * Tile::kSums);
+      sums_.resize(n * Tile::kSums);
+      exec_.launch(
+          lists_->num_tiles(),
+          Tile{
+              pass_,
+              call_.out,
+              dL_dout,
+              kept_,
+              ends_.data(),
+              ranks_.data(),
+              first,
+              totals,
+              rows_.data()}
+      );
+      exec_.launch(
+          blocks_of_sums(), SumRows<Tile::kSums>{n, first, totals, rows_.data(), sums_.data()}
+      );
       vjp_of_surfels(Tile::kSums, gradients);
     });
   }
 
   // Of the last forward call. mask, depth: [H][W].
   void first_surface(const float* mask, const FirstSurfaceSettings& settings, float* depth) {
-    exec_.for_each(
-        static_cast<std::size_t>(pass_.width) * static_cast<std::size_t>(pass_.height),
-        FirstSurface{pass_, call_.out, mask, settings, depth}
-    );
+    exec_.for_each(num_pixels(), FirstSurface{pass_, call_.out, mask, settings, depth});
   }
 
-  std::size_t num_pairs() const { return num_pairs_; }
-  // Pixels inside the surfels' screen boxes. Waits for the device.
-  std::size_t num_pixel_pairs() {
-    std::vector<PixelBox> boxes(boxes_.size());
-    exec_.download(boxes_, boxes.size(), boxes.data());
-    std::size_t sum = 0;
-    for (const PixelBox& box : boxes) sum += box.num_pixels();
-    return sum;
-  }
+  // Of the last forward call. They wait for the device.
+  std::size_t num_pairs() { return lists_->num_pairs(exec_); }
+  std::size_t num_pixel_pairs() { return lists_->num_pixel_pairs(exec_); }
+  std::size_t num_rows() { return counted_rows_.read(exec_).pairs; }  // of the last backward call
+  bool has_own_lists() const { return lists_ == &own_lists_; }
+  std::size_t num_slots() const { return lists_->num_slots(); }
 
  private:
-  void list_tiles(const DeviceSurfels& surfels, const CameraOf<float>& camera) {
-    const std::size_t n = surfels.count;
-    pass_.width = static_cast<int>(camera.width);
-    pass_.height = static_cast<int>(camera.height);
-    const TileGrid grid = tile_grid(pass_.width, pass_.height);
-    splats_.resize(n);
-    boxes_.resize(n);
-    num_tiles_.resize(n);
-    exec_.for_each(
-        n, ProjectSurfels{surfels, camera, splats_.data(), boxes_.data(), num_tiles_.data()}
-    );
-    num_pairs_ = exec_.exclusive_sum(num_tiles_, n, first_pair_);
-    keys_.resize(num_pairs_);
-    pair_surfels_.resize(num_pairs_);
-    exec_.for_each(
-        n,
-        WritePairs{
-            splats_.data(),
-            boxes_.data(),
-            first_pair_.data(),
-            grid,
-            keys_.data(),
-            pair_surfels_.data()}
-    );
-    int bits = 32;
-    while (grid.count() >> (bits - 32) > 0) ++bits;
-    exec_.sort_pairs(num_pairs_, bits, keys_, pair_surfels_);
-    ranges_.resize(static_cast<std::size_t>(grid.count()));
-    exec_.fill_zero(ranges_);
-    exec_.for_each(num_pairs_, FindTileRanges{keys_.data(), num_pairs_, ranges_.data()});
+  bool has_lists_of(const DeviceRasterCall& call) const {
+    const DeviceSurfels &a = call_.surfels, &b = call.surfels;
+    return lists_->num_tiles() > 0 && a.count == b.count && a.means == b.means &&
+           a.scales == b.scales && a.rotations == b.rotations && a.opacities == b.opacities &&
+           std::memcmp(&call_.camera, &call.camera, sizeof call.camera) == 0;
+  }
+  std::size_t num_pixels() const {
+    return static_cast<std::size_t>(pass_.lists.width) *
+           static_cast<std::size_t>(pass_.lists.height);
+  }
+  std::size_t blocks_of_sums() const {
+    return (call_.surfels.count + kSumSurfels - 1) / kSumSurfels;
+  }
+  DeviceSlots slots() {
+    return {visibility_.data(), call_.has.statistics ? owned_.data() : nullptr, ranks_.data()};
+  }
+  void begin_pass() {
+    pass_ = {
+        .lists = lists_->lists(),
+        .features = call_.surfels.features,
+        .near_limit = call_.near_limit,
+        .near_plane = call_.camera.near_plane,
+        .has = call_.has,
+        .range = call_.range};
+    visibility_.resize(lists_->num_slots());
+    ranks_.resize(lists_->num_slots());
+    if (call_.has.statistics) owned_.resize(lists_->num_slots());
+    exec_.fill_zero(visibility_);
+    ends_.resize(lists_->num_tiles());
+    fit_kept();
+  }
+  void end_pass() {
+    num_rows_.resize(call_.surfels.count);
+    exec_.launch(blocks_of_sums(), SumSlots{pass_.lists, slots(), call_.seen, num_rows_.data()});
+    if (call_.has.statistics)
+      exec_.for_each(
+          call_.surfels.count,
+          ScreenRadii{call_.surfels, call_.camera, pass_.lists, call_.seen.radii}
+      );
   }
   void vjp_of_surfels(int stride, const DeviceGradients& gradients) {
     exec_.for_each(
         call_.surfels.count,
         SurfelVjp{
-            call_.surfels,
-            call_.camera,
-            splats_.data(),
-            num_tiles_.data(),
-            gradient_sums_.data(),
-            stride,
-            call_.has,
-            gradients}
+            call_.surfels, call_.camera, pass_.lists, sums_.data(), stride, call_.has, gradients}
     );
   }
   void fit_kept() {
-    const auto pixels = static_cast<std::size_t>(pass_.width * pass_.height);
     for_each_kept_map(
         call_.has,
         [&](int width, float, float*& map, Buffer<float>& memory) {
-          memory.resize(static_cast<std::size_t>(width) * pixels);
+          memory.resize(static_cast<std::size_t>(width) * num_pixels());
           map = memory.data();
         },
         kept_,
@@ -148,15 +159,17 @@ class RasterPipeline {
   Exec& exec_;
   DeviceRasterCall call_{};
   TilePass pass_{};
-  std::size_t num_pairs_ = 0;
-  Buffer<Splat> splats_;
-  Buffer<PixelBox> boxes_;
-  Buffer<std::uint32_t> num_tiles_, first_pair_, pair_surfels_;
-  Buffer<std::uint64_t> keys_;
-  Buffer<PairRange> ranges_;
+  SplatLists<Exec> own_lists_;
+  SplatLists<Exec>* lists_ = &own_lists_;  // of the last forward call
   KeptMaps<BufferMap> kept_memory_;
   DeviceKept kept_;
-  Buffer<float> gradient_sums_;
+  Buffer<float> visibility_;  // of slots
+  Buffer<std::uint8_t> owned_;
+  Buffer<std::uint32_t> ranks_;
+  Buffer<std::uint32_t> ends_;  // of tiles
+  Buffer<PairCounts> num_rows_;
+  CountedRoom<Exec> counted_rows_;
+  Buffer<float> rows_, sums_;
 };
 
 }  // namespace glint::gpu

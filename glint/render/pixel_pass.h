@@ -21,7 +21,10 @@ template <int kFeatures_, bool kExtras_>
 struct PassCode {
   static constexpr int kFeatures = kFeatures_;
   static constexpr bool kExtras = kExtras_;
-  static constexpr int kSums = splat_sums(kFeatures > 0 ? kFeatures : kMaxChannels, kExtras);
+  static constexpr int kMostFeatures = kFeatures > 0 ? kFeatures : kMaxChannels;
+  static constexpr int kFeatureSlot = feature_slot(kExtras);
+  static constexpr int kUsedSums = used_sums(kMostFeatures, kExtras);
+  static constexpr int kSums = splat_sums(kMostFeatures, kExtras);
 
   // The same call, what is known of it as constants.
   GLINT_HD static constexpr MapChannels known(MapChannels has) {
@@ -54,6 +57,19 @@ struct DistortionRange {
   float near = 0.2f, far = 100.0f;
 };
 
+// f(c) for the first `width` of an array's places. On GPUs with constant bounds, so that the array
+// stays in registers.
+template <class T, int kMost, class F>
+GLINT_HD void for_channels(const T (&)[kMost], int width, F&& f) {
+#if defined(__CUDA_ARCH__)
+#pragma unroll
+  for (int c = 0; c < kMost; ++c)
+    if (c < width) f(c);
+#else
+  for (int c = 0; c < width; ++c) f(c);
+#endif
+}
+
 // A pixel's numbers as the lists of raster_maps.h hold them.
 template <class T>
 struct PixelOf {
@@ -72,9 +88,9 @@ struct PixelSums {
 
   GLINT_HD void clear() {
     for_each_map(
-        {Code::kFeatures > 0 ? Code::kFeatures : kMaxChannels, true, Code::kExtras},
-        [](const char*, int width, T* values) {
-          for (int c = 0; c < width; ++c) values[c] = T(0);
+        {Code::kMostFeatures, true, Code::kExtras},
+        [](const char*, int width, auto& values) {
+          for_channels(values, width, [&](int c) { values[c] = T(0); });
         },
         maps
     );
@@ -93,8 +109,11 @@ struct PixelSums {
         splat,
         feature,
         Code::known(has),
-        [&](const auto& value, int, int width, T* sum) {
-          for (int c = 0; c < width; ++c) sum[c] = fma_of(hit.weight, T(value[c]), sum[c]);
+        Code::kFeatureSlot,
+        [&](const auto& value, int, int width, auto& sum) {
+          for_channels(sum, width, [&](int c) {
+            sum[c] = fma_of(hit.weight, T(value[c]), sum[c]);
+          });
         },
         maps
     );
@@ -136,8 +155,11 @@ struct PixelGradient {
         Splat{},  // no values are looked at
         nullptr,
         Code::known(has),
-        [&](const auto&, int, int width, const T* gradient, const T* sum) {
-          for (int c = 0; c < width; ++c) remaining = fma_of(gradient[c], sum[c], remaining);
+        Code::kFeatureSlot,
+        [&](const auto&, int, int width, const auto& gradient, const auto& sum) {
+          for_channels(sum, width, [&](int c) {
+            remaining = fma_of(gradient[c], sum[c], remaining);
+          });
         },
         dL,
         maps
@@ -162,11 +184,12 @@ struct PixelGradient {
         splat,
         feature,
         has,
-        [&](const auto& attribute, int slot, int width, const T* gradient) {
-          for (int c = 0; c < width; ++c) {
+        Code::kFeatureSlot,
+        [&](const auto& attribute, int slot, int width, const auto& gradient) {
+          for_channels(gradient, width, [&](int c) {
             value = fma_of(gradient[c], T(attribute[c]), value);
             out[slot + c] = fma_of(hit.weight, gradient[c], out[slot + c]);
-          }
+          });
         },
         dL
     );
@@ -181,8 +204,7 @@ struct PixelGradient {
     splat_alpha_vjp(
         T(splat.opacity), hit.alpha, keep(hit.valid, dL_dalpha), out[kSumOpacity], dL_drho
     );
-    if (has.statistics)
-      add_screen_abs(hit, splat, dL_drho, &out[extra_slot(has.features, kSumScreenAbsX)]);
+    if (has.statistics) add_screen_abs(hit, splat, dL_drho, &out[kSumScreenAbsX]);
     add_geometry(hit, splat, dL_drho, keep(hit.valid, dL_dz), out);
   }
 

@@ -237,10 +237,8 @@ void store3(FloatArray& array, std::size_t i, Vec3<T> v) {
 }
 
 // |dL/d(screen)| from pixels to NDC.
-void store_screen_abs(
-    MapChannels has, const float* sums, ImageSize size, std::size_t i, RasterGradient& out
-) {
-  const float* s = sums + extra_slot(has.features, kSumScreenAbsX);
+void store_screen_abs(const float* sums, ImageSize size, std::size_t i, RasterGradient& out) {
+  const float* s = sums + kSumScreenAbsX;
   out.screen_abs[2 * i] = 0.5f * static_cast<float>(size.width) * s[0];
   out.screen_abs[2 * i + 1] = 0.5f * static_cast<float>(size.height) * s[1];
 }
@@ -261,10 +259,12 @@ void surfel_vjp_lanes(
   for (int i = 0; i < kLanesOf<T>; ++i) {
     sum_pairs(saved, first + i, width, sums + i * width);
     std::copy_n(
-        sums + i * width + kSumFeatures, input.channels, &out.features[(first + i) * input.channels]
+        sums + i * width + feature_slot(has.has_extras()),
+        input.channels,
+        &out.features[(first + i) * input.channels]
     );
     out.opacities[first + i] = sums[i * width + kSumOpacity];
-    if (has.statistics) store_screen_abs(has, sums + i * width, call.camera.size(), first + i, out);
+    if (has.statistics) store_screen_abs(sums + i * width, call.camera.size(), first + i, out);
     num_pairs[i] = static_cast<float>(saved.lists.boxes[first + i].num_tiles());
     z[i] = num_pairs[i] > 0 ? saved.lists.splats[first + i].z_center : 1.0f;
   }

@@ -10,7 +10,7 @@
 
 namespace glint {
 
-struct Splat {
+struct alignas(16) Splat {
   PixelPlaneMap<float> map;
   float x_ref, y_ref, center_x, center_y;
   float opacity, z_center;
@@ -57,32 +57,38 @@ enum SplatSum {
   kSumCenterX = 11,
   kSumCenterY = 12,
   kSumZCenter = 13,
-  kSumNormal = 14,   // 3
-  kSumFeatures = 17  // channels; behind them ExtraSum, where a call has extras
+  kSumNormal = 14,  // 3
+  kSumExtras = 17   // ExtraSum, where a call has extras; behind them the features' channels
 };
-enum ExtraSum { kSumPlaneDistance = 0, kSumScreenAbsX = 1, kSumScreenAbsY = 2, kExtraSums = 3 };
-GLINT_HD constexpr int extra_slot(int channels, ExtraSum sum) {
-  return kSumFeatures + channels + sum;
+enum ExtraSum { kSumPlaneDistance = kSumExtras, kSumScreenAbsX, kSumScreenAbsY, kEndOfExtras };
+GLINT_HD constexpr int feature_slot(bool with_extras) {
+  return with_extras ? int{kEndOfExtras} : int{kSumExtras};
+}
+GLINT_HD constexpr int used_sums(int channels, bool with_extras) {
+  return feature_slot(with_extras) + channels;
 }
 // How many a surfel has, in eights.
 GLINT_HD constexpr int splat_sums(int channels, bool with_extras) {
-  return (kSumFeatures + channels + (with_extras ? kExtraSums : 0) + 7) / 8 * 8;
+  return (used_sums(channels, with_extras) + 7) / 8 * 8;
 }
 GLINT_HD constexpr int splat_sums(MapChannels has) {
   return splat_sums(has.features, has.has_extras());
 }
 
 // What a splat gives to the maps sum w v, the same v at all its pixels:
-// f(v, slot of dL/dv, channels, map of each argument).
+// f(v, slot of dL/dv, channels, map of each argument). first_feature: feature_slot() of the call.
 template <class F, class... Maps>
 GLINT_HD void for_each_attribute(
-    const Splat& splat, const float* feature, MapChannels has, F&& f, Maps&... maps
+    const Splat& splat,
+    const float* feature,
+    MapChannels has,
+    int first_feature,
+    F&& f,
+    Maps&... maps
 ) {
-  f(feature, kSumFeatures, has.features, maps.features...);
+  f(feature, first_feature, has.features, maps.features...);
   f(splat.normal, kSumNormal, 3, maps.normal...);
-  if (has.plane_distance)
-    f(&splat.plane_distance, extra_slot(has.features, kSumPlaneDistance), 1, maps.plane_distance...
-    );
+  if (has.plane_distance) f(&splat.plane_distance, kSumPlaneDistance, 1, maps.plane_distance...);
 }
 
 // dL/d(projected) but for the features; sum(slot): a sum over the surfel's pixels.
@@ -95,7 +101,7 @@ GLINT_HD ProjectedSurfel<T> projected_gradient(MapChannels has, const Sum& sum) 
   g.center_y = sum(kSumCenterY);
   g.z_center = sum(kSumZCenter);
   g.normal = sum3(kSumNormal);
-  if (has.plane_distance) g.plane_distance = sum(extra_slot(has.features, kSumPlaneDistance));
+  if (has.plane_distance) g.plane_distance = sum(kSumPlaneDistance);
   return g;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Runs kernels on the host: blocks one after the other, a block's threads one after the other
-// within each phase. The counterpart of glint/cuda/device_exec.cuh, for parity tests without a GPU
-// and for sanitizers; slow, and no part of the product.
+// Runs kernels on the host: blocks one after the other, in the order of the moment (host_block.h).
+// The counterpart of glint/cuda/device_exec.cuh, for parity tests without a GPU and for sanitizers;
+// slow, and no part of the product.
 #pragma once
 
 #include <algorithm>
@@ -12,46 +12,10 @@
 
 #include "glint/core/device.h"
 #include "glint/core/kernel_trace.h"
-#include "glint/cuda/block.h"
+#include "tests/support/host_block.h"
 #include "tests/support/host_memory.h"
 
 namespace glint::test {
-
-template <int kThreads>
-class HostBlock {
- public:
-  template <class T>
-  struct PerThread {
-    std::vector<T> values = std::vector<T>(kThreads);
-    T& operator[](int thread) { return values[static_cast<std::size_t>(thread)]; }
-  };
-  int index = 0;
-
-  template <class F>
-  void each(F&& f) {
-    for (int thread = 0; thread < kThreads; ++thread) f(thread);
-  }
-  template <class F>
-  bool any(F&& f) {
-    bool result = false;
-    for (int thread = 0; thread < kThreads; ++thread) result |= f(thread);
-    return result;
-  }
-  void add(float* p, float value) { *p += value; }
-  template <int kN, class F>
-  void add_over_warps(F&& f, float* p) {
-    for (int first = 0; first < kThreads; first += gpu::kWarp) {
-      float sums[kN] = {};
-      bool has = false;
-      for (int thread = first; thread < first + gpu::kWarp; ++thread) {
-        float out[kN] = {};
-        has |= f(thread, out);
-        for (int i = 0; i < kN; ++i) sums[i] += out[i];
-      }
-      for (int i = 0; has && i < kN; ++i) p[i] += sums[i];
-    }
-  }
-};
 
 class HostExec {
  public:
@@ -75,19 +39,19 @@ class HostExec {
     ++device_counters.launches;
     const OpenMemory open(OpenMemory::kDevice);
     const TracedKernel traced(typeid(F));
-    for (std::size_t i = 0; i < count; ++i) f(i);
+    in_host_order(count, f);
   }
   template <class Body>
   void launch(std::size_t blocks, const Body& body) {
     ++device_counters.launches;
     const OpenMemory open(OpenMemory::kDevice);
     const TracedKernel traced(typeid(Body));
-    for (std::size_t i = 0; i < blocks; ++i) {
+    in_host_order(blocks, [&](std::size_t i) {
       HostBlock<Body::kThreads> block;
       block.index = static_cast<int>(i);
       const auto shared = std::make_unique<typename Body::Shared>();
       body(block, *shared);
-    }
+    });
   }
   // sums[i] = counts[0] + ... + counts[i - 1]; returns the sum of all.
   std::uint32_t exclusive_sum(
@@ -100,12 +64,14 @@ class HostExec {
     std::exclusive_scan(counts.data(), counts.data() + count, sums.data(), 0u);
     return count == 0 ? 0 : sums.data()[count - 1] + counts.data()[count - 1];
   }
-  // The same with the sum of all at sums[count].
-  void exclusive_sum_on_device(
-      const Buffer<std::uint32_t>& counts, std::size_t count, Buffer<std::uint32_t>& sums
-  ) {
+  // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count].
+  template <class T>
+  void exclusive_sum_on_device(const Buffer<T>& counts, std::size_t count, Buffer<T>& sums) {
     sums.resize(count + 1);
-    std::inclusive_scan(counts.data(), counts.data() + count, sums.data() + 1);
+    ++device_counters.launches;
+    const OpenMemory open(OpenMemory::kDevice);
+    sums.data()[0] = T{};
+    std::partial_sum(counts.data(), counts.data() + count, sums.data() + 1);
   }
   // Stable, by the low `bits` bits of the keys.
   void sort_pairs(

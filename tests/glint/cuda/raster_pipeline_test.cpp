@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "glint/cuda/ops.h"
+#include "tests/support/gpu_backends.h"
 #include "tests/support/host_exec.h"
 #include "tests/support/random_scene.h"
 
@@ -50,6 +51,7 @@ const Case kCases[] = {
     {{17, 33}, 200, 5, true, true, true, false},
     {{50, 31}, 700, 4, false, true, true, true},
     {{33, 31}, 300, 7, false, true, true, true},
+    {{20, 41}, 300, 6, true, false, false, false},
     {{70, 40}, 1500, 3, true, false, false, true},
 };
 
@@ -81,6 +83,70 @@ struct Fixture {
   }
   RasterCall call() const { return {input, camera, settings}; }
 };
+
+RasterOutputGradient random_gradient(const Case& c, std::uint64_t seed) {
+  Rng rng(seed);
+  RasterOutputGradient gradient = room(c.size, c.channels, 0);
+  for_each_map(
+      {c.channels, true, true},
+      [&](const char*, int, Image& map) {
+        for (float& value : map.values()) value = rng.normal();
+      },
+      gradient
+  );
+  return gradient;
+}
+
+// Room for everything, full of numbers that are to be overwritten.
+RasterGradient gradient_room(const Case& c) {
+  RasterGradient gradient;
+  RasterGradient::for_each_array(
+      {c.channels, true, true, true},
+      [&](const char*, std::size_t width, FloatArray& values) {
+        values.assign(width * static_cast<std::size_t>(c.surfels), -1.0f);
+      },
+      gradient
+  );
+  if (!c.statistics) gradient.screen_abs.clear();
+  return gradient;
+}
+
+using Bytes = std::vector<float>;
+void append(std::span<const float> values, Bytes& all) {
+  all.insert(all.end(), values.begin(), values.end());
+}
+
+// All that a pass forward and back writes.
+Bytes run_both_ways(
+    RasterPipeline<HostExec>& gpu,
+    const Fixture& f,
+    const Case& c,
+    std::uint32_t* overflow = nullptr,
+    RasterPipeline<HostExec>* other = nullptr
+) {
+  RasterOutput maps = room(c.size, c.channels, f.arrays.count());
+  RasterGradient gradient = gradient_room(c);
+  DeviceRasterCall call = device_call(f.call(), maps);
+  call.overflow = overflow;
+  gpu.forward(call, other);
+  gpu.backward(device_maps(random_gradient(c, 5)), device_gradients(gradient));
+  Bytes all;
+  for_each_map(
+      f.call().maps(),
+      [&](const char*, int channels, const Image& map) {
+        if (channels > 0) append(map.values(), all);
+      },
+      maps
+  );
+  append(maps.visibility, all);
+  if (c.statistics) append(maps.owned_pixels, all);
+  RasterGradient::for_each_array(
+      f.call().maps(),
+      [&](const char*, std::size_t, const FloatArray& values) { append(values, all); },
+      gradient
+  );
+  return all;
+}
 
 }  // namespace
 
@@ -117,27 +183,12 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
   for (const Case& c : kCases) {
     CAPTURE(c.size.width, c.surfels);
     const Fixture f(c, seed++);
-    Rng rng(seed);
     RasterOutput maps = room(c.size, c.channels, f.arrays.count());
-    RasterOutputGradient dL_doutput = maps;
-    for_each_map(
-        {c.channels, true, true},
-        [&](const char*, int, Image& map) {
-          for (float& value : map.values()) value = rng.normal();
-        },
-        dL_doutput
-    );
+    const RasterOutputGradient dL_doutput = random_gradient(c, seed);
     Rasterizer cpu;
     cpu.forward(f.call());
     const RasterGradient& expected = cpu.backward(dL_doutput);
-    RasterGradient actual = expected;
-    RasterGradient::for_each_array(
-        {},
-        [](const char*, std::size_t, FloatArray& values) {
-          std::fill(values.begin(), values.end(), -1.0f);
-        },
-        actual
-    );
+    RasterGradient actual = gradient_room(c);
     HostExec exec;
     RasterPipeline<HostExec> gpu(exec);
     gpu.forward(device_call(f.call(), maps));
@@ -152,6 +203,131 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
         expected
     );
   }
+}
+
+TEST_CASE("The GPU's rasteriser gives the same bytes in any order of threads, warps and blocks") {
+  std::uint64_t seed = 21;
+  for (const Case& c : kCases) {
+    CAPTURE(c.size.width, c.surfels);
+    const Fixture f(c, seed++);
+    std::vector<Bytes> results;
+    for (const std::uint64_t order : {0, 1, 2, 3}) {
+      const HostOrder in_order(order);
+      HostExec exec;
+      RasterPipeline<HostExec> gpu(exec);
+      results.push_back(run_both_ways(gpu, f, c));
+    }
+    for (const Bytes& result : results) CHECK(result == results[0]);
+  }
+}
+
+TEST_CASE("Silent steps of the GPU's rasteriser wait for nothing and give the bytes of loud ones") {
+  use_host_kernels();
+  const Case& c = kCases[3];
+  const Fixture f(c, 31);
+  HostExec exec;
+  RasterPipeline<HostExec> gpu(exec);
+  std::uint32_t overflow = 0;
+  {  // without a call before it that waited there is no room: it waits, too
+    const SilentStep silent(true);
+    const Bytes first = run_both_ways(gpu, f, c, &overflow);
+    RasterPipeline<HostExec> fresh(exec);
+    const SilentStep loud(false);
+    CHECK(run_both_ways(fresh, f, c) == first);
+  }
+  const Bytes expected = run_both_ways(gpu, f, c, &overflow);
+  const std::size_t pairs = gpu.num_pairs(), slots = gpu.num_slots();
+  const SilentStep silent(true);
+  CHECK(run_both_ways(gpu, f, c, &overflow) == expected);
+  CHECK(gpu.num_slots() == slots + slots / 2 + 1);
+  CHECK(gpu.num_pairs() == pairs);
+  CHECK(overflow == 0);
+  use_cpu();
+}
+
+TEST_CASE("Where a silent step of the GPU's rasteriser lacks room, it says so and shows nothing") {
+  use_host_kernels();
+  const Case& small = kCases[3];
+  Case large = small;
+  large.surfels *= 3;
+  const Fixture few(small, 41), many(large, 41);
+  HostExec exec;
+  RasterPipeline<HostExec> gpu(exec);
+  const Bytes expected = run_both_ways(gpu, many, large);
+  RasterPipeline<HostExec> learned(exec);
+  run_both_ways(learned, few, small);
+  std::uint32_t overflow = 0;
+  {
+    const SilentStep silent(true);
+    const Bytes nothing = run_both_ways(learned, many, large, &overflow);
+    CHECK(std::all_of(nothing.begin(), nothing.end(), [](float v) { return v == 0; }));
+    CHECK(overflow == 1);
+    run_both_ways(learned, few, small, &overflow);
+    CHECK(overflow == 1);  // stays until its owner clears it
+    CHECK(learned.num_pairs() < gpu.num_pairs());
+  }
+  CHECK(run_both_ways(learned, many, large, &overflow) == expected);
+  const SilentStep silent(true);
+  overflow = 0;
+  CHECK(run_both_ways(learned, many, large, &overflow) == expected);
+  CHECK(overflow == 0);
+  use_cpu();
+}
+
+TEST_CASE("Where only the gradients lack room, they are zero") {
+  use_host_kernels();
+  const Case& c = kCases[3];
+  const Fixture f(c, 51);
+  Fixture hidden(c, 51);  // the same pairs without any hit
+  for (float& z : hidden.near_limit.values()) z = 1e6f;
+  hidden.input.near_limit = hidden.near_limit;
+  HostExec exec;
+  RasterPipeline<HostExec> gpu(exec), fresh(exec);
+  const Bytes expected = run_both_ways(fresh, f, c);
+  run_both_ways(gpu, hidden, c);
+  std::uint32_t overflow = 0;
+  const SilentStep silent(true);
+  const Bytes found = run_both_ways(gpu, f, c, &overflow);
+  CHECK(overflow == 1);
+  std::size_t gradients = 0;
+  RasterGradient::for_each_array(f.call().maps(), [&](const char*, std::size_t width) {
+    gradients += width * static_cast<std::size_t>(c.surfels);
+  });
+  const std::size_t maps = expected.size() - gradients;
+  CHECK(std::equal(
+      expected.begin(), expected.begin() + static_cast<std::ptrdiff_t>(maps), found.begin()
+  ));
+  CHECK(std::all_of(found.begin() + static_cast<std::ptrdiff_t>(maps), found.end(), [](float v) {
+    return v == 0;
+  }));
+  use_cpu();
+}
+
+TEST_CASE("A second pass of the GPU's rasteriser over the same surfels uses the lists of the first"
+) {
+  const Case& c = kCases[2];
+  const Fixture behind(c, 61);
+  Fixture alone(c, 61);
+  alone.input = behind.input;  // the same arrays
+  alone.input.near_limit = {};
+  HostExec exec;
+  RasterPipeline<HostExec> first(exec), second(exec), apart(exec);
+  const Bytes expected_behind = run_both_ways(first, behind, c);
+  const Bytes expected_alone = run_both_ways(apart, alone, c);
+  CHECK(expected_behind != expected_alone);
+  CHECK(run_both_ways(second, alone, c, nullptr, &first) == expected_alone);
+  CHECK(!second.has_own_lists());
+  RasterPipeline<HostExec> third(exec);  // by way of the second
+  CHECK(run_both_ways(third, behind, c, nullptr, &second) == expected_behind);
+  CHECK(!third.has_own_lists());
+
+  alone.camera.fx *= 1.5;  // another view
+  const Bytes other_view = run_both_ways(apart, alone, c);
+  CHECK(run_both_ways(second, alone, c, nullptr, &first) == other_view);
+  CHECK(second.has_own_lists());
+  const Fixture other(c, 62);  // other surfels
+  CHECK(run_both_ways(second, other, c, nullptr, &first) == run_both_ways(apart, other, c));
+  CHECK(second.has_own_lists());
 }
 
 TEST_CASE("The GPU's rasteriser on the host does without surfels") {
