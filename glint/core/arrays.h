@@ -105,12 +105,18 @@ class Array {
     host_for_change().push_back(value);
     ++size_;
   }
-  template <class Iterator>
+  template <class Iterator, class = std::enable_if_t<!std::is_integral_v<Iterator>>>
   void insert(const_iterator at, Iterator first, Iterator last) {
     Host& host = host_for_change();
     host.insert(host.begin() + (at - host.data()), first, last);
     size_ = host.size();
   }
+  void insert(const_iterator at, std::size_t count, const T& value) {
+    Host& host = host_for_change();
+    host.insert(host.begin() + (at - host.data()), count, value);
+    size_ = host.size();
+  }
+  void pop_back() { resize(size_ - 1); }
   void clear() { resize(0); }
   // New values are zero. On a GPU, where the values are there, they stay there.
   void resize(std::size_t count) {

@@ -72,29 +72,6 @@ class DeviceExec {
     run_blocks<<<static_cast<unsigned>(blocks), Body::kThreads, 0, stream_>>>(body);
     check_cuda(cudaGetLastError(), "launching a kernel");
   }
-  // See HostExec. Waits for the device: the sum is needed to size what follows.
-  std::uint32_t exclusive_sum(
-      const Buffer<std::uint32_t>& counts, std::size_t count, Buffer<std::uint32_t>& sums
-  ) {
-    sums.resize(count);
-    if (count == 0) return 0;
-    const auto n = static_cast<int>(count);
-    const TracedKernel traced(typeid(ExclusiveSum), stream_);
-    with_scratch([&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts.data(), sums.data(), n, stream_);
-    });
-    ++device_counters.downloads;
-    ++device_counters.waits;
-    std::uint32_t last[2];
-    const std::uint32_t* ends[2] = {sums.data() + count - 1, counts.data() + count - 1};
-    for (int i = 0; i < 2; ++i)
-      check_cuda(
-          cudaMemcpyAsync(&last[i], ends[i], sizeof last[i], cudaMemcpyDeviceToHost, stream_),
-          "reading a sum"
-      );
-    check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
-    return last[0] + last[1];
-  }
   // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count].
   template <class T>
   void exclusive_sum_on_device(const Buffer<T>& counts, std::size_t count, Buffer<T>& sums) {

@@ -8,6 +8,7 @@
 #include "glint/cuda/trace_pipeline.h"
 #include "glint/render/op_backends.h"
 #include "glint/render/raster_tiles.h"
+#include "glint/render/void_steps.h"
 
 namespace glint::gpu {
 
@@ -54,11 +55,12 @@ inline DeviceRasterCall device_call(const RasterCall& call, RasterOutput& output
       .has = call.maps(),
       .range = distortion_range(call.settings),
       .out = device_maps(output),
-      .seen = {
-          .visibility = output.visibility.on_device(),
-          .in_view = output.in_view.on_device(),
-          .owned_pixels = output.owned_pixels.on_device(),
-          .radii = output.radii.on_device()}};
+      .seen =
+          {.visibility = output.visibility.on_device(),
+           .in_view = output.in_view.on_device(),
+           .owned_pixels = output.owned_pixels.on_device(),
+           .radii = output.radii.on_device()},
+      .overflow = void_word()};
 }
 
 template <class Exec>
@@ -133,7 +135,8 @@ inline DeviceTraceCall device_call(const TraceCall& call, TraceOutput& output) {
       .num_rays = call.rays.origins.num_pixels(),
       .cutoffs = cutoffs(call.settings),
       .out = device_output(output),
-      .width = static_cast<std::size_t>(call.rays.origins.width())};
+      .width = static_cast<std::size_t>(call.rays.origins.width()),
+      .overflow = void_word()};
 }
 
 template <class Exec>

@@ -20,8 +20,11 @@ struct DeviceTraceCall {
   TraceCutoffs cutoffs;
   DeviceTraceOutput out;
   std::size_t width = 0;  // of the image that rays are, or 0
-  std::uint64_t revision =
-      0;  // another number when the surfels are others or have moved; 0: not known
+  // Another number when the surfels are others or have moved; 0: not known.
+  std::uint64_t revision = 0;
+  // A word on the device that becomes 1 where a silent call dropped hits; null: dropped_hits()
+  // tells.
+  std::uint32_t* overflow = nullptr;
 };
 
 // Memory for hits is of a size that the host knows: as many as the last calls had, with a margin.
@@ -130,7 +133,8 @@ class TracePipeline {
     );
   }
   std::uint32_t* overflow_word() {
-    return SilentStep::now() ? silent_overflow_.data() : overflow_.data();
+    if (!SilentStep::now()) return overflow_.data();
+    return call_.overflow != nullptr ? call_.overflow : silent_overflow_.data();
   }
   // Waits for the device.
   std::uint32_t read(const Buffer<std::uint32_t>& word) {

@@ -53,17 +53,6 @@ class HostExec {
       body(block, *shared);
     });
   }
-  // sums[i] = counts[0] + ... + counts[i - 1]; returns the sum of all.
-  std::uint32_t exclusive_sum(
-      const Buffer<std::uint32_t>& counts, std::size_t count, Buffer<std::uint32_t>& sums
-  ) {
-    sums.resize(count);
-    ++device_counters.downloads;  // of the sum of all
-    ++device_counters.waits;
-    const OpenMemory open(OpenMemory::kBoth);
-    std::exclusive_scan(counts.data(), counts.data() + count, sums.data(), 0u);
-    return count == 0 ? 0 : sums.data()[count - 1] + counts.data()[count - 1];
-  }
   // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count].
   template <class T>
   void exclusive_sum_on_device(const Buffer<T>& counts, std::size_t count, Buffer<T>& sums) {

@@ -14,7 +14,7 @@ namespace glint::test {
 // Owned arrays behind a RasterInput.
 struct SurfelArrays {
   int channels = 3;
-  std::vector<float> means, scales, rotations, opacities, features;
+  FloatArray means, scales, rotations, opacities, features;
 
   std::size_t count() const { return opacities.size(); }
   RasterInput view() const {

@@ -2,8 +2,6 @@
 // Surfels with colours for tests of trace().
 #pragma once
 
-#include <vector>
-
 #include "glint/render/trace.h"
 #include "tests/support/random_scene.h"
 
@@ -12,7 +10,7 @@ namespace glint::test {
 // Owned arrays behind a TraceInput.
 struct TraceArrays {
   SurfelArrays surfels;
-  std::vector<float> sh_dc, sh_rest;
+  FloatArray sh_dc, sh_rest;
   int sh_degree = 3;
 
   TraceInput view() const {

@@ -129,7 +129,8 @@ Bytes run_both_ways(
   DeviceRasterCall call = device_call(f.call(), maps);
   call.overflow = overflow;
   gpu.forward(call, other);
-  gpu.backward(device_maps(random_gradient(c, 5)), device_gradients(gradient));
+  const RasterOutputGradient dL_dmaps = random_gradient(c, 5);
+  gpu.backward(device_maps(dL_dmaps), device_gradients(gradient));
   Bytes all;
   for_each_map(
       f.call().maps(),

@@ -134,6 +134,7 @@ TEST_CASE("Lists of 100,000 surfels are complete and sorted") {
   SplatLists<HostExec> splats;
   const HostOrder order(3);
   splats.make(exec, device_surfels(call.input), camera_of(call), nullptr);
+  const OpenMemory open(OpenMemory::kBoth);
   const DeviceLists& lists = splats.lists();
   std::size_t pairs = 0, slots = 0, listed = 0, wrong = 0;
   for (std::size_t i = 0; i < lists.count; ++i) {
@@ -188,7 +189,8 @@ TEST_CASE("Pairs, slots and rows of 100,000 surfels", "[.counts]") {
     HostExec exec;
     RasterPipeline<HostExec> gpu(exec);
     gpu.forward(device_call(call, out));
-    gpu.backward(device_maps(gradient_of_maps()), device_gradients(gradient));
+    const RasterOutputGradient dL_dmaps = gradient_of_maps();
+    gpu.backward(device_maps(dL_dmaps), device_gradients(gradient));
     WARN(
         "opacities up to " << max_opacity << ": "
                            << std::count(out.in_view.begin(), out.in_view.end(), 1) << " in view, "

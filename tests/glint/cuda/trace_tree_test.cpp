@@ -45,6 +45,7 @@ void check_tree(const TraceArrays& arrays) {
   TraceTree<HostExec> owner(exec);
   owner.update(device_input(arrays.view()), kCutoffs, 0);
   const Tree tree = owner.tree();
+  const OpenMemory open(OpenMemory::kBoth);
   const std::size_t n = arrays.surfels.count();
   std::vector<int> found(n), owners(n);
   constexpr float kAll = 1e30f;
@@ -101,6 +102,7 @@ TEST_CASE("A walk whose stack is full finds the same hits") {
   TraceTree<HostExec> owner(exec);
   owner.update(device_input(arrays.view()), kCutoffs, 0);
   const Tree tree = owner.tree();
+  const OpenMemory open(OpenMemory::kBoth);
   using List = NearestList<16>;
   using Short = WalkStack<1, 2>;
   using Long = WalkStack<1>;
