@@ -134,7 +134,7 @@ class Layer {
 
   ImageSize size() const { return out_; }
   const Layout& layout() const { return out_layout_; }
-  const float* output() const { return output_.data(); }
+  const float* output() const { return output_.device_for_reading(); }
 
  protected:
   ImageSize in_, out_;
@@ -183,26 +183,39 @@ class Convolution final : public Layer {
             in_layout_,
             input,
             filter_,
-            weight_.data(),
+            weight_.device_for_reading(),
             convolution_,
             forward_,
-            workspace_.data(),
+            workspace_.device_for_overwriting(),
             workspace_.size(),
             &kZero,
             out_layout_,
-            output_.data()
+            output_.device_for_writing()
         ),
         "convolution"
     );
     check(
         cudnnAddTensor(
-            cudnn, &kOne, bias_layout_, bias_.data(), &kOne, out_layout_, output_.data()
+            cudnn,
+            &kOne,
+            bias_layout_,
+            bias_.device_for_reading(),
+            &kOne,
+            out_layout_,
+            output_.device_for_writing()
         ),
         "bias"
     );
     check(
         cudnnActivationForward(
-            cudnn, relu_, &kOne, out_layout_, output_.data(), &kZero, out_layout_, output_.data()
+            cudnn,
+            relu_,
+            &kOne,
+            out_layout_,
+            output_.device_for_writing(),
+            &kZero,
+            out_layout_,
+            output_.device_for_writing()
         ),
         "ReLU"
     );
@@ -215,11 +228,11 @@ class Convolution final : public Layer {
             relu_,
             &kOne,
             out_layout_,
-            output_.data(),
+            output_.device_for_writing(),
             out_layout_,
             dL_doutput,
             out_layout_,
-            output_.data(),  // positive where its input is
+            output_.device_for_writing(),  // positive where its input is
             &kZero,
             out_layout_,
             dL_doutput
@@ -231,12 +244,12 @@ class Convolution final : public Layer {
             cudnn,
             &kOne,
             filter_,
-            weight_.data(),
+            weight_.device_for_reading(),
             out_layout_,
             dL_doutput,
             convolution_,
             backward_,
-            workspace_.data(),
+            workspace_.device_for_overwriting(),
             workspace_.size(),
             &kZero,
             in_layout_,
@@ -343,17 +356,17 @@ class MaxPool final : public Layer {
   }
 
   void forward(const Handle& cudnn, const float* input) override {
-    copy(cudnn, in_layout_, input, 0, inside_, wide_input_.data());
+    copy(cudnn, in_layout_, input, 0, inside_, wide_input_.device_for_writing());
     check(
         cudnnPoolingForward(
             cudnn,
             pooling_,
             &kOne,
             wide_layout_,
-            wide_input_.data(),
+            wide_input_.device_for_writing(),
             &kZero,
             out_layout_,
-            output_.data()
+            output_.device_for_writing()
         ),
         "pooling"
     );
@@ -366,18 +379,18 @@ class MaxPool final : public Layer {
             pooling_,
             &kOne,
             out_layout_,
-            output_.data(),
+            output_.device_for_writing(),
             out_layout_,
             dL_doutput,
             wide_layout_,
-            wide_input_.data(),
+            wide_input_.device_for_writing(),
             &kZero,
             wide_layout_,
-            dL_dwide_.data()
+            dL_dwide_.device_for_writing()
         ),
         "gradient of pooling"
     );
-    copy(cudnn, inside_, dL_dwide_.data(), 0, in_layout_, dL_dinput);
+    copy(cudnn, inside_, dL_dwide_.device_for_writing(), 0, in_layout_, dL_dinput);
   }
 
  private:
@@ -408,6 +421,7 @@ class CudnnNet final : public FeatureNet {
       : pixels_(size, 3),
         planes_(size, 3),
         input_(size.width, size.height, 3),
+        dL_dinput_(size.width, size.height, 3),
         input_planes_(input_.values().size()) {
     std::size_t largest = input_planes_.size();
     for (const FeatureStep& step : steps) {
@@ -423,13 +437,12 @@ class CudnnNet final : public FeatureNet {
   ImageView tap(std::size_t index) const override { return taps_[index]->features; }
 
   void forward() override {
-    copy(cudnn_, pixels_, input_.data(), 0, planes_, input_planes_.data());
+    copy(cudnn_, pixels_, input_.on_device(), 0, planes_, input_planes_.on_device());
     for (std::size_t i = 0; i < layers_.size(); ++i) layers_[i]->forward(cudnn_, input_of(i));
     for (const auto& tap : taps_) {
       const Layer& layer = *layers_[tap->layer];
-      copy(cudnn_, layer.layout(), layer.output(), 0, tap->layout, tap->features.data());
+      copy(cudnn_, layer.layout(), layer.output(), 0, tap->layout, tap->features.on_device());
     }
-    synchronize();
   }
 
   ImageView backward(const AddTapGradient& add_tap_gradient) override {
@@ -438,16 +451,15 @@ class CudnnNet final : public FeatureNet {
       std::fill(gradient.values().begin(), gradient.values().end(), 0.0f);
       add_tap_gradient(i, gradient.ref());
     }
-    float *current = gradients_[0].data(), *next = gradients_[1].data();
-    fill(current, gradients_[0].size(), 0);
+    gradients_[0].fill(0);
+    float *current = gradients_[0].on_device(), *next = gradients_[1].on_device();
     std::size_t tap = taps_.size();
     for (std::size_t i = layers_.size(); i-- > 0; std::swap(current, next)) {
       if (tap > 0 && taps_[tap - 1]->layer == i) add_gradient(*taps_[--tap], current);
       layers_[i]->backward(cudnn_, current, next);
     }
-    copy(cudnn_, planes_, current, 0, pixels_, next);
-    synchronize();
-    return {next, size().width, size().height, 3};
+    copy(cudnn_, planes_, current, 0, pixels_, dL_dinput_.on_device());
+    return std::as_const(dL_dinput_);
   }
 
  private:
@@ -463,17 +475,17 @@ class CudnnNet final : public FeatureNet {
   }
 
   const float* input_of(std::size_t layer) const {
-    return layer == 0 ? input_planes_.data() : layers_[layer - 1]->output();
+    return layer == 0 ? input_planes_.device_for_reading() : layers_[layer - 1]->output();
   }
 
   void add_gradient(const Tap& tap, float* planes) {
-    copy(cudnn_, tap.layout, tap.gradient.data(), 1, layers_[tap.layer]->layout(), planes);
+    copy(cudnn_, tap.layout, tap.gradient.on_device(), 1, layers_[tap.layer]->layout(), planes);
   }
 
   Handle cudnn_;
   Pixels pixels_;
   Planes planes_;
-  Image input_;
+  Image input_, dL_dinput_;
   FloatArray input_planes_;
   std::vector<std::unique_ptr<Layer>> layers_;
   std::vector<std::unique_ptr<Tap>> taps_;

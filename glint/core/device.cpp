@@ -32,6 +32,8 @@ void use_cpu() {
 void use_gpu(const DeviceBackend& backend) { current = &backend; }
 const char* device_name() { return current == nullptr ? "cpu" : current->name; }
 
+std::size_t device_room() { return current == nullptr ? 0 : current->room(); }
+
 void synchronize() {
   if (current == nullptr) return;
   ++device_counters.waits;

@@ -27,6 +27,7 @@ struct DeviceBackend {
   void (*clear)(void* block, std::size_t bytes);  // to zeros
   void (*fill)(float* to, std::size_t count, float value);
   void (*synchronize)();
+  std::size_t (*room)();  // bytes of its memory that are free
   // Memory of the host's sides, 64-byte aligned; null: the host's own.
   void* (*allocate_host)(std::size_t bytes) = nullptr;
   void (*release_host)(void* block) noexcept = nullptr;
@@ -39,6 +40,8 @@ void use_cpu();
 void use_gpu(const DeviceBackend& backend);
 // Of the GPU in use, or "cpu".
 const char* device_name();
+// Bytes of the GPU's memory that are free; 0 on the CPU.
+std::size_t device_room();
 
 // What the host asked of a device since the program began: differences over a step are of interest.
 struct DeviceCounters {
@@ -46,6 +49,16 @@ struct DeviceCounters {
   std::uint64_t uploads = 0, downloads = 0;  // copies from and to the host
   std::uint64_t waits = 0;                   // of the host for the device, those of downloads, too
   std::uint64_t allocations = 0;             // blocks that were not there before
+
+  // f(name, count of each) for all of them.
+  template <class F, class... Counters>
+  static void for_each(F&& f, Counters&... counters) {
+    f("launches", counters.launches...);
+    f("uploads", counters.uploads...);
+    f("downloads", counters.downloads...);
+    f("waits", counters.waits...);
+    f("allocations", counters.allocations...);
+  }
 };
 inline DeviceCounters device_counters;
 

@@ -124,7 +124,12 @@ void use_cuda() {
       .copy = copy_inside,
       .clear = clear,
       .fill = fill_floats,
-      .synchronize = wait};
+      .synchronize = wait,
+      .room = [] {
+        std::size_t free = 0, total = 0;
+        check_cuda(cudaMemGetInfo(&free, &total), "asking for its free memory");
+        return free + pool().bytes_held() - pool().bytes_in_use();
+      }};
   use_executor<DeviceExec>(backend);
   char card[32] = "";
   if (cudaDeviceGetPCIBusId(card, sizeof card, 0) == cudaSuccess) warn_of_sharing(card);

@@ -46,6 +46,36 @@ void note_void_steps(int iteration, Json& events) {
     );
 }
 
+template <class F>
+void for_each_image(const View& view, F&& f) {
+  f(view.rgb);
+  view.priors.for_each([&](const MapRow&, const Image& map) { f(map); });
+  view.truth.for_each([&](const MapRow&, const Image& map) { f(map); });
+}
+
+// Images of views come to the device when a step first needs them. They stay there if all of them
+// fill at most half of it; else each step's leave, and come again.
+class ImagesOnDevice {
+ public:
+  explicit ImagesOnDevice(const Scene& scene) : views_(scene.train) {
+    std::size_t bytes = 0;
+    for (const View& view : views_)
+      for_each_image(view, [&](const Image& image) {
+        bytes += image.num_pixels() * static_cast<std::size_t>(image.channels()) * sizeof(float);
+      });
+    stay_ = !on_gpu() || bytes <= device_room() / 2;
+  }
+  void end_step() const {
+    if (stay_) return;
+    for (const View& view : views_)
+      for_each_image(view, [](const Image& image) { image.array().leave_device(); });
+  }
+
+ private:
+  const std::vector<View>& views_;
+  bool stay_;
+};
+
 void check_step(const Method& method, const StepStats& stats, const fs::path& checkpoint) {
   if (std::isfinite(stats.loss)) return;
   const std::string where = fmt::format(
@@ -122,6 +152,7 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
   method.initialize(scene, options.run);
   for (const std::string& warning : method.warnings()) log::warn(warning);
   Progress progress(options.title, static_cast<std::size_t>(options.run.iterations));
+  const ImagesOnDevice images(scene);
   TrainReport report;
   Json events = Json::array();  // since the last line of the log
   for (int i = 0; i < options.run.iterations; ++i) {
@@ -132,6 +163,7 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
     const StepStats stats = on_device(i, checkpoint, [&] {
       StepStats result = method.step(i);
       end_silent_step();
+      images.end_step();
       return result;
     });
     report.seconds += seconds_since(start);

@@ -32,17 +32,37 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+// What one run of several asked for since `before`.
+DeviceCounters asked_since(const DeviceCounters& before, int runs) {
+  DeviceCounters asked;
+  DeviceCounters::for_each(
+      [runs](const char*, std::uint64_t& count, std::uint64_t now, std::uint64_t then) {
+        count = (now - then) / static_cast<std::uint64_t>(runs);
+      },
+      asked,
+      device_counters,
+      before
+  );
+  if (asked.waits > 0) --asked.waits;  // for the clock
+  return asked;
+}
+
+// On a GPU runs are silent, as nearly all steps of a training are.
 PerfRow measure(const PerfCase& c, int threads, int runs) {
   set_num_threads(threads);
   std::vector<double> times, ratios;
   const bool with_scalar = c.run_scalar && !on_gpu();
   c.run();
+  const SilentStep silent(true);
+  c.run();
+  const DeviceCounters before = device_counters;
   if (with_scalar) c.run_scalar();
   for (int i = 0; i < runs; ++i) {
     times.push_back(milliseconds(c.run));
     if (with_scalar) ratios.push_back(milliseconds(c.run_scalar) / times.back());
   }
   PerfRow row{c.name, c.unit, threads, median(times)};
+  row.asked = asked_since(before, runs);
   row.per_second = c.work() / (row.ms / 1000);
   if (c.bytes) row.bytes_per_second = c.bytes() / (row.ms / 1000);
   if (!ratios.empty()) row.scalar_ratio = median(ratios);
@@ -53,6 +73,21 @@ std::string rate(double per_second, const std::string& unit) {
   for (const auto& [scale, prefix] : {std::pair{1e9, "G"}, {1e6, "M"}, {1e3, "k"}})
     if (per_second >= scale) return fmt::format("{:.2f} {}{}/s", per_second / scale, prefix, unit);
   return fmt::format("{:.1f} {}/s", per_second, unit);
+}
+
+std::string asked_text(const std::vector<PerfRow>& rows) {
+  std::string text = fmt::format("\nasked of the device in a run\n{:<34}", "op");
+  DeviceCounters names;
+  DeviceCounters::for_each(
+      [&](const char* name, std::uint64_t) { text += fmt::format(" {:>12}", name); }, names
+  );
+  for (const PerfRow& row : rows) {
+    text += fmt::format("\n{:<34}", row.name);
+    DeviceCounters::for_each(
+        [&](const char*, std::uint64_t count) { text += fmt::format(" {:>12}", count); }, row.asked
+    );
+  }
+  return text + "\n";
 }
 
 std::string ratio(double value) { return value > 0 ? fmt::format("{:.2f}x", value) : "-"; }
@@ -105,7 +140,7 @@ Json perf_setting(const PerfOptions& options) {
 Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) {
   Json json = perf_setting(options);
   if (on_gpu()) json["copy_bytes_per_second"] = gpu::measure_copy_bandwidth(kCopyBytes);
-  for (const PerfRow& row : rows)
+  for (const PerfRow& row : rows) {
     json["rows"].push_back(
         {{"op", row.name},
          {"threads", row.threads},
@@ -116,6 +151,13 @@ Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) 
          {"thread_ratio", row.thread_ratio},
          {"bytes_per_second", row.bytes_per_second}}
     );
+    DeviceCounters::for_each(
+        [&](const char* name, std::uint64_t count) {
+          if (on_gpu()) json["rows"].back()["asked"][name] = count;
+        },
+        row.asked
+    );
+  }
   return json;
 }
 
@@ -152,6 +194,7 @@ std::string perf_to_text(const PerfOptions& options, const std::vector<PerfRow>&
     text += fmt::format(
         "copies inside the device: {}\n", rate(gpu::measure_copy_bandwidth(kCopyBytes), "B")
     );
+  if (on_gpu()) text += asked_text(rows);
   return text;
 }
 

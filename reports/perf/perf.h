@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "glint/core/config.h"
+#include "glint/core/device.h"
 #include "glint/core/files.h"
 #include "glint/core/registry.h"
 
@@ -32,6 +33,7 @@ struct PerfRow {
   double scalar_ratio = 0;      // scalar time / SIMD time, median of pairs; 0: none
   double thread_ratio = 0;      // one thread's time / this; 0 for one thread
   double bytes_per_second = 0;  // of the bytes it has to move; 0: not said
+  DeviceCounters asked;         // of the device in a run
 };
 
 struct PerfOptions {

@@ -155,12 +155,12 @@ TEST_CASE("Mask losses are what they say, with their gradients") {
     return std::pair(loss, variance);
   };
   const RtMoments moments = sum_kernel(size, RtMaskMoments{surface, mask});
+  RtInside inside{};
+  RtFindInside{&moments, variance_weight, &inside}(0);
   CHECK(moments.count == 9);
   CHECK(moments.variance() == Approx(total().second));
   Image gradient(5, 4, kRtChannels);
-  RtMaskLoss kernel{
-      surface, mask, {}, opacity_weight, outside_weight, variance_weight / 9, gradient.ref()};
-  for (int k = 0; k < 4; ++k) kernel.mean[k] = static_cast<float>(moments.mean(k));
+  const RtMaskLoss kernel{surface, mask, &inside, opacity_weight, outside_weight, gradient.ref()};
   CHECK(sum_kernel(size, kernel) == Approx(total().first).epsilon(1e-5));
   for (std::size_t i = 0; i < surface.values().size(); ++i) {
     const float at = surface.data()[i], h = 1.0f / 1024;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A steady step on a GPU: the host asks for nothing and gets no memory, and computes what any other
 // step does. On the host's kernels, whose counters are those of a device.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include "glint/method.h"
 #include "glint/render/void_steps.h"
-#include "glint/scene/ply.h"
+#include "glint/train/trainer.h"
 #include "tests/support/gpu_backends.h"
 #include "tests/support/small_room.h"
 
@@ -23,11 +25,14 @@ struct Costs {
   DeviceCounters before = device_counters;
   void add() {
     const DeviceCounters& now = device_counters;
-    counters.launches += now.launches - before.launches;
-    counters.uploads += now.uploads - before.uploads;
-    counters.downloads += now.downloads - before.downloads;
-    counters.waits += now.waits - before.waits;
-    counters.allocations += now.allocations - before.allocations;
+    DeviceCounters::for_each(
+        [](const char*, std::uint64_t& sum, std::uint64_t after, std::uint64_t earlier) {
+          sum += after - earlier;
+        },
+        counters,
+        now,
+        before
+    );
     ++steps;
   }
 };
@@ -75,6 +80,25 @@ TEST_CASE("A steady step asks a GPU for nothing, whatever the method") {
   use_cpu();
 }
 
+// For docs/gpu.md: test_baselines_gpu_steady_steps "[costs]".
+TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
+  use_host_kernels();
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
+    const Scene scene = small_room();
+    const auto method = create_method(id);
+    const Costs costs = train_silently(*method, scene, 16);
+    fmt::print("| {} ", id);
+    DeviceCounters::for_each(
+        [&](const char*, std::uint64_t count) {
+          fmt::print("| {} ", count / static_cast<std::uint64_t>(costs.steps));
+        },
+        costs.counters
+    );
+    fmt::print("|\n");
+  }
+  use_cpu();
+}
+
 TEST_CASE("A training of silent steps ends with the bytes of one that is told everything") {
   use_host_kernels();
   for (const char* id : {"2dgs", "pgsr", "ref-gs", "glint", "glint/release"}) {
@@ -85,5 +109,26 @@ TEST_CASE("A training of silent steps ends with the bytes of one that is told ev
     train_silently(*silent, scene, 1);
     CHECK(bytes_of(*told) == bytes_of(*silent));
   }
+  use_cpu();
+}
+
+TEST_CASE("Images that fill more than half of a device come for a step and leave, or stay") {
+  use_host_kernels();
+  watch_memory(false);
+  const auto train_with = [](std::size_t room) {
+    host_memory().room = room;
+    Scene scene = small_room();
+    scene.train.resize(3);
+    const auto method = create_method("2dgs");
+    const std::uint64_t before = device_counters.uploads;
+    TrainOptions options;
+    options.run.iterations = 12;
+    train(*method, scene, options);
+    return std::pair{bytes_of(*method), device_counters.uploads - before};
+  };
+  const auto large = train_with(std::size_t{1} << 34), small = train_with(1000);
+  CHECK(large.first == small.first);
+  CHECK(small.second >= large.second + 9);  // each step's photo, not each view's
+  host_memory().room = std::size_t{1} << 34;
   use_cpu();
 }

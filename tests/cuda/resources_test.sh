@@ -14,8 +14,11 @@ SumRows 0
 SurfelVjp 0
 ProjectSurfels 0
 WritePairs 0
-ForwardRays 512 (stack of nodes, list of nearest hits)
-BackwardRays 256 (gradients of one hit, by degree)
+FindHits 0
+CompositeRays 0
+BackwardRays 0
+SumWindows 0
+GatherSurfels 0
 FirstSurface 2560 (list of all hits; of masked pixels, in one method)
 '
 

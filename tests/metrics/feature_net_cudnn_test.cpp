@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 #include "glint/core/device.h"
 #include "metrics/feature_net_backends.h"
@@ -86,18 +87,34 @@ TEST_CASE("So do the published networks") {
   }
 }
 
+namespace {
+
+void move_bytes(void* to, const void* from, std::size_t bytes) { std::memcpy(to, from, bytes); }
+
+// A device's memory, on the host: blocks of their own, full of NaN.
+const DeviceBackend memory_beside{
+    .name = "memory beside the host's",
+    .allocate =
+        [](std::size_t bytes) {
+          return std::memset(std::aligned_alloc(64, (bytes + 63) / 64 * 64), 0xff, bytes);
+        },
+    .release = [](void* block) noexcept { std::free(block); },
+    .upload = move_bytes,
+    .download = move_bytes,
+    .copy = move_bytes,
+    .clear = [](void* block, std::size_t bytes) { std::memset(block, 0, bytes); },
+    .fill = [](float* to, std::size_t count, float value) { std::fill_n(to, count, value); },
+    .synchronize = [] {},
+    .room = [] { return std::size_t{1} << 30; }};
+
+}  // namespace
+
 TEST_CASE("A GPU in use runs networks by cuDNN; where cuDNN fails, the host runs them") {
-  const DeviceBackend host_memory{
-      "host memory",
-      [](std::size_t bytes) { return std::aligned_alloc(64, (bytes + 63) / 64 * 64); },
-      std::free,
-      [](float* to, std::size_t count, float value) { std::fill_n(to, count, value); },
-      [] {}};
   const std::vector<FeatureStep> steps = random_weights(tiny_network()).steps;
   const auto on_host = make_feature_net(steps, {31, 26});
   feed(*on_host, 1);
   const int before = cudnn_handles;
-  use_gpu(host_memory);
+  use_gpu(memory_beside);
   for (const bool fails : {false, true}) {
     cudnn_fails = fails;
     const auto net = make_feature_net(steps, {31, 26});

@@ -46,6 +46,7 @@ inline void use_host_kernels() {
       .clear = HostDeviceOps::clear,
       .fill = HostDeviceOps::fill,
       .synchronize = [] {},
+      .room = [] { return host_memory().room; },
       .allocate_host = [](std::size_t bytes) { return host_memory().host.allocate(bytes); },
       .release_host = [](void* block) noexcept { host_memory().host.release(block); }};
   gpu::use_executor<HostExec>(backend);

@@ -87,6 +87,7 @@ class Arena {
 struct HostMemory {
   Arena host, device;
   bool watching = true;
+  std::size_t room = std::size_t{1} << 34;  // bytes that the device says are free
   HostMemory() { host.set_open(true); }
 };
 // Never destroyed: static arrays of tests end later.

@@ -50,7 +50,7 @@ void observe(
   for (std::size_t i = 0; i < weights.size(); ++i) {
     output.in_view.push_back(weights[i] > 0);
     output.visibility.push_back(weights[i]);
-    gradient.screen.insert(gradient.screen.end(), {gradients[i], 0});
+    for (const float value : {gradients[i], 0.0f}) gradient.screen.push_back(value);
   }
   densifier.observe(output, gradient);
 }

@@ -55,7 +55,7 @@ TEST_CASE("A view's exposure finds the gain and the offset of its photo, and no 
   ExposureLoss loss(config, 2);
   double first = 0, last = 0;
   for (int i = 0; i < 400; ++i) {
-    fill(pair.gradient.data(), pair.gradient.values().size(), 0.0f);
+    pair.gradient.array().fill(0);
     last = loss.evaluate(1, 10, pair.render, pair.photo, kWeights, pair.gradient).l1;
     if (i == 0) first = last;
   }

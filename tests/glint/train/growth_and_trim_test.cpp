@@ -40,10 +40,9 @@ void observe(Densifier& densifier, const std::vector<Seen>& surfels, int rows = 
   RasterGradient gradient;
   const float scale = 540.0f / static_cast<float>(rows);
   for (const Seen& s : surfels) {
-    gradient.screen.insert(gradient.screen.end(), {0, scale * s.gradient});
-    gradient.screen_abs.insert(
-        gradient.screen_abs.end(), {0.6f * scale * s.abs_gradient, 0.8f * scale * s.abs_gradient}
-    );
+    for (const float value : {0.0f, scale * s.gradient}) gradient.screen.push_back(value);
+    for (const float value : {0.6f * scale * s.abs_gradient, 0.8f * scale * s.abs_gradient})
+      gradient.screen_abs.push_back(value);
     output.radii.push_back(s.radius / scale);
   }
   densifier.observe(output, gradient);

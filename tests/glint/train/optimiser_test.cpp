@@ -31,7 +31,7 @@ void observe(Densifier& densifier, const std::vector<float>& norms) {
   output.alpha = Image(960, 540, 1);  // the size that the threshold is for
   RasterGradient gradient;
   for (const float norm : norms)
-    gradient.screen.insert(gradient.screen.end(), {0.6f * norm, 0.8f * norm});
+    for (const float value : {0.6f * norm, 0.8f * norm}) gradient.screen.push_back(value);
   densifier.observe(output, gradient);
 }
 
