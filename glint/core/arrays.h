@@ -292,9 +292,10 @@ class Borrowed {
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  const T* data() const { return host_ != nullptr || array_ == nullptr ? host_ : array_->data(); }
-  const T& operator[](std::size_t i) const { return data()[i]; }
-  operator std::span<const T>() const { return {data(), size_}; }
+  // Where ops run on the CPU; an array's are not known there while a GPU is in use.
+  const T* data() const { return host_; }
+  const T& operator[](std::size_t i) const { return host_[i]; }
+  operator std::span<const T>() const { return {host_, size_}; }
   // Errors (kUsage): a vector on a GPU.
   const T* on_device() const {
     if (array_ != nullptr) return array_->device_for_reading();

@@ -4,13 +4,15 @@
 
 #include <cstddef>
 #include <map>
+#include <mutex>
 #include <utility>
 #include <vector>
 
 namespace glint::gpu {
 
 // Blocks of device memory that are used again. All work is in one order (one stream), so a block
-// that was released may be given away at once: what still reads it comes first. Sizes are rounded
+// that was released may be given away at once: what still reads it comes first. Threads of the host
+// may call it at the same time. Sizes are rounded
 // up so that what grows a little finds its old block again.
 class MemoryPool {
  public:
@@ -37,8 +39,10 @@ class MemoryPool {
 
  private:
   void* fresh(std::size_t size);
+  void trim_now();
 
   Source source_;
+  std::mutex mutex_;
   std::map<std::size_t, std::vector<void*>> free_;  // by size
   std::map<void*, std::size_t> sizes_;
   std::size_t in_use_ = 0, held_ = 0;

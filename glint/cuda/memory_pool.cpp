@@ -16,7 +16,7 @@ std::size_t MemoryPool::rounded(std::size_t bytes) {
 void* MemoryPool::fresh(std::size_t size) {
   void* block = source_.get(size);
   if (block == nullptr && held_ > in_use_) {
-    trim();
+    trim_now();
     block = source_.get(size);
   }
   if (block == nullptr) return nullptr;
@@ -27,6 +27,7 @@ void* MemoryPool::fresh(std::size_t size) {
 }
 
 void* MemoryPool::allocate(std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
   const std::size_t size = rounded(bytes);
   std::vector<void*>& free = free_[size];
   void* block = nullptr;
@@ -41,12 +42,18 @@ void* MemoryPool::allocate(std::size_t bytes) {
 }
 
 void MemoryPool::release(void* block) {
+  const std::lock_guard lock(mutex_);
   const std::size_t size = sizes_.at(block);
   in_use_ -= size;
   free_[size].push_back(block);
 }
 
 void MemoryPool::trim() {
+  const std::lock_guard lock(mutex_);
+  trim_now();
+}
+
+void MemoryPool::trim_now() {
   source_.wait();
   for (auto& [size, blocks] : free_) {
     for (void* block : blocks) {

@@ -17,7 +17,8 @@ using namespace glint::test;
 namespace {
 
 // So short that density control is not due, and all losses are there in the end.
-constexpr int kPlanned = 24, kSteady = 21;
+// Steps before have made room.
+constexpr int kPlanned = 24, kSilentFrom = 16, kSteady = 21;
 
 struct Costs {
   DeviceCounters counters;
@@ -69,7 +70,7 @@ TEST_CASE("A steady step asks a GPU for nothing, whatever the method") {
     INFO(id);
     const Scene scene = small_room();
     const auto method = create_method(id);
-    const Costs costs = train_silently(*method, scene, 16);
+    const Costs costs = train_silently(*method, scene, kSilentFrom);
     CHECK(costs.steps == kPlanned - kSteady);
     CHECK(costs.counters.downloads == 0);
     CHECK(costs.counters.waits == 0);
@@ -86,7 +87,7 @@ TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
   for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     const Scene scene = small_room();
     const auto method = create_method(id);
-    const Costs costs = train_silently(*method, scene, 16);
+    const Costs costs = train_silently(*method, scene, kSilentFrom);
     fmt::print("| {} ", id);
     DeviceCounters::for_each(
         [&](const char*, std::uint64_t count) {
@@ -101,13 +102,14 @@ TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
 
 TEST_CASE("A training of silent steps ends with the bytes of one that is told everything") {
   use_host_kernels();
-  for (const char* id : {"2dgs", "pgsr", "ref-gs", "glint", "glint/release"}) {
+  for (const char* id : {"2dgs", "pgsr", "glint/release"}) {
     INFO(id);
     const Scene scene = small_room();
     const auto told = create_method(id), silent = create_method(id);
     train_silently(*told, scene, kPlanned);
-    train_silently(*silent, scene, 1);
-    CHECK(bytes_of(*told) == bytes_of(*silent));
+    train_silently(*silent, scene, kSilentFrom);
+    CHECK(take_void_steps() == 0);
+    CHECK((bytes_of(*told) == bytes_of(*silent)));
   }
   use_cpu();
 }

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstring>
 #include <map>
+#include <mutex>
 #include <stdexcept>
 #include <vector>
 
@@ -21,6 +22,7 @@ namespace glint::test {
 class Arena {
  public:
   void* allocate(std::size_t bytes) {
+    const std::lock_guard lock(mutex_);
     const std::size_t size = (bytes + 63) / 64 * 64;
     std::vector<char*>& free = free_[size];
     char* block = nullptr;
@@ -36,6 +38,7 @@ class Arena {
     return block;
   }
   void release(void* memory) {
+    const std::lock_guard lock(mutex_);
     char* block = static_cast<char*>(memory);
     const std::size_t size = sizes_.at(block);
     poison(block, size);
@@ -77,6 +80,7 @@ class Arena {
     set_open(before);
   }
 
+  std::mutex mutex_;  // arrays of several threads
   char* base_ = nullptr;
   std::size_t used_ = 0, mapped_ = 0;
   bool open_ = false;

@@ -209,7 +209,9 @@ TEST_CASE("No rows are no work, and rows that do not fit are refused") {
   for (const float g : net.parameters().gradient) CHECK(g == 0);
   CHECK_THROWS_WITH(net.forward(FloatArray(4)), Catch::Contains("4 inputs are no rows of 3"));
   net.forward(FloatArray(6));
-  CHECK_THROWS_WITH(net.backward(FloatArray(3), nullptr), Catch::Contains("gradients of 3 outputs"));
+  CHECK_THROWS_WITH(
+      net.backward(FloatArray(3), nullptr), Catch::Contains("gradients of 3 outputs")
+  );
   CHECK_THROWS_WITH(Mlp({3}, 0), Catch::Contains("widths"));
   CHECK_THROWS_WITH(Mlp({3, 0, 1}, 0), Catch::Contains("widths"));
 }

@@ -104,6 +104,7 @@ struct Patches {
   Patches(const TwoViews& views, const ImageD& normal, const ImageD& distance, const ImageD& weight)
       : dL_dnormal(normal), dL_ddistance(distance) {
     const Image gray = views.photo(false), other = views.photo(true);
+    const PixelSample all;
     sum = sum_kernel(
         distance.size(),
         PatchSimilarityAt<double>{
@@ -113,7 +114,7 @@ struct Patches {
             normal,
             distance,
             weight,
-            {},
+            &all,
             0.9,
             dL_dnormal.ref(),
             dL_ddistance.ref()}
