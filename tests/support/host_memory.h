@@ -23,7 +23,7 @@ class Arena {
  public:
   void* allocate(std::size_t bytes) {
     const std::lock_guard lock(mutex_);
-    const std::size_t size = (bytes + 63) / 64 * 64;
+    const std::size_t size = (bytes + kAlignment - 1) / kAlignment * kAlignment;
     std::vector<char*>& free = free_[size];
     char* block = nullptr;
     if (free.empty()) {
@@ -53,6 +53,7 @@ class Arena {
   bool has(const void* p) const { return base_ != nullptr && p >= base_ && p < base_ + used_; }
 
  private:
+  static constexpr std::size_t kAlignment = 256;                  // as cudaMalloc's
   static constexpr std::size_t kReserved = std::size_t{1} << 35;  // bytes of address space
 
   char* base() {
