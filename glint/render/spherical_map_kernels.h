@@ -4,6 +4,7 @@
 #pragma once
 
 #include "glint/core/kernel.h"
+#include "glint/core/sorted.h"
 #include "glint/render/spherical_map.h"
 
 namespace glint {
@@ -105,15 +106,8 @@ struct FindTapBegins {
   std::size_t count;
   std::uint32_t* begins;
   GLINT_HD void operator()(std::size_t key) const {
-    std::size_t low = 0, high = count;
-    while (low < high) {
-      const std::size_t middle = (low + high) / 2;
-      if (sorted[middle] < key)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    begins[key] = static_cast<std::uint32_t>(low);
+    begins[key] =
+        static_cast<std::uint32_t>(first_at_least(sorted, count, static_cast<std::uint32_t>(key)));
   }
 };
 

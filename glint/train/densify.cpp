@@ -9,6 +9,7 @@
 #include "glint/core/kernel.h"
 #include "glint/render/activations.h"
 #include "glint/render/void_steps.h"
+#include "glint/train/row_kernels.h"
 
 namespace glint {
 
@@ -60,7 +61,8 @@ Array<std::uint32_t> kept_rows(const std::vector<std::uint8_t>& keep) {
 void append_on_device(const Array<std::uint32_t>& rows, std::size_t width, FloatArray& array) {
   const std::size_t first = array.size(), count = rows.size() * width;
   array.resize(first + count);
-  run_kernel(count, kGrain, AppendRows{rows.on_device(), width, first, array.on_device()});
+  float* values = array.on_device();
+  run_kernel(count, kGrain, GatherRows{values, rows.on_device(), width, values + first});
 }
 void keep_on_device(const Array<std::uint32_t>& rows, std::size_t width, FloatArray& array) {
   FloatArray kept(rows.size() * width);
@@ -68,7 +70,7 @@ void keep_on_device(const Array<std::uint32_t>& rows, std::size_t width, FloatAr
     run_kernel(
         kept.size(),
         kGrain,
-        TakeRows{rows.on_device(), width, std::as_const(array).on_device(), kept.on_device()}
+        GatherRows{std::as_const(array).on_device(), rows.on_device(), width, kept.on_device()}
     );
   array = std::move(kept);
 }
@@ -345,7 +347,6 @@ DensifyCounts Densifier::densify(SurfelCloud& cloud, SurfelAdam& adam, int step)
 }
 
 void Densifier::prune(const std::vector<std::uint8_t>& keep, SurfelCloud& cloud, SurfelAdam& adam) {
-  synchronize();
   keep_surfels(keep, cloud, adam);
   const auto keep_observed = [&](auto& values) {
     if (values.empty()) return;
@@ -390,7 +391,6 @@ DensifyCounts Densifier::update(int step, SurfelCloud& cloud, SurfelAdam& adam) 
   DensifyCounts counts;
   if (step >= config_.until) return counts;
   if (step > config_.from && step % config_.interval_at(step) == 0) {
-    synchronize();
     counts = densify(cloud, adam, step);
     gradient_sum_.assign(cloud.size(), 0.0f);
     weight_sum_.assign(cloud.size(), 0.0f);
@@ -399,7 +399,6 @@ DensifyCounts Densifier::update(int step, SurfelCloud& cloud, SurfelAdam& adam) 
     if (!max_radius_.empty()) max_radius_.assign(cloud.size(), 0.0f);
   }
   if (config_.resets && step % config_.reset_interval == 0) {
-    synchronize();
     reset(step, cloud, adam);
     counts.reset = true;
   }

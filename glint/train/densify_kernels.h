@@ -53,25 +53,6 @@ struct ObserveFootprint {
   }
 };
 
-// Appends rows: what was `first` values long ends with copies of rows of it.
-struct AppendRows {
-  const std::uint32_t* rows;
-  std::size_t width, first;
-  float* values;
-  GLINT_HD void operator()(std::size_t i) const {
-    values[first + i] = values[rows[i / width] * width + i % width];
-  }
-};
-struct TakeRows {
-  const std::uint32_t* rows;
-  std::size_t width;
-  const float* from;
-  float* to;
-  GLINT_HD void operator()(std::size_t i) const {
-    to[i] = from[rows[i / width] * width + i % width];
-  }
-};
-
 // Of one column of [N][width].
 struct LowerColumn {
   std::size_t column, width;
@@ -122,8 +103,6 @@ using DensifyKernels = KernelList<
     ObserveFootprint,
     ObserveTrace,
     CountObservations,
-    AppendRows,
-    TakeRows,
     LowerColumn,
     ClearColumn>;
 

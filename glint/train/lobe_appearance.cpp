@@ -10,6 +10,7 @@
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
 #include "glint/train/adam.h"
+#include "glint/train/row_kernels.h"
 
 namespace glint {
 

@@ -136,17 +136,7 @@ struct MarkInPyramid {
   }
 };
 
-// Rows of visible surfels, and back.
-struct GatherRows {
-  const float* rows;             // [N][width]
-  const std::uint32_t* surfels;  // [M]
-  std::size_t width;
-  float* to;  // [M][width]
-  GLINT_HD void operator()(std::size_t i) const {
-    to[i] = rows[surfels[i / width] * width + i % width];
-  }
-};
-// Every surfel at most once.
+// Rows of visible surfels (GatherRows) back. Every surfel at most once.
 struct AddToRows {
   const float* from;             // [M][width]
   const std::uint32_t* surfels;  // [M]
@@ -206,13 +196,7 @@ struct ClearUnseen {
   }
 };
 
-using LobeAppearanceKernels = KernelList<
-    ClearUnseen,
-    WorldNormals,
-    MarkInPyramid,
-    GatherRows,
-    AddToRows,
-    LobeInputs,
-    LobeInputsVjp>;
+using LobeAppearanceKernels =
+    KernelList<ClearUnseen, WorldNormals, MarkInPyramid, AddToRows, LobeInputs, LobeInputsVjp>;
 
 }  // namespace glint

@@ -25,7 +25,6 @@ double NormalConsistencyLoss::evaluate(
 Image NormalConsistencyLoss::depth_normals(const Camera& camera, const Image& depth) {
   Image normals(depth.width(), depth.height(), 3);
   const Unprojector unproject = unprojector(camera, depth.view());
-  synchronize();
   for (int y = 0; y < depth.height(); ++y)
     for (int x = 0; x < depth.width(); ++x) {
       const DepthDifferences d = differences_at(unproject, x, y);

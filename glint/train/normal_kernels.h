@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "glint/core/kernel.h"
+#include "glint/core/sorted.h"
 #include "glint/render/depth_normal.h"
 #include "glint/scene/camera.h"
 #include "glint/train/pixel_access.h"
@@ -44,6 +45,7 @@ struct NormalPriorAt {
 // The depths that 1 % of the pixels with depth fall short of and exceed; 0: there are none.
 struct DepthRange {
   float near = 0, far = 0;
+  GLINT_HD static std::size_t tail(std::size_t with_depth) { return with_depth / 100; }
 };
 // Depths as keys in their order; none: the largest.
 inline constexpr std::uint32_t kNoDepth = ~0u;
@@ -60,17 +62,10 @@ struct FindDepthRange {
   std::size_t count;
   DepthRange* range;
   GLINT_HD void operator()(std::size_t) const {
-    std::size_t with_depth = 0, end = count;
-    while (with_depth < end) {
-      const std::size_t middle = (with_depth + end) / 2;
-      if (sorted[middle] == kNoDepth)
-        end = middle;
-      else
-        with_depth = middle + 1;
-    }
+    const std::size_t with_depth = first_at_least(sorted, count, kNoDepth);
     *range = {};
     if (with_depth == 0) return;
-    const std::size_t tail = with_depth / 100;
+    const std::size_t tail = DepthRange::tail(with_depth);
     memcpy(&range->near, &sorted[tail], sizeof(float));
     memcpy(&range->far, &sorted[with_depth - 1 - tail], sizeof(float));
   }

@@ -25,7 +25,7 @@ DepthRange central_range(const Image& depth) {
       [](float z) { return z > 0; }
   );
   if (depths.empty()) return {};
-  const auto tail = static_cast<std::ptrdiff_t>(depths.size() / 100);
+  const auto tail = static_cast<std::ptrdiff_t>(DepthRange::tail(depths.size()));
   const auto quantile = [&](std::ptrdiff_t rank) {
     std::nth_element(depths.begin(), depths.begin() + rank, depths.end());
     return depths[rank];

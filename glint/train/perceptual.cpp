@@ -14,11 +14,10 @@ class LpipsLoss final : public PerceptualLoss {
 
   bool accepts(ImageSize size) const override { return lpips_.accepts(size); }
 
-  // Pictures are fed and gradients added on the host on either device: it waits for what ops still
-  // write, and is done before the next op begins. The network may run on the GPU (feature_net.h).
+  // Pictures are fed and gradients added on the host on either device; the network may run on the
+  // GPU (feature_net.h).
   double evaluate(const Image& rendered, const Image& target, float weight, Image& dL_drendered)
       override {
-    synchronize();
     return lpips_.evaluate(rendered, target, weight, dL_drendered.ref());
   }
 

@@ -70,7 +70,6 @@ void ReflectionBootstrap::update(int step, TrainableSet& set) {
   // Published: not in an iteration with a reset. In a short run the two intervals need not be
   // multiples of each other, and a growth soon after a reset would undo it.
   if (!due || !wanted || set.resets_within(step, config_.interval / 2)) return;
-  synchronize();
   if (config_.normal_propagation) {
     propagate_normals(
         config_.raised_opacity, config_.enlarge, config_.enlarge_above, set.cloud(), set.optimiser()

@@ -23,6 +23,7 @@ SetTraining with_extra_rates(SetTraining training, const InitialSurfels& initial
 Array<std::uint32_t> count_observations(
     const SurfelSet& set, std::span<const Camera> cameras, RasterSettings settings
 ) {
+  const SilentStep loud(false);  // there is no step before that made room for these views
   settings.with_statistics = true;
   Array<std::uint32_t> views(set.cloud().size(), 0);
   RasterPass pass;
@@ -32,7 +33,6 @@ Array<std::uint32_t> count_observations(
         views.size(), 4096, CountObservations{output.owned_pixels.on_device(), views.on_device()}
     );
   }
-  synchronize();
   return views;
 }
 

@@ -83,7 +83,6 @@ void check_step(const Method& method, const StepStats& stats, const fs::path& ch
       stats.iteration,
       checkpoint.string()
   );
-  synchronize();
   try {
     method.check_finite();
   } catch (const Error& culprit) {
@@ -98,7 +97,6 @@ void check_step(const Method& method, const StepStats& stats, const fs::path& ch
 void save_checkpoint(const Method& method, const fs::path& checkpoint) {
   fs::path fresh = checkpoint;
   fresh += ".tmp";
-  synchronize();
   method.check_finite();
   fs::remove_all(fresh);
   method.save(fresh.string());
@@ -158,9 +156,10 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
   for (int i = 0; i < options.run.iterations; ++i) {
     throw_if_interrupted();
     const bool due = (i + 1) % options.log_interval == 0 || i + 1 == options.run.iterations;
-    const SilentStep silent(!due && i % kToldInterval != 0);
+    const bool told = !on_gpu() || due || i % kToldInterval == 0;
     const auto start = Clock::now();
     const StepStats stats = on_device(i, checkpoint, [&] {
+      const SilentStep silent(!told);
       StepStats result = method.step(i);
       end_silent_step();
       images.end_step();
@@ -168,7 +167,7 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
     });
     report.seconds += seconds_since(start);
     report.iterations = i + 1;
-    if (!SilentStep::now()) {
+    if (told) {
       check_step(method, stats, checkpoint);
       report.last = stats;
       note_void_steps(i, events);
@@ -195,7 +194,6 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
       report.saving_seconds += seconds_since(save);
     }
   }
-  synchronize();
   method.check_finite();
   report.num_surfels = method.num_surfels();
   return report;

@@ -35,7 +35,6 @@ void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method)
   for (const View& view : scene.train) {
     throw_if_interrupted();
     const MapSet output = method.render_view(view);
-    synchronize();
     const fs::path folder = train_view_folder(spec.folder, view);
     const auto write = [&](MapId id, const Image& map) {
       if (!map.empty()) write_exr(folder / id.row().file, map);

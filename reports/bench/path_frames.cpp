@@ -18,12 +18,6 @@ namespace {
 constexpr const char* kPathFile = "path.json";
 constexpr std::size_t kDepthFrames = 8;  // that give the range of depths where there is no truth
 
-MapSet rendered(Method& method, const Camera& camera) {
-  MapSet output = method.render(camera);
-  synchronize();
-  return output;
-}
-
 // The maps to show of what was rendered.
 std::vector<MapRow> chosen_maps(const MapSet& output, const std::vector<std::string>& wanted) {
   std::vector<std::string> ids;
@@ -73,7 +67,7 @@ DepthScale scale_of(Method& method, const Scene& scene, const std::vector<Camera
   if (scale.from_truth) return scale;
   std::vector<View> frames(std::min(kDepthFrames, cameras.size()));
   for (std::size_t i = 0; i < frames.size(); ++i)
-    frames[i].truth = rendered(method, cameras[i * cameras.size() / frames.size()]);
+    frames[i].truth = method.render(cameras[i * cameras.size() / frames.size()]);
   return depth_scale({}, frames);
 }
 
@@ -110,7 +104,7 @@ class FrameWriter {
 PathResult render_path(Method& method, const Scene& scene, const PathFrames& options) {
   const std::vector<Camera>& cameras = options.path.cameras;
   GLINT_CHECK(!cameras.empty(), kUsage, "a path without frames");
-  const std::vector<MapRow> rows = chosen_maps(rendered(method, cameras.front()), options.maps);
+  const std::vector<MapRow> rows = chosen_maps(method.render(cameras.front()), options.maps);
   clear_path_folder(options.folder);
   write_camera_path(options.folder / kPathFile, options.path);
   const FrameWriter writer(options, rows, scale_of(method, scene, cameras));
@@ -119,7 +113,7 @@ PathResult render_path(Method& method, const Scene& scene, const PathFrames& opt
   Progress progress("render path", cameras.size());
   for (const Camera& camera : cameras) {
     throw_if_interrupted();
-    writer.write(result.frames++, rendered(method, camera));
+    writer.write(result.frames++, method.render(camera));
     progress.advance();
   }
   const fs::path video = options.folder / "layers.mp4";

@@ -53,7 +53,6 @@ void render_stage(const RunSpec& spec, const Scene& scene, Method& method) {
     throw_if_interrupted();
     const MapSet output = method.render_view(view);
     const Image& rgb = output["rgb"];
-    synchronize();
     GLINT_CHECK(
         rgb.size() == view.camera.size() && rgb.channels() == 3,
         kBadPrediction,

@@ -17,31 +17,11 @@ const LargeScene& scene() {
   return scene;
 }
 
-// Arrays of the scene where the backend in use can read them.
-struct SceneArrays {
-  FloatArray means, scales, rotations, opacities, features;
-  Camera camera;
-  explicit SceneArrays(const LargeScene& scene) : camera(scene.camera) {
-    const SurfelArrays& from = scene.arrays;
-    means.assign(from.means.begin(), from.means.end());
-    scales.assign(from.scales.begin(), from.scales.end());
-    rotations.assign(from.rotations.begin(), from.rotations.end());
-    opacities.assign(from.opacities.begin(), from.opacities.end());
-    features.assign(from.features.begin(), from.features.end());
-  }
-  RasterCall call() const {
-    RasterInput input;
-    input.count = opacities.size();
-    input.means = means;
-    input.scales = scales;
-    input.rotations = rotations;
-    input.opacities = opacities;
-    input.features = features;
-    RasterSettings settings;
-    settings.with_distortion = settings.with_statistics = settings.scalar = true;
-    return {input, camera, settings};
-  }
-};
+RasterCall call_of(const LargeScene& scene) {
+  RasterSettings settings;
+  settings.with_distortion = settings.with_statistics = settings.scalar = true;
+  return {scene.arrays.view(), scene.camera, settings};
+}
 
 RasterOutputGradient gradient_of_maps() {
   Rng rng(3);
@@ -60,8 +40,7 @@ RasterOutputGradient gradient_of_maps() {
 
 using Results = std::map<std::string, std::vector<float>>;
 Results run() {
-  const SceneArrays arrays(scene());
-  const RasterCall call = arrays.call();
+  const RasterCall call = call_of(scene());
   Rasterizer rasterizer;
   const RasterOutput& out = rasterizer.forward(call);
   const RasterGradient& gradient = rasterizer.backward(gradient_of_maps());
@@ -128,8 +107,7 @@ TEST_CASE("The GPU's rasteriser makes the CPU's maps and gradients of 100,000 su
 }
 
 TEST_CASE("Lists of 100,000 surfels are complete and sorted") {
-  const SceneArrays arrays(scene());
-  const RasterCall call = arrays.call();
+  const RasterCall call = call_of(scene());
   HostExec exec;
   SplatLists<HostExec> splats;
   const HostOrder order(3);
@@ -167,8 +145,8 @@ TEST_CASE("Lists of 100,000 surfels are complete and sorted") {
 TEST_CASE("Pairs, slots and rows of 100,000 surfels", "[.counts]") {
   use_host_kernels();
   for (const double max_opacity : {1.0, 0.1}) {
-    const SceneArrays arrays(large_scene(max_opacity));
-    const RasterCall call = arrays.call();
+    const LargeScene large = large_scene(max_opacity);
+    const RasterCall call = call_of(large);
     RasterOutput out;
     for_each_map(
         call.maps(),

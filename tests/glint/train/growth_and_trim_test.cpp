@@ -7,6 +7,7 @@
 
 #include "glint/render/activations.h"
 #include "glint/train/trainable_set.h"
+#include "tests/support/gpu_backends.h"
 
 using namespace glint;
 
@@ -242,4 +243,23 @@ TEST_CASE("Trimming drops what owns a pixel in fewer than two training views") {
   CHECK(output.visibility.size() == set.cloud().size());
   set.backward(dL);
   set.update(1);
+}
+
+TEST_CASE("Trimming in a silent step of a GPU sees all of each view, whatever the first one needed"
+) {
+  std::vector<Vec3f> points;
+  for (int i = 0; i < 40; ++i) points.push_back({0.02f * static_cast<float>(i) - 0.4f, 0.1f, 1});
+  const std::array cameras{
+      camera_at(1000), camera_at(0), camera_at(0.2)};  // the first sees nothing
+  const auto trimmed = [&] {
+    TrainableSet set(wall_and(points), SetTraining{});
+    const SilentStep silent(true);
+    set.trim(cameras);
+    return columns(set.cloud());
+  };
+  const std::vector<float> expected = trimmed();
+  CHECK(expected.size() > 5);
+  test::use_host_kernels();
+  CHECK(trimmed() == expected);
+  use_cpu();
 }

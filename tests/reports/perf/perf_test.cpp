@@ -13,12 +13,17 @@
 
 using namespace glint;
 
-TEST_CASE("every op and a training step of every method can be timed") {
-  set_quiet(true);
+static PerfOptions small_options() {
   PerfOptions options;
   options.width = 32;
   options.height = 18;
   options.surfels = 200;
+  return options;
+}
+
+TEST_CASE("every op and a training step of every method can be timed") {
+  set_quiet(true);
+  PerfOptions options = small_options();
   options.runs = 1;
   const std::vector<PerfRow> rows = run_perf(options);
   for (const PerfRow& row : rows) {
@@ -36,10 +41,7 @@ TEST_CASE("every op and a training step of every method can be timed") {
 
 TEST_CASE("only what is asked for is made and timed") {
   set_quiet(true);
-  PerfOptions options;
-  options.width = 32;
-  options.height = 18;
-  options.surfels = 200;
+  PerfOptions options = small_options();
   const auto names = [&](const char* only) {
     options.only = only;
     std::vector<std::string> found;
@@ -55,10 +57,7 @@ TEST_CASE("only what is asked for is made and timed") {
 
 TEST_CASE("the kernels of an op are timed one by one, with their launches") {
   set_quiet(true);
-  PerfOptions options;
-  options.width = 32;
-  options.height = 18;
-  options.surfels = 200;
+  PerfOptions options = small_options();
   options.runs = 2;
   options.only = "Adam*";
   const std::vector<KernelRow> rows = run_kernel_times(options);
