@@ -157,6 +157,7 @@ step_perf() {
       at=(--width "${size%x*}" --height "${size#*x}" --surfels "$surfels")
       perf "steps, $size, $surfels surfels a set, ms" 60 "steps-$size-$surfels.json" --op "$step" "${at[@]}"
       [ "$size" = "${sizes[0]}" ] || continue
+      GLINT_CUDA_GRAPHS=1 perf "the same as graphs" 60 "graphs-$size-$surfels.json" --op "$step" "${at[@]}"
       check "kernels, $size, $surfels surfels" 60 glint-bench perf --quiet --device "$device" --kernels --json --runs 5 \
         --op 'glint training step|2dgs training step' "${at[@]}" && keep "kernels-$size-$surfels.json"
     done

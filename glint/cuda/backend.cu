@@ -6,6 +6,7 @@
 #include "glint/cuda/card_lock.h"
 #include "glint/cuda/device_exec.cuh"
 #include "glint/cuda/ops.h"
+#include "glint/cuda/step_graph.h"
 
 namespace glint::gpu {
 
@@ -17,6 +18,11 @@ struct FillFloats {
   GLINT_HD void operator()(std::size_t i) const { to[i] = value; }
 };
 
+void wait() {
+  step_graph().end();
+  check_cuda(cudaDeviceSynchronize(), "waiting for the device");
+}
+
 MemoryPool& pool() {
   // Never destroyed: arrays of the program may outlive it.
   static MemoryPool& pool = *new MemoryPool(
@@ -27,32 +33,33 @@ MemoryPool& pool() {
          return nullptr;
        },
        [](void* block) { cudaFree(block); },
-       [] { check_cuda(cudaDeviceSynchronize(), "waiting for the device"); }}
+       wait}
   );
   return pool;
 }
 
 void copy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind, const char* what) {
-  check_cuda(cudaMemcpyAsync(to, from, bytes, kind, nullptr), what);
+  check_cuda(cudaMemcpyAsync(to, from, bytes, kind, device_stream()), what);
 }
 // From memory that is not locked to its pages, which CUDA copies away before it returns.
 void upload(void* to, const void* from, std::size_t bytes) {
+  step_graph().end();
   copy(to, from, bytes, cudaMemcpyHostToDevice, "copying to the device");
 }
 void download(void* to, const void* from, std::size_t bytes) {
+  step_graph().end();
   copy(to, from, bytes, cudaMemcpyDeviceToHost, "copying from the device");
-  check_cuda(cudaStreamSynchronize(nullptr), "waiting for the device");
+  check_cuda(cudaStreamSynchronize(device_stream()), "waiting for the device");
 }
 void copy_inside(void* to, const void* from, std::size_t bytes) {
   copy(to, from, bytes, cudaMemcpyDeviceToDevice, "copying inside the device");
 }
 void clear(void* block, std::size_t bytes) {
-  check_cuda(cudaMemsetAsync(block, 0, bytes, nullptr), "clearing memory");
+  check_cuda(cudaMemsetAsync(block, 0, bytes, device_stream()), "clearing memory");
 }
 void fill_floats(float* to, std::size_t count, float value) {
   executor<DeviceExec>().for_each(count, FillFloats{to, value});
 }
-void wait() { check_cuda(cudaDeviceSynchronize(), "waiting for the device"); }
 
 std::string version_text(int version) {
   return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
@@ -131,9 +138,12 @@ void use_cuda() {
         return free + pool().bytes_held() - pool().bytes_in_use();
       }};
   use_executor<DeviceExec>(backend);
+  use_graphs(graphs_wanted());
   char card[32] = "";
   if (cudaDeviceGetPCIBusId(card, sizeof card, 0) == cudaSuccess) warn_of_sharing(card);
 }
+
+void use_graphs(bool captured) { step_recorder = captured ? &step_graph() : nullptr; }
 
 double measure_copy_bandwidth(std::size_t bytes) {
   constexpr int kRuns = 9;

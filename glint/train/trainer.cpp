@@ -10,6 +10,7 @@
 #include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
+#include "glint/core/recorded_step.h"
 #include "glint/core/rng.h"
 #include "glint/render/void_steps.h"
 
@@ -160,8 +161,10 @@ TrainReport train(Method& method, const Scene& scene, const TrainOptions& option
     const auto start = Clock::now();
     const StepStats stats = on_device(i, checkpoint, [&] {
       const SilentStep silent(!told);
+      RecordedStep recorded;
       StepStats result = method.step(i);
       end_silent_step();
+      recorded.end();
       images.end_step();
       return result;
     });

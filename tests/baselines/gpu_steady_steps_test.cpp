@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "glint/core/recorded_step.h"
 #include "glint/method.h"
 #include "glint/render/void_steps.h"
 #include "glint/train/trainer.h"
@@ -37,6 +38,7 @@ void bring_to_device(const Scene& scene) {
 struct Costs {
   DeviceCounters counters;
   int steps = 0;
+  std::uint64_t interrupted = 0;  // steps that were not recorded to their end
   DeviceCounters before = device_counters;
   void add() {
     const DeviceCounters& now = device_counters;
@@ -53,11 +55,11 @@ struct Costs {
 };
 
 // Trains to the end, with silent steps from `silent_from` on; the cost of the last ones.
-Costs train_silently(Method& method, const Scene& scene, int silent_from) {
+Costs train_silently(Method& method, const Scene& scene, int silent_from, bool recorded = false) {
   use_cpu();
   method.initialize(scene, {kPlanned, 0});
   for (int i = 0; i < kOnCpu; ++i) method.step(i);
-  use_host_kernels();
+  use_host_kernels(recorded);
   bring_to_device(scene);
   watch_memory(false);
   Costs costs;
@@ -65,9 +67,14 @@ Costs train_silently(Method& method, const Scene& scene, int silent_from) {
     if (i == kSteady) watch_memory(true);
     const SilentStep silent(i >= silent_from);
     costs.before = device_counters;
+    const std::uint64_t interrupted = host_recorder().interrupted;
+    RecordedStep step;
     method.step(i);
     end_silent_step();
-    if (i >= kSteady) costs.add();
+    step.end();
+    if (i < kSteady) continue;
+    costs.add();
+    costs.interrupted += host_recorder().interrupted - interrupted;
   }
   return costs;
 }
@@ -88,7 +95,8 @@ TEST_CASE("A steady step asks a GPU for nothing, whatever the method") {
     INFO(id);
     const Scene scene = two_views_of_room();
     const auto method = create_method(id);
-    const Costs costs = train_silently(*method, scene, kSilentFrom);
+    const Costs costs = train_silently(*method, scene, kSilentFrom, true);
+    CHECK(costs.interrupted == 0);
     CHECK(costs.steps == kEnd - kSteady);
     CHECK(costs.counters.downloads == 0);
     CHECK(costs.counters.waits == 0);
@@ -118,16 +126,22 @@ TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
   use_cpu();
 }
 
-TEST_CASE("A training of silent steps ends with the bytes of one that is told everything") {
+TEST_CASE(
+    "A training of silent or of recorded steps ends with the bytes of one that is told everything"
+) {
   use_host_kernels();
   for (const char* id : {"2dgs", "pgsr", "glint/release"}) {
     INFO(id);
     const Scene scene = two_views_of_room();
-    const auto told = create_method(id), silent = create_method(id);
+    const auto told = create_method(id), silent = create_method(id), recorded = create_method(id);
     train_silently(*told, scene, kEnd);
     train_silently(*silent, scene, kSilentFrom);
+    const std::uint64_t kept = host_recorder().kept;
+    train_silently(*recorded, scene, kSilentFrom, true);
+    CHECK(host_recorder().kept > kept);
     CHECK(take_void_steps() == 0);
     CHECK((bytes_of(*told) == bytes_of(*silent)));
+    CHECK((bytes_of(*told) == bytes_of(*recorded)));
   }
   use_cpu();
 }

@@ -26,31 +26,33 @@ class HostExec {
   void download(const Buffer<T>& from, std::size_t count, T* to) {
     ++device_counters.downloads;
     ++device_counters.waits;
+    host_recorder().interrupt();
     const OpenMemory open(OpenMemory::kBoth);
     std::copy_n(from.data(), count, to);
   }
   template <class T>
   void fill_zero(Buffer<T>& buffer) {
-    const OpenMemory open(OpenMemory::kDevice);
-    std::fill_n(buffer.data(), buffer.size(), T{});
+    host_recorder().now_or_later([data = buffer.data(), size = buffer.size()] {
+      const OpenMemory open(OpenMemory::kDevice);
+      std::fill_n(data, size, T{});
+    });
   }
   template <class F>
   void for_each(std::size_t count, F f) {
     ++device_counters.launches;
-    const OpenMemory open(OpenMemory::kDevice);
-    const TracedKernel traced(typeid(F));
-    in_host_order(count, f);
+    host_recorder().now_or_later([count, f] {
+      const OpenMemory open(OpenMemory::kDevice);
+      const TracedKernel traced(typeid(F));
+      in_host_order(count, f);
+    });
   }
   template <class Body>
   void launch(std::size_t blocks, const Body& body) {
     ++device_counters.launches;
-    const OpenMemory open(OpenMemory::kDevice);
-    const TracedKernel traced(typeid(Body));
-    in_host_order(blocks, [&](std::size_t i) {
-      HostBlock<Body::kThreads> block;
-      block.index = static_cast<int>(i);
-      const auto shared = std::make_unique<typename Body::Shared>();
-      body(block, *shared);
+    host_recorder().now_or_later([blocks, body] {
+      const OpenMemory open(OpenMemory::kDevice);
+      const TracedKernel traced(typeid(Body));
+      in_host_order(blocks, [&](std::size_t i) { run_block(body, static_cast<int>(i)); });
     });
   }
   // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count].
@@ -58,25 +60,41 @@ class HostExec {
   void exclusive_sum_on_device(const Buffer<T>& counts, std::size_t count, Buffer<T>& sums) {
     sums.resize(count + 1);
     ++device_counters.launches;
-    const OpenMemory open(OpenMemory::kDevice);
-    sums.data()[0] = T{};
-    std::partial_sum(counts.data(), counts.data() + count, sums.data() + 1);
+    host_recorder().now_or_later([from = counts.data(), count, to = sums.data()] {
+      const OpenMemory open(OpenMemory::kDevice);
+      to[0] = T{};
+      std::partial_sum(from, from + count, to + 1);
+    });
   }
   // Stable, by the low `bits` bits of the keys.
   void sort_pairs(
       std::size_t count, int bits, Buffer<std::uint64_t>& keys, Buffer<std::uint32_t>& values
   ) {
     ++device_counters.launches;
-    const OpenMemory open(OpenMemory::kBoth);
+    host_recorder().now_or_later([count, bits, k = keys.data(), v = values.data()] {
+      const OpenMemory open(OpenMemory::kBoth);
+      sort_now(count, bits, k, v);
+    });
+  }
+
+ private:
+  template <class Body>
+  static void run_block(const Body& body, int index) {
+    HostBlock<Body::kThreads> block;
+    block.index = index;
+    const auto shared = std::make_unique<typename Body::Shared>();
+    body(block, *shared);
+  }
+  static void sort_now(std::size_t count, int bits, std::uint64_t* keys, std::uint32_t* values) {
     const std::uint64_t mask = bits < 64 ? (std::uint64_t{1} << bits) - 1 : ~std::uint64_t{0};
     std::vector<std::pair<std::uint64_t, std::uint32_t>> pairs(count);
-    for (std::size_t i = 0; i < count; ++i) pairs[i] = {keys.data()[i], values.data()[i]};
+    for (std::size_t i = 0; i < count; ++i) pairs[i] = {keys[i], values[i]};
     std::stable_sort(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
       return (a.first & mask) < (b.first & mask);
     });
     for (std::size_t i = 0; i < count; ++i) {
-      keys.data()[i] = pairs[i].first;
-      values.data()[i] = pairs[i].second;
+      keys[i] = pairs[i].first;
+      values[i] = pairs[i].second;
     }
   }
 };
