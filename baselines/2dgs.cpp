@@ -20,6 +20,7 @@
 #include "glint/train/photometric.h"
 #include "glint/train/trainable_set.h"
 #include "glint/train/trainer.h"
+#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -140,6 +141,11 @@ class TwoDgs final : public Method {
     return inputs;
   }
   void check_finite() const override { glint::check_finite(set_.cloud(), "interface"); }
+  bool visit_state(TrainingState& state) override {
+    state("set", set_);
+    state("views", views_);
+    return true;
+  }
   std::size_t num_surfels() const override { return set_.cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }
 

@@ -29,6 +29,7 @@
 #include "glint/train/reflection_bootstrap.h"
 #include "glint/train/trainable_set.h"
 #include "glint/train/trainer.h"
+#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -231,6 +232,13 @@ class EnvGs final : public Method {
   void check_finite() const override {
     glint::check_finite(base_.cloud(), "interface");
     glint::check_finite(environment_.cloud(), "environment");
+  }
+  bool visit_state(TrainingState& state) override {
+    state("base", base_);
+    state("environment", environment_);
+    state("views", views_);
+    state("bootstrap", bootstrap_);
+    return true;
   }
   std::size_t num_surfels() const override {
     return base_.cloud().size() + environment_.cloud().size();

@@ -15,6 +15,7 @@
 // NCC; images are compared as stored; pruning by screen size is left out, as in 2DGS here.
 #include "glint/method.h"
 #include "glint/train/planar_model.h"
+#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -43,6 +44,10 @@ class Pgsr final : public Method {
   Json config() const override { return config_to_json(config_); }
   std::vector<ConfigField> fields() const override { return config_fields(config_); }
   void check_finite() const override { glint::check_finite(model_.set().cloud(), "interface"); }
+  bool visit_state(TrainingState& state) override {
+    state("model", model_);
+    return true;
+  }
   std::size_t num_surfels() const override { return model_.set().cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }
 

@@ -32,6 +32,7 @@
 #include "glint/train/specular_field.h"
 #include "glint/train/trainable_set.h"
 #include "glint/train/trainer.h"
+#include "glint/train/training_state.h"
 #include "glint/train/transparency_prior.h"
 
 namespace glint {
@@ -197,6 +198,13 @@ class RefGs final : public Method {
   void check_finite() const override {
     glint::check_finite(set_.cloud(), "interface");
     field_.check_finite();
+  }
+  bool visit_state(TrainingState& state) override {
+    state("set", set_);
+    state("field", field_);
+    state("view_rng", view_rng_);
+    state("background_rng", background_rng_);
+    return true;
   }
   std::size_t num_surfels() const override { return set_.cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }

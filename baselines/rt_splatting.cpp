@@ -39,6 +39,7 @@
 #include "glint/train/specular_field.h"
 #include "glint/train/trainable_set.h"
 #include "glint/train/trainer.h"
+#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -222,6 +223,12 @@ class RtSplatting final : public Method {
   void check_finite() const override {
     glint::check_finite(set_.cloud(), "interface");
     field_.check_finite();
+  }
+  bool visit_state(TrainingState& state) override {
+    state("set", set_);
+    state("field", field_);
+    state("views", views_);
+    return true;
   }
   std::size_t num_surfels() const override { return set_.cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }

@@ -32,6 +32,7 @@
 #include "glint/train/lobe_appearance.h"
 #include "glint/train/planar_model.h"
 #include "glint/train/share_kernels.h"
+#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -196,6 +197,14 @@ class Tsgs final : public Method {
   void check_finite() const override {
     glint::check_finite(model_.set().cloud(), "interface");
     if (lobes_) lobes_->check_finite("lobes");
+  }
+  bool visit_state(TrainingState& state) override {
+    state("model", model_);
+    std::string kind = kind_of_lobes_;
+    state("kind_of_lobes", kind);
+    if (state.reading() && kind != kNoLobes) start_lobes(kind);
+    if (lobes_) state("lobes", *lobes_);
+    return true;
   }
   std::size_t num_surfels() const override { return model_.set().cloud().size(); }
   std::vector<std::string> warnings() const override { return warnings_; }

@@ -24,6 +24,7 @@
 #include "glint/scene/ply.h"
 #include "glint/train/photometric.h"
 #include "glint/train/trainer.h"
+#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -132,6 +133,14 @@ class Glint final : public Method {
     glint::check_finite(model_.interface.cloud(), "interface");
     glint::check_finite(model_.transmission.cloud(), "transmission");
     glint::check_finite(model_.reflection.cloud(), "reflection");
+  }
+  bool visit_state(TrainingState& state) override {
+    state("interface", model_.interface);
+    state("transmission", model_.transmission);
+    state("reflection", model_.reflection);
+    state("views", views_);
+    state("bootstrap", bootstrap_);
+    return true;
   }
   std::size_t num_surfels() const override {
     return model_.interface.cloud().size() + model_.transmission.cloud().size() +

@@ -15,6 +15,8 @@
 
 namespace glint {
 
+class TrainingState;
+
 struct StepStats {
   int iteration = 0;
   double loss = 0;
@@ -58,6 +60,10 @@ class Method {
   virtual std::vector<std::string> inputs() const { return {}; }
   // Throws Error naming the parameter array and surfel when a parameter is not finite.
   virtual void check_finite() const = 0;
+  // Names all that one step leaves for the next (glint/train/training_state.h), to be written or,
+  // after initialize(), to be read: so a training that was stopped goes on. False: nothing is said,
+  // and it starts anew.
+  virtual bool visit_state(TrainingState&) { return false; }
   virtual std::size_t num_surfels() const = 0;
   virtual std::vector<std::string> warnings() const { return {}; }  // losses off, missing priors
   // What readers of tables have to know of this run, a line each: which masks it was given, say.

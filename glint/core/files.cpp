@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 
@@ -60,6 +61,20 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
   } catch (...) {
     fs::remove(temporary, code);
     throw;
+  }
+}
+
+void remove_stale_temporaries(const fs::path& path) {
+  const std::string before = fmt::format(".{}.", path.stem().string()),
+                    after = path.extension().string();
+  std::error_code code;
+  for (const auto& entry : fs::directory_iterator(path.parent_path(), code)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(before) || !name.ends_with(after)) continue;
+    const std::string pid = name.substr(before.size(), name.size() - before.size() - after.size());
+    const bool number =
+        !pid.empty() && pid.size() < 10 && pid.find_first_not_of("0123456789") == std::string::npos;
+    if (number && ::kill(std::stoi(pid), 0) != 0 && errno == ESRCH) fs::remove(entry.path(), code);
   }
 }
 

@@ -20,6 +20,8 @@ std::string read_file(const fs::path& path);
 // throws on. Creates the parent folder. Errors (kEnvironment): cannot create, write, or rename.
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write);
 void write_file(const fs::path& path, std::string_view content);
+// Removes temporaries that processes of this machine which are no more left beside `path`.
+void remove_stale_temporaries(const fs::path& path);
 
 // Appends one line and flushes it; a torn last line of an earlier crash is closed first.
 void append_line(const fs::path& path, std::string_view line);

@@ -40,6 +40,13 @@ class Rng {
     );
   }
 
+  // Where it stands, for checkpoints.
+  template <class State>
+  void visit_state(State& state) {
+    state("state", state_);
+    state("increment", increment_);
+  }
+
  private:
   std::uint64_t state_ = 0;
   std::uint64_t increment_;

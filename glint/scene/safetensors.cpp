@@ -31,6 +31,8 @@ constexpr TypeRow kTypes[] = {
     {TensorType::kU8, "U8", 1},
     {TensorType::kU16, "U16", 2},
     {TensorType::kI32, "I32", 4},
+    {TensorType::kU32, "U32", 4},
+    {TensorType::kU64, "U64", 8},
     {TensorType::kF32, "F32", 4},
     {TensorType::kF64, "F64", 8}};
 
@@ -55,7 +57,10 @@ TensorType parse_type(const fs::path& path, const std::string& name, const nlohm
   const std::string found = json.is_string() ? json.get<std::string>() : json.dump();
   for (const TypeRow& row : kTypes)
     if (found == row.name) return row.type;
-  fail(path, fmt::format("tensor {}: dtype {}, expected U8, U16, I32, F32 or F64", name, found));
+  fail(
+      path,
+      fmt::format("tensor {}: dtype {}, expected U8, U16, I32, U32, U64, F32 or F64", name, found)
+  );
 }
 
 std::vector<std::size_t> parse_integers(

@@ -19,9 +19,9 @@
 
 namespace glint {
 
-enum class TensorType { kU8, kU16, kI32, kF32, kF64 };
+enum class TensorType { kU8, kU16, kI32, kU32, kU64, kF32, kF64 };
 std::size_t bytes_of(TensorType type);
-const char* name_of(TensorType type);  // as in the header: "U8", "U16", "I32", "F32", "F64"
+const char* name_of(TensorType type);  // as in the header: "U8", "F32", ...
 
 template <class T>
 inline constexpr TensorType kTensorTypeOf = TensorType::kU8;
@@ -29,6 +29,10 @@ template <>
 inline constexpr TensorType kTensorTypeOf<std::uint16_t> = TensorType::kU16;
 template <>
 inline constexpr TensorType kTensorTypeOf<std::int32_t> = TensorType::kI32;
+template <>
+inline constexpr TensorType kTensorTypeOf<std::uint32_t> = TensorType::kU32;
+template <>
+inline constexpr TensorType kTensorTypeOf<std::uint64_t> = TensorType::kU64;
 template <>
 inline constexpr TensorType kTensorTypeOf<float> = TensorType::kF32;
 template <>
@@ -78,6 +82,9 @@ class SafetensorsFile {
     read_bytes(name, std::as_writable_bytes(std::span<T>(values)));
     return values;
   }
+  // The bytes of a tensor that find() knows, as many as it has. Errors (kBadReference): reading
+  // fails.
+  void read_bytes(const std::string& name, std::span<std::byte> to);
 
  private:
   struct Entry {
@@ -90,7 +97,6 @@ class SafetensorsFile {
   void read_header(std::size_t file_bytes);
   void check_ranges() const;
   void check(const std::string& name, TensorType type, const std::vector<std::size_t>& shape) const;
-  void read_bytes(const std::string& name, std::span<std::byte> to);
 
   fs::path path_;
   std::ifstream in_;

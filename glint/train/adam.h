@@ -57,6 +57,13 @@ class SurfelAdam {
   SurfelCloud& second() { return second_; }
   int steps() const { return steps_; }
 
+  template <class State>
+  void visit_state(State& state) {
+    state("first", first_);
+    state("second", second_);
+    state("steps", steps_);
+  }
+
  private:
   SurfelCloud first_, second_;
   int steps_ = 0;

@@ -146,6 +146,16 @@ class Densifier {
   // Whether opacities are reset at most `margin` steps before or after this one.
   bool resets_within(int step, int margin) const;
 
+  template <class State>
+  void visit_state(State& state) {
+    state("rng", rng_);
+    state("gradient_sum", gradient_sum_);
+    state("weight_sum", weight_sum_);
+    state("views", views_);
+    state("abs_sum", abs_sum_);
+    state("max_radius", max_radius_);
+  }
+
  private:
   struct Shape {  // of a split
     int children;

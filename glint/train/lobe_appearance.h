@@ -94,6 +94,12 @@ class LobeAppearance {
   std::vector<TensorToWrite> tensors(const std::string& name) const;
   void read(SafetensorsFile& file, const std::string& name);
   void check_finite(const std::string& name) const;
+  template <class State>
+  void visit_state(State& state) {
+    state("features", features_);
+    state("to_lobes", to_lobes_);
+    state("to_color", to_color_);
+  }
 
  private:
   void find_visible(const Array<std::uint8_t>& visible);

@@ -42,6 +42,7 @@ class Mlp {
   std::vector<TensorToWrite> tensors(const std::string& name) const;
   // The same back, of these widths. Errors (kBadReference): SafetensorsFile::read()'s.
   void read(SafetensorsFile& file, const std::string& name);
+  void visit_state(TrainingState& state) { parameters_.visit_state(state); }
 
  private:
   struct Layer {

@@ -78,6 +78,11 @@ class PlanarModel {
   void load(const std::string& folder);
   TrainableSet& set() { return set_; }
   const TrainableSet& set() const { return set_; }
+  template <class State>
+  void visit_state(State& state) {
+    state("set", set_);
+    state("views", views_);
+  }
 
  private:
   void rasterize(const Camera& camera, const RasterSettings& settings);

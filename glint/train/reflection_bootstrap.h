@@ -57,6 +57,11 @@ class ReflectionBootstrap {
   // Errors (kUsage): normal propagation of a set without a channel "specular".
   void update(int step, TrainableSet& set);
 
+  template <class State>
+  void visit_state(State& state) {
+    state("rng", rng_);
+  }
+
  private:
   BootstrapConfig config_;
   Rng rng_{0};

@@ -6,6 +6,7 @@
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
 #include "glint/render/glass_transport.h"
+#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -132,6 +133,12 @@ void SpecularField::step(float faster) {
   map_.step(faster * config_.rate_map);
   network_.parameters().step(faster * config_.rate_network);
   map_changed();
+}
+
+void SpecularField::visit_state(TrainingState& state) {
+  state("map", map_);
+  state("network", network_);
+  if (state.reading()) map_changed();
 }
 
 std::vector<std::size_t> SpecularField::map_shape() const {

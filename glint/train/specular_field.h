@@ -73,6 +73,7 @@ class SpecularField {
   // the config's, not one of `stages`.
   int load(const std::filesystem::path& folder, int stages);
   void check_finite() const;
+  void visit_state(TrainingState& state);
 
  private:
   std::vector<std::size_t> map_shape() const;

@@ -10,6 +10,7 @@
 #include "glint/render/surfel_set.h"
 #include "glint/render/void_steps.h"
 #include "glint/train/adam_kernels.h"
+#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -45,6 +46,21 @@ void TrainableArray::check_finite(const std::string& name) const {
         values.size(),
         values[i]
     );
+}
+
+void TrainableArray::visit_state(TrainingState& state) {
+  const std::size_t count = size();
+  state("values", values);
+  state("first", first_);
+  state("second", second_);
+  state("steps", steps_);
+  GLINT_CHECK(
+      size() == count && first_.size() == second_.size(),
+      kBadReference,
+      "{} values of a trained array, expected {}",
+      size(),
+      count
+  );
 }
 
 TensorToWrite float_tensor(

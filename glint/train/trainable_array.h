@@ -10,6 +10,8 @@
 
 namespace glint {
 
+class TrainingState;
+
 class TrainableArray {
  public:
   FloatArray values, gradient;  // of one size
@@ -23,6 +25,9 @@ class TrainableArray {
   void step(float rate);
   // Errors (kBadPrediction): a value is not finite; names it by its place in the array.
   void check_finite(const std::string& name) const;
+
+  // Errors (kBadReference): other sizes than these.
+  void visit_state(TrainingState& state);
 
  private:
   FloatArray first_, second_;

@@ -8,6 +8,7 @@
 #include "glint/method.h"
 #include "glint/scene/scene.h"
 #include "glint/train/opacity_penalty_kernels.h"
+#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -157,6 +158,20 @@ DensifyCounts TrainableSet::update(int step) {
       t.frozen_geometry ? DensifyCounts{} : t.densifier.update(step, cloud_, t.adam);
   t.gradient.resize(cloud_.size());  // zero after every step
   return counts;
+}
+
+void TrainableSet::visit_state(TrainingState& state) {
+  Training& t = training();
+  state("cloud", cloud_);
+  state("adam", t.adam);
+  state("densifier", t.densifier);
+  state("frozen_geometry", t.frozen_geometry);
+  state("opacity_paused_until", t.opacity_paused_until);
+  if (!state.reading()) return;
+  if (t.frozen_geometry) freeze_geometry();
+  t.gradient = SurfelCloud();
+  t.gradient.extra_names = cloud_.extra_names;
+  t.gradient.resize(cloud_.size());
 }
 
 }  // namespace glint

@@ -16,6 +16,7 @@ namespace glint {
 
 struct Scene;
 struct StepStats;
+class TrainingState;
 
 struct SetTraining {
   SurfelRates rates;
@@ -73,6 +74,9 @@ class TrainableSet final : public SurfelSet {
   SurfelAdam& optimiser() { return training().adam; }
 
   const SurfelCloud& gradient() const { return training().gradient; }
+
+  // Of a set that trains, between two steps: its gradient is zero.
+  void visit_state(TrainingState& state);
 
  private:
   struct Training {

@@ -5,14 +5,17 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <sstream>
 #include <utility>
 
 #include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
+#include "glint/core/machine.h"
 #include "glint/core/progress.h"
 #include "glint/core/recorded_step.h"
 #include "glint/core/rng.h"
 #include "glint/render/void_steps.h"
+#include "glint/train/checkpoint.h"
 
 namespace glint {
 
@@ -23,29 +26,20 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-Json log_line(const StepStats& stats, const TrainReport& report) {
+Json log_line(const StepStats& stats, const TrainingProgress& done) {
   Json line = {
       {"iteration", stats.iteration},
       {"loss", stats.loss},
       {"psnr", stats.psnr},
       {"num_surfels", stats.num_surfels},
-      {"seconds", report.seconds},
-      {"saving_seconds", report.saving_seconds}};
+      {"seconds", done.seconds},
+      {"saving_seconds", done.saving_seconds}};
   for (const auto& [name, value] : stats.terms) line["terms"][name] = value;
   return line;
 }
 
 // On a GPU the host looks at losses this often; in between it waits for nothing.
 constexpr int kToldInterval = 20;
-
-void note_void_steps(int iteration, Json& events) {
-  const std::size_t count = take_void_steps();
-  if (count > 0)
-    events.push_back(
-        {{"iteration", iteration},
-         {"text", fmt::format("{} steps were left out: no room for their pairs yet", count)}}
-    );
-}
 
 template <class F>
 void for_each_image(const View& view, F&& f) {
@@ -77,49 +71,190 @@ class ImagesOnDevice {
   bool stay_;
 };
 
-void check_step(const Method& method, const StepStats& stats, const fs::path& checkpoint) {
-  if (std::isfinite(stats.loss)) return;
-  const std::string where = fmt::format(
-      "training stopped at iteration {}; the last good state is in {}",
-      stats.iteration,
-      checkpoint.string()
-  );
-  try {
-    method.check_finite();
-  } catch (const Error& culprit) {
-    throw Error(ExitCode::kBadPrediction, fmt::format("{}: {}", where, culprit.what()));
+// Lines of the log from this iteration on will be written again.
+void cut_log(const fs::path& file, int iteration) {
+  if (!fs::exists(file)) return;
+  std::istringstream log(read_file(file));
+  std::string kept;
+  for (std::string line; std::getline(log, line);) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (json.is_object() && json.value("iteration", iteration) < iteration) kept += line + "\n";
   }
-  for (const auto& [name, value] : stats.terms)
-    GLINT_CHECK(std::isfinite(value), kBadPrediction, "{}: loss term {} is {}", where, name, value);
-  throw Error(ExitCode::kBadPrediction, fmt::format("{}: the loss is {}", where, stats.loss));
+  write_file(file, kept);
 }
 
-// Written beside the last one and put in its place: whatever fails half-way, one is whole.
-void save_checkpoint(const Method& method, const fs::path& checkpoint) {
-  fs::path fresh = checkpoint;
-  fresh += ".tmp";
-  method.check_finite();
-  fs::remove_all(fresh);
-  method.save(fresh.string());
-  fs::remove_all(checkpoint);
-  fs::rename(fresh, checkpoint);
-}
+class Training {
+ public:
+  Training(Method& method, const Scene& scene, const TrainOptions& options)
+      : method_(method),
+        scene_(scene),
+        options_(options),
+        checkpoint_(options.folder / kCheckpointFile),
+        log_(options.folder / "log.jsonl"),
+        on_disk_(!options.folder.empty()) {}
 
-// `step()`; where the device is lost, the error also says what is left of the run.
-template <class F>
-auto on_device(int iteration, const fs::path& checkpoint, F&& step) {
-  try {
-    return step();
-  } catch (const DeviceLost& lost) {
-    throw DeviceLost(fmt::format(
-        "training stopped at iteration {}, {}: {}",
-        iteration,
-        fs::exists(checkpoint) ? "the last checkpoint is in " + checkpoint.string()
-                               : "before the first checkpoint",
-        lost.what()
-    ));
+  TrainReport run() {
+    begin();
+    Progress progress(options_.title, static_cast<std::size_t>(options_.run.iterations));
+    progress.advance(static_cast<std::size_t>(done_.iterations));
+    const ImagesOnDevice images(scene_);
+    for (int i = done_.iterations; i < options_.run.iterations; ++i) {
+      if (is_interrupted()) stop();
+      take_step(i, images);
+      progress.advance(1, progress_text());
+    }
+    method_.check_finite();
+    return report();
   }
-}
+
+ private:
+  // What is left of the run when it fails.
+  std::string where() const {
+    if (!on_disk_) return "nothing was to be kept";
+    if (!fs::exists(checkpoint_)) return "before the first checkpoint";
+    return "the last checkpoint is " + checkpoint_.string();
+  }
+  template <class F>
+  auto on_device(int iteration, F&& work) {
+    try {
+      return work();
+    } catch (const DeviceLost& lost) {
+      throw DeviceLost(
+          fmt::format("training stopped at iteration {}, {}: {}", iteration, where(), lost.what())
+      );
+    }
+  }
+
+  void begin() {
+    if (on_disk_) remove_stale_temporaries(checkpoint_);
+    method_.initialize(scene_, options_.run);
+    for (const std::string& warning : method_.warnings()) log::warn(warning);
+    if (on_disk_ && is_checkpoint_of(checkpoint_, options_.identity)) resume();
+    last_checkpoint_ = Clock::now();
+  }
+
+  void resume() {
+    try {
+      read_checkpoint(checkpoint_, method_, done_);
+      log::info(fmt::format("{}: goes on at iteration {}", options_.title, done_.iterations));
+    } catch (const Error& error) {
+      log::warn(fmt::format("{}; starting anew", error.what()));
+      done_ = {};
+      method_.initialize(scene_, options_.run);
+    }
+    cut_log(log_, done_.iterations);
+  }
+
+  // Of these the host looks at what a step computed.
+  bool is_logged(int i) const {
+    return (i + 1) % options_.log_interval == 0 || i + 1 == options_.run.iterations;
+  }
+  bool is_told(int i) const { return !on_gpu() || is_logged(i) || i % kToldInterval == 0; }
+
+  void take_step(int i, const ImagesOnDevice& images) {
+    const auto start = Clock::now();
+    const StepStats stats = on_device(i, [&] {
+      const SilentStep silent(!is_told(i));
+      RecordedStep recorded;
+      StepStats result = method_.step(i);
+      end_silent_step();
+      recorded.end();
+      images.end_step();
+      return result;
+    });
+    done_.seconds += seconds_since(start);
+    done_.iterations = i + 1;
+    for (const std::string& event : stats.events) note(i, event);
+    if (!is_told(i)) return;
+    check(stats);
+    last_ = stats;
+    if (const std::size_t count = take_void_steps(); count > 0)
+      note(i, fmt::format("{} steps were left out: no room for their pairs yet", count));
+    if (on_disk_ && is_logged(i)) append_log(stats);
+    if (on_disk_ && checkpoint_is_due()) save();
+  }
+
+  void note(int iteration, const std::string& event) {
+    events_.push_back({{"iteration", iteration}, {"text", event}});
+  }
+  void append_log(const StepStats& stats) {
+    Json line = log_line(stats, done_);
+    if (!events_.empty()) line["events"] = std::exchange(events_, Json::array());
+    append_line(log_, line.dump());
+  }
+  std::string progress_text() const {
+    return fmt::format(
+        "loss {:.4f}  psnr {:.2f}  {} surfels", last_.loss, last_.psnr, last_.num_surfels
+    );
+  }
+
+  // No more than a fiftieth of the time goes into checkpoints.
+  bool checkpoint_is_due() const {
+    if (!resumable_) return false;
+    if (options_.checkpoint_seconds == 0) return true;
+    return seconds_since(last_checkpoint_) >=
+           std::max(options_.checkpoint_seconds, 50 * last_saving_seconds_);
+  }
+  // The last good one stays where there is no room for a new one.
+  void save() {
+    const auto start = Clock::now();
+    method_.check_finite();
+    done_.peak_memory_mb = std::max(done_.peak_memory_mb, peak_memory_mb());
+    on_device(done_.iterations, [&] {
+      try {
+        resumable_ = write_checkpoint(checkpoint_, options_.identity, method_, done_);
+      } catch (const DeviceLost&) {
+        throw;
+      } catch (const Error& error) {
+        log::warn(fmt::format("no checkpoint: {}", error.what()));
+      }
+    });
+    last_saving_seconds_ = seconds_since(start);
+    done_.saving_seconds += last_saving_seconds_;
+    last_checkpoint_ = Clock::now();
+  }
+  [[noreturn]] void stop() {
+    if (on_disk_ && resumable_) save();
+    throw Interrupted();
+  }
+
+  void check(const StepStats& stats) const {
+    if (std::isfinite(stats.loss)) return;
+    const std::string stopped =
+        fmt::format("training stopped at iteration {}, {}", stats.iteration, where());
+    try {
+      method_.check_finite();
+    } catch (const Error& culprit) {
+      throw Error(ExitCode::kBadPrediction, fmt::format("{}: {}", stopped, culprit.what()));
+    }
+    for (const auto& [name, value] : stats.terms)
+      GLINT_CHECK(
+          std::isfinite(value), kBadPrediction, "{}: loss term {} is {}", stopped, name, value
+      );
+    throw Error(ExitCode::kBadPrediction, fmt::format("{}: the loss is {}", stopped, stats.loss));
+  }
+  TrainReport report() const {
+    TrainReport report;
+    report.iterations = done_.iterations;
+    report.seconds = done_.seconds;
+    report.saving_seconds = done_.saving_seconds;
+    report.peak_memory_mb = std::max(done_.peak_memory_mb, peak_memory_mb());
+    report.num_surfels = method_.num_surfels();
+    report.last = last_;
+    return report;
+  }
+
+  Method& method_;
+  const Scene& scene_;
+  const TrainOptions& options_;
+  fs::path checkpoint_, log_;
+  bool on_disk_, resumable_ = true;
+  TrainingProgress done_;
+  StepStats last_;               // that the host was told
+  Json events_ = Json::array();  // since the last line of the log
+  Clock::time_point last_checkpoint_;
+  double last_saving_seconds_ = 0;
+};
 
 }  // namespace
 
@@ -146,60 +281,7 @@ std::size_t ViewSampler::next() {
 
 TrainReport train(Method& method, const Scene& scene, const TrainOptions& options) {
   GLINT_CHECK(!scene.train.empty(), kBadReference, "{}: no training views", scene.name);
-  const fs::path checkpoint = options.folder / "checkpoint";
-  const bool on_disk = !options.folder.empty();
-  method.initialize(scene, options.run);
-  for (const std::string& warning : method.warnings()) log::warn(warning);
-  Progress progress(options.title, static_cast<std::size_t>(options.run.iterations));
-  const ImagesOnDevice images(scene);
-  TrainReport report;
-  Json events = Json::array();  // since the last line of the log
-  for (int i = 0; i < options.run.iterations; ++i) {
-    throw_if_interrupted();
-    const bool due = (i + 1) % options.log_interval == 0 || i + 1 == options.run.iterations;
-    const bool told = !on_gpu() || due || i % kToldInterval == 0;
-    const auto start = Clock::now();
-    const StepStats stats = on_device(i, checkpoint, [&] {
-      const SilentStep silent(!told);
-      RecordedStep recorded;
-      StepStats result = method.step(i);
-      end_silent_step();
-      recorded.end();
-      images.end_step();
-      return result;
-    });
-    report.seconds += seconds_since(start);
-    report.iterations = i + 1;
-    if (told) {
-      check_step(method, stats, checkpoint);
-      report.last = stats;
-      note_void_steps(i, events);
-    }
-    progress.advance(
-        1,
-        fmt::format(
-            "loss {:.4f}  psnr {:.2f}  {} surfels",
-            report.last.loss,
-            report.last.psnr,
-            report.last.num_surfels
-        )
-    );
-    for (const std::string& event : stats.events)
-      events.push_back({{"iteration", i}, {"text", event}});
-    if (on_disk && due) {
-      Json line = log_line(stats, report);
-      if (!events.empty()) line["events"] = std::exchange(events, Json::array());
-      append_line(options.folder / "log.jsonl", line.dump());
-    }
-    if (on_disk && (i + 1) % options.save_interval == 0) {
-      const auto save = Clock::now();
-      on_device(i, checkpoint, [&] { save_checkpoint(method, checkpoint); });
-      report.saving_seconds += seconds_since(save);
-    }
-  }
-  method.check_finite();
-  report.num_surfels = method.num_surfels();
-  return report;
+  return Training(method, scene, options).run();
 }
 
 }  // namespace glint

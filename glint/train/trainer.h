@@ -12,24 +12,27 @@ namespace glint {
 
 struct TrainOptions {
   RunOptions run;
-  fs::path folder;              // log.jsonl and checkpoint/ go here; empty: neither
-  int log_interval = 100;       // iterations between lines of log.jsonl
-  int save_interval = 1000;     // iterations between checkpoints of the last good state
-  std::string title = "train";  // of the progress line
+  fs::path folder;                  // log.jsonl and the checkpoint go here; empty: neither
+  int log_interval = 100;           // iterations between lines of log.jsonl
+  double checkpoint_seconds = 300;  // between checkpoints, at least; 0: one after every step
+  std::string identity;             // of the run: only its own checkpoint is gone on from
+  std::string title = "train";      // of the progress line
 };
 
 struct TrainReport {
   int iterations = 0;
   double seconds = 0;         // of steps only: no loading, logging or saving
-  double saving_seconds = 0;  // of checkpoints
+  double saving_seconds = 0;  // of checkpoints: at most 2 % of the time
+  double peak_memory_mb = 0;
   std::size_t num_surfels = 0;
   StepStats last;
 };
 
-// Initialises and trains. Errors: what the method throws; kBadPrediction when the loss or a
-// parameter stops being finite (names the term or parameter and the iteration; the last good state
-// is in folder/checkpoint); DeviceLost, which says where the last checkpoint is; Interrupted before
-// the next step after Ctrl-C.
+// Initialises and trains, or goes on from the folder's checkpoint (checkpoint.h), which it leaves
+// there. One that cannot be written is a warning, one that cannot be read, too. Errors: what the
+// method throws; kBadPrediction when the loss or a parameter stops being finite (names the term or
+// parameter and the iteration, and where the last checkpoint is); DeviceLost, likewise; Interrupted
+// before the next step after a signal, with a new checkpoint.
 TrainReport train(Method& method, const Scene& scene, const TrainOptions& options);
 
 // Random order of the training views without replacement, reshuffled when all were seen.
@@ -38,6 +41,12 @@ class ViewSampler {
   ViewSampler() = default;
   ViewSampler(std::size_t num_views, std::uint64_t seed);
   std::size_t next();
+
+  template <class State>
+  void visit_state(State& state) {
+    state("epoch", epoch_);
+    state("remaining", remaining_);
+  }
 
  private:
   std::size_t num_views_ = 0;

@@ -60,6 +60,8 @@ RunSpec spec_of(
   spec.max_pixels = cell.source.max_pixels;
   spec.dataset_hash = loaded.scene.spec_hash;
   spec.train_document = stages[Stage::kTrain].document;
+  spec.checkpoint_seconds = options.checkpoint_seconds;
+  spec.anew = options.force;
   return spec;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/run_stage.h"
 
+#include "glint/train/checkpoint.h"
+
 namespace glint {
 namespace {
 
@@ -13,7 +15,7 @@ std::vector<std::string> outputs_of(const fs::path& run, Stage stage) {
   for (const auto& entry : fs::directory_iterator(run)) {
     const std::string name = entry.path().filename().string();
     if (entry.is_regular_file() && name != "log.jsonl" && name != "config.json" &&
-        name != "env.json")
+        name != "env.json" && name != kCheckpointFile)
       trained.push_back(name);
   }
   return trained;

@@ -14,6 +14,7 @@ struct RunnerOptions {
   std::vector<std::string> assignments;  // of --set
   fs::path out;                          // the profile's folder: records.jsonl, runs/, tables/
   bool force = false;                    // run finished cells again, training included
+  double checkpoint_seconds = 300;       // between checkpoints of a training
   SceneIdentifier identify;
   SceneLoader load;
 };

@@ -14,9 +14,9 @@ struct TimingOptions {
   int frames = 50, warmup = 5;
 };
 
-// Trains from scratch into spec.folder: config.json, log.jsonl, the method's files, then env.json
-// with seconds and peak memory. Errors: whatever the method throws; kBadPrediction when a loss or
-// parameter is not finite (the last good state is in checkpoint/); Interrupted.
+// Trains into spec.folder, from scratch or from where an earlier training of the same document was
+// stopped: config.json, log.jsonl, checkpoints, the method's files, then env.json with seconds and
+// peak memory. Errors: trainer.h's; clear_run_folder()'s.
 std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene);
 
 // The trained method of a run folder. Errors (kBadPrediction): not trained, files damaged.

@@ -23,7 +23,10 @@ struct RunSpec {
   std::string dataset, scene;  // names
   double max_pixels = 0;
   std::string dataset_hash;  // as the loader knows the data
-  Json train_document;       // what the training goes by (stage_documents.h); not in config.json
+  // Not in config.json:
+  Json train_document;              // what the training goes by (stage_documents.h)
+  double checkpoint_seconds = 300;  // between checkpoints, at least
+  bool anew = false;                // an unfinished training does not go on
 };
 
 fs::path run_folder(const fs::path& out, const CellKey& cell);

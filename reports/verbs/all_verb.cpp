@@ -43,6 +43,7 @@ int run_all(const CommonOptions& common, bool force) {
   options.assignments = common.set;
   options.out = common.own_folder(options.profile);
   options.force = force;
+  options.checkpoint_seconds = common.checkpoint_seconds;
   options.identify = common.scene_identifier();
   options.load = common.scene_loader();
   const RunSummary summary = run_profile(options);

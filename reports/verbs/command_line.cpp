@@ -64,6 +64,10 @@ void add_training_options(const CommonOptionAdder& add, CommonOptions& common) {
   const char* set =
       "config field: name=value or method.name=value (`glint-bench methods ID` lists them)";
   add.option(kSetOption, "--set", common.set, set);
+  const char* checkpoint = "seconds between checkpoints, from which a stopped training goes on";
+  add.option(kCheckpointOption, "--checkpoint-seconds", common.checkpoint_seconds, checkpoint)
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
 }
 
 void add_machine_options(const CommonOptionAdder& add, CommonOptions& common) {

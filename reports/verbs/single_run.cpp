@@ -5,7 +5,9 @@
 
 #include "datasets/dataset.h"
 #include "glint/core/progress.h"
+#include "glint/train/checkpoint.h"
 #include "reports/bench/stage_documents.h"
+#include "reports/records/stage_files.h"
 
 namespace glint {
 
@@ -19,9 +21,11 @@ Scene load_dataset(const fs::path& folder, double max_pixels) {
   return with_exit_code(ExitCode::kBadReference, [&] { return load_scene(folder, options); });
 }
 
-void check_new_run(const fs::path& folder, bool force) {
+// `identity`: of a training that may go on there.
+void check_new_run(const fs::path& folder, bool force, const std::string& identity) {
+  const bool goes_on = is_checkpoint_of(folder / kCheckpointFile, identity);
   GLINT_CHECK(
-      force || !fs::exists(folder / "config.json"),
+      force || goes_on || !fs::exists(folder / "config.json"),
       kUsage,
       "{}: holds a run already; --force trains it again, --run names another folder",
       folder.string()
@@ -32,7 +36,6 @@ void check_new_run(const fs::path& folder, bool force) {
 
 SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& options) {
   find_method(options.method);
-  if (!options.run.empty()) check_new_run(options.run, options.force);
   SingleRun single;
   RunSpec& spec = single.spec;
   spec.method = options.method;
@@ -56,7 +59,9 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
                                           {spec.scene, spec.method, spec.options.seed}
                                       )
                                     : fs::path(options.run);
-  check_new_run(spec.folder, options.force);
+  spec.checkpoint_seconds = common.checkpoint_seconds;
+  spec.anew = options.force;
+  check_new_run(spec.folder, options.force, stage_key(spec.train_document));
   return single;
 }
 

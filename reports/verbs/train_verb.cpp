@@ -31,7 +31,7 @@ int run_train(
           "{}: {} surfels in {}\n", folder, method->num_surfels(), format_duration(cost.seconds)
       ));
   } catch (const Interrupted&) {
-    log::warn("interrupted: " + folder + " is not complete");
+    log::warn("interrupted: " + folder + " is not complete; the same command goes on");
     return kInterruptedExit;
   }
   log::info(fmt::format(
@@ -50,7 +50,8 @@ void add_train_verb(CommandLine& line) {
       "train",
       "train one method on one dataset",
       [=, &line] { return run_train(line.common, *options, *transmission); },
-      kWorkOptions | kOutOption | kDataOption | kSeedOption | kIterationsOption | kSetOption
+      kWorkOptions | kOutOption | kDataOption | kSeedOption | kIterationsOption | kSetOption |
+          kCheckpointOption
   );
   verb->add_option("--dataset", options->dataset, "dataset folder or packed scene")->required();
   verb->add_option("--method", options->method, "method id")->capture_default_str();

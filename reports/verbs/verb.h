@@ -30,7 +30,8 @@ enum CommonOption : unsigned {
   kThreadsOption = 1u << 8,
   kJsonOption = 1u << 9,
   kQuietOption = 1u << 10,
-  kDeviceMatters = 1u << 11,  // says why it runs on the CPU where --device is auto
+  kDeviceMatters = 1u << 11,     // says why it runs on the CPU where --device is auto
+  kCheckpointOption = 1u << 12,  // verbs that train
   // The cells of a profile, as `all` runs them.
   kPlanOptions = kOutOption | kDataOption | kProfileOption | kCellOptions | kSeedOption |
                  kIterationsOption | kSetOption | kDeviceOption | kJsonOption | kQuietOption,
@@ -38,7 +39,7 @@ enum CommonOption : unsigned {
   kWorkOptions = kDeviceOption | kDeviceMatters | kThreadsOption | kJsonOption | kQuietOption,
   // What reads a profile's folder.
   kFolderOptions = kOutOption | kProfileOption | kCellOptions | kJsonOption | kQuietOption,
-  kAllOptions = kPlanOptions | kWorkOptions
+  kAllOptions = kPlanOptions | kWorkOptions | kCheckpointOption
 };
 // Sets of them.
 constexpr CommonOption operator|(CommonOption a, CommonOption b) {
@@ -54,6 +55,7 @@ struct CommonOptions {
   int iterations = 0;  // 0: as the profile says
   std::string device = "auto";
   int threads = 0;  // 0: all cores
+  double checkpoint_seconds = 300;
   bool json = false, quiet = false;
 
   fs::path own_folder(const Profile& p) const { return own_profile_folder(out, p.name); }

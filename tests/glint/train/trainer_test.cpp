@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/trainer.h"
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 
 #include <limits>
+#include <numeric>
 #include <set>
 #include <sstream>
 
 #include "glint/core/device_lost.h"
 #include "glint/core/progress.h"
+#include "glint/train/checkpoint.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -23,6 +27,7 @@ class Exploding : public Method {
   StepStats step(int iteration) override {
     StepStats stats;
     stats.iteration = iteration;
+    steps.push_back(iteration);
     stats.loss = iteration == at_ ? std::numeric_limits<double>::quiet_NaN() : 1.0;
     stats.terms["sharpness"] = stats.loss;
     if (iteration == 3) stats.events.emplace_back("opacities reset");
@@ -36,12 +41,17 @@ class Exploding : public Method {
   Json config() const override { return Json::object(); }
   void check_finite() const override {}
   std::size_t num_surfels() const override { return 1; }
+  bool visit_state(TrainingState& state) override {
+    state("steps", steps);
+    return true;
+  }
+  std::vector<int> steps;  // that it made
 
  private:
   int at_;
 };
 
-// One whose device is lost in a step, or in the middle of the n-th save.
+// One whose device is lost in a step, or in the middle of the n-th checkpoint.
 class Losing final : public Exploding {
  public:
   Losing(int in_step, int in_save) : Exploding(-1), in_step_(in_step), in_save_(in_save) {}
@@ -49,15 +59,29 @@ class Losing final : public Exploding {
     if (iteration == in_step_) throw DeviceLost("gone");
     return Exploding::step(iteration);
   }
-  void save(const std::string& folder) const override {
-    write_file(fs::path(folder) / "state", fmt::format("of save {}", ++saves_));
-    if (saves_ == in_save_) throw DeviceLost("gone");
+  bool visit_state(TrainingState& state) override {
+    if (!state.reading() && ++saves_ == in_save_) throw DeviceLost("gone");
+    return Exploding::visit_state(state);
   }
 
  private:
   int in_step_, in_save_;
-  mutable int saves_ = 0;
+  int saves_ = 0;
 };
+
+// Steps that are in the folder's checkpoint.
+std::vector<int> steps_in(const fs::path& folder) {
+  Exploding method(-1);
+  TrainingProgress progress;
+  read_checkpoint(folder / kCheckpointFile, method, progress);
+  CHECK(progress.iterations == static_cast<int>(method.steps.size()));
+  return method.steps;
+}
+std::vector<int> count_to(int end) {
+  std::vector<int> numbers(static_cast<std::size_t>(end));
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
 
 Scene one_view() {
   Scene scene;
@@ -78,7 +102,7 @@ TEST_CASE(
   TrainOptions options;
   options.run.iterations = 100;
   options.folder = folder;
-  options.save_interval = 10;
+  options.checkpoint_seconds = 0;
   try {
     train(method, one_view(), options);
     FAIL("training went on");
@@ -87,7 +111,7 @@ TEST_CASE(
     CHECK(std::string(error.what()).find("iteration 25") != std::string::npos);
     CHECK(std::string(error.what()).find("sharpness") != std::string::npos);
   }
-  CHECK(read_file(folder / "checkpoint" / "state") == "good");
+  CHECK(steps_in(folder) == count_to(25));
 }
 
 TEST_CASE("A device that is lost ends training with the last checkpoint kept whole") {
@@ -97,7 +121,7 @@ TEST_CASE("A device that is lost ends training with the last checkpoint kept who
   TrainOptions options;
   options.run.iterations = 100;
   options.folder = folder;
-  options.save_interval = 10;
+  options.checkpoint_seconds = 0;
   const auto message_of = [&](int in_step, int in_save) {
     Losing method(in_step, in_save);
     return test::error_of(ExitCode::kEnvironment, [&] {
@@ -110,12 +134,13 @@ TEST_CASE("A device that is lost ends training with the last checkpoint kept who
       }
     });
   };
-  CHECK_THAT(message_of(5, -1), Catch::Contains("iteration 5, before the first checkpoint: gone"));
-  CHECK_THAT(message_of(25, -1), Catch::Contains("iteration 25, the last checkpoint is in "));
-  CHECK(read_file(folder / "checkpoint" / "state") == "of save 2");
+  CHECK_THAT(message_of(0, -1), Catch::Contains("iteration 0, before the first checkpoint: gone"));
+  CHECK_THAT(message_of(25, -1), Catch::Contains("iteration 25, the last checkpoint is "));
+  CHECK(steps_in(folder) == count_to(25));
+  fs::remove(folder / kCheckpointFile);
   // Lost while a checkpoint is written: the one before is there.
-  CHECK_THAT(message_of(-1, 3), Catch::Contains("iteration 29, the last checkpoint is in "));
-  CHECK(read_file(folder / "checkpoint" / "state") == "of save 2");
+  CHECK_THAT(message_of(-1, 3), Catch::Contains("iteration 3, the last checkpoint is "));
+  CHECK(steps_in(folder) == count_to(2));
 }
 
 TEST_CASE("Events between two lines of the log stand in the second, with their iteration") {
@@ -160,4 +185,100 @@ TEST_CASE("Published schedules scale with the run's iterations") {
   CHECK(scaled_step(7000, 30000) == 7000);
   CHECK(scaled_step(7000, 3000) == 700);
   CHECK(scaled_step(100, 3000, 50) == 50);
+}
+
+TEST_CASE("A training goes on from the checkpoint of its own run, its log without gaps or repeats"
+) {
+  set_quiet(true);
+  const test::TempFolder temporary;
+  TrainOptions options;
+  options.run.iterations = 40;
+  options.folder = temporary.path();
+  options.log_interval = 4;
+  options.checkpoint_seconds = 0;
+  options.identity = "this run";
+  Losing first(25, -1);
+  CHECK_THROWS_AS(train(first, one_view(), options), DeviceLost);
+  const auto log = [&] {
+    std::istringstream in(read_file(options.folder / "log.jsonl"));
+    std::vector<int> iterations;
+    for (std::string line; std::getline(in, line);)
+      iterations.push_back(Json::parse(line).at("iteration").get<int>());
+    return iterations;
+  };
+  CHECK(log() == std::vector<int>{3, 7, 11, 15, 19, 23});
+  // As if it had been killed between the log and the checkpoint.
+  append_line(options.folder / "log.jsonl", R"({"iteration": 27})");
+  append_line(options.folder / "log.jsonl", "torn");
+  SECTION("the same run") {
+    Exploding second(-1);
+    const TrainReport report = train(second, one_view(), options);
+    CHECK(report.iterations == 40);
+    CHECK(second.steps == count_to(40));
+    CHECK(log() == std::vector<int>{3, 7, 11, 15, 19, 23, 27, 31, 35, 39});
+  }
+  SECTION("another run starts anew") {
+    options.identity = "another";
+    Exploding second(-1);
+    train(second, one_view(), options);
+    CHECK(second.steps == count_to(40));
+  }
+  SECTION("a damaged one starts anew") {
+    std::string bytes = read_file(options.folder / kCheckpointFile);
+    write_file(options.folder / kCheckpointFile, bytes.substr(0, bytes.size() - 4));
+    Exploding second(-1);
+    CHECK(train(second, one_view(), options).iterations == 40);
+  }
+  SECTION("one of another method starts anew") {
+    struct Other final : Exploding {
+      Other() : Exploding(-1) {}
+      bool visit_state(TrainingState& state) override {
+        int more = 0;
+        state("more", more);
+        return Exploding::visit_state(state);
+      }
+    } second;
+    CHECK(train(second, one_view(), options).iterations == 40);
+    CHECK(second.steps == count_to(40));
+  }
+}
+
+TEST_CASE("Without room for a checkpoint training goes on and the last good one stays") {
+  set_quiet(true);
+  const test::TempFolder temporary;
+  TrainOptions options;
+  options.run.iterations = 3;
+  options.folder = temporary.path();
+  options.checkpoint_seconds = 0;
+  Exploding first(-1);
+  train(first, one_view(), options);
+  struct Full final : Exploding {
+    Full() : Exploding(-1) {}
+    bool visit_state(TrainingState& state) override {
+      if (!state.reading()) throw Error(ExitCode::kEnvironment, "no space left on device");
+      return Exploding::visit_state(state);
+    }
+  } second;
+  options.run.iterations = 6;
+  train(second, one_view(), options);
+  CHECK(second.steps == count_to(6));
+  CHECK(steps_in(options.folder) == count_to(3));
+}
+
+TEST_CASE("Temporaries of processes that are no more go, others stay") {
+  const test::TempFolder folder;
+  const fs::path file = folder.path() / "checkpoint.safetensors";
+  const auto left = [&](const std::string& name) { return fs::exists(folder.path() / name); };
+  const std::string mine = fmt::format(".checkpoint.{}.safetensors", ::getpid());
+  for (const std::string& name :
+       {std::string("checkpoint.safetensors"),  // by way of the name of mine
+        mine,
+        std::string(".checkpoint.999999999.safetensors"),
+        std::string(".checkpoint.notes.safetensors")})
+    write_file(folder.path() / name, "x");
+  remove_stale_temporaries(file);
+  CHECK(left(mine));
+  CHECK(!left(".checkpoint.999999999.safetensors"));
+  CHECK(left(".checkpoint.notes.safetensors"));
+  CHECK(left("checkpoint.safetensors"));
 }
