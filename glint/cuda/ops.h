@@ -125,6 +125,13 @@ inline DeviceTraceGradients device_gradients(TraceGradient& g) {
       .origins = g.rays.origins.on_device(),
       .directions = g.rays.directions.on_device()};
 }
+inline DiscRevision revision_of(const TraceInput& in) {
+  return {
+      in.means.device_revision(),
+      in.scales.device_revision(),
+      in.rotations.device_revision(),
+      in.opacities.device_revision()};
+}
 inline TraceCutoffs cutoffs(const TraceSettings& s) {
   return {s.near, s.max_rho, s.min_alpha, s.min_transmittance, s.max_hits};
 }
@@ -136,6 +143,7 @@ inline DeviceTraceCall device_call(const TraceCall& call, TraceOutput& output) {
       .cutoffs = cutoffs(call.settings),
       .out = device_output(output),
       .width = static_cast<std::size_t>(call.rays.origins.width()),
+      .revision = revision_of(call.input),
       .overflow = void_word()};
 }
 

@@ -17,6 +17,13 @@ inline bool same(const DeviceTraceInput& a, const DeviceTraceInput& b) {
          a.rotations == b.rotations && a.opacities == b.opacities;
 }
 
+// Of the arrays that discs are made of (Array::device_revision()); 0: not known.
+struct DiscRevision {
+  std::uint64_t means = 0, scales = 0, rotations = 0, opacities = 0;
+  bool known() const { return means != 0 && scales != 0 && rotations != 0 && opacities != 0; }
+  friend bool operator==(const DiscRevision&, const DiscRevision&) = default;
+};
+
 template <class Exec>
 class TraceTree {
  public:
@@ -25,10 +32,12 @@ class TraceTree {
 
   explicit TraceTree(Exec& exec) : exec_(exec) {}
 
-  // revision: another number when the surfels are others or have moved; 0: not known.
-  void update(const DeviceTraceInput& input, const TraceCutoffs& cutoffs, std::uint64_t revision) {
-    const bool moved =
-        revision == 0 || revision != revision_ || !same(input, input_) || !same(cutoffs, cutoffs_);
+  // Where the revision is known and that of the call before, nothing has moved.
+  void update(
+      const DeviceTraceInput& input, const TraceCutoffs& cutoffs, const DiscRevision& revision
+  ) {
+    const bool moved = !revision.known() || revision != revision_ || !same(input, input_) ||
+                       !same(cutoffs, cutoffs_);
     input_ = input;
     cutoffs_ = cutoffs;
     revision_ = revision;
@@ -74,7 +83,7 @@ class TraceTree {
   Exec& exec_;
   DeviceTraceInput input_{};
   TraceCutoffs cutoffs_{};
-  std::uint64_t revision_ = 0;
+  DiscRevision revision_;
   int updates_ = 0;
   Buffer<Box> partial_bounds_, bounds_;
   Buffer<std::uint64_t> keys_;

@@ -43,7 +43,7 @@ void visit(const Tree& tree, std::uint32_t index, const Box& bounds, std::vector
 void check_tree(const TraceArrays& arrays) {
   HostExec exec;
   TraceTree<HostExec> owner(exec);
-  owner.update(device_input(arrays.view()), kCutoffs, 0);
+  owner.update(device_input(arrays.view()), kCutoffs, {});
   const Tree tree = owner.tree();
   const OpenMemory open(OpenMemory::kBoth);
   const std::size_t n = arrays.surfels.count();
@@ -100,7 +100,7 @@ TEST_CASE("A walk whose stack is full finds the same hits") {
   const Rays rays = random_rays({8, 8}, rng);
   HostExec exec;
   TraceTree<HostExec> owner(exec);
-  owner.update(device_input(arrays.view()), kCutoffs, 0);
+  owner.update(device_input(arrays.view()), kCutoffs, {});
   const Tree tree = owner.tree();
   const OpenMemory open(OpenMemory::kBoth);
   using List = NearestList<16>;
