@@ -63,13 +63,14 @@ class HostExec {
     std::partial_sum(counts.data(), counts.data() + count, sums.data() + 1);
   }
   // Stable, by the low `bits` bits of the keys.
-  void sort_pairs(
-      std::size_t count, int bits, Buffer<std::uint64_t>& keys, Buffer<std::uint32_t>& values
-  ) {
+  template <class Key>
+  void sort_pairs(std::size_t count, int bits, Buffer<Key>& keys, Buffer<std::uint32_t>& values) {
     ++device_counters.launches;
     const OpenMemory open(OpenMemory::kBoth);
-    const std::uint64_t mask = bits < 64 ? (std::uint64_t{1} << bits) - 1 : ~std::uint64_t{0};
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> pairs(count);
+    constexpr int kBits = 8 * sizeof(Key);
+    const Key mask =
+        bits < kBits ? static_cast<Key>((Key{1} << bits) - 1) : static_cast<Key>(~Key{0});
+    std::vector<std::pair<Key, std::uint32_t>> pairs(count);
     for (std::size_t i = 0; i < count; ++i) pairs[i] = {keys.data()[i], values.data()[i]};
     std::stable_sort(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
       return (a.first & mask) < (b.first & mask);
