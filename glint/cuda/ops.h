@@ -47,6 +47,14 @@ inline DeviceGradients device_gradients(RasterGradient& g) {
       .screen = g.screen.on_device(),
       .screen_abs = g.screen_abs.on_device()};
 }
+// Of a RasterInput or a TraceInput.
+inline GeometryRevision revision_of(const auto& in) {
+  return {
+      in.means.device_revision(),
+      in.scales.device_revision(),
+      in.rotations.device_revision(),
+      in.opacities.device_revision()};
+}
 inline DeviceRasterCall device_call(const RasterCall& call, RasterOutput& output) {
   return {
       .surfels = device_surfels(call.input),
@@ -60,14 +68,18 @@ inline DeviceRasterCall device_call(const RasterCall& call, RasterOutput& output
            .in_view = output.in_view.on_device(),
            .owned_pixels = output.owned_pixels.on_device(),
            .radii = output.radii.on_device()},
+      .revision = revision_of(call.input),
       .overflow = void_word()};
 }
 
 template <class Exec>
 class RasterizerOn final : public RasterBackend {
  public:
-  void forward(const RasterCall& call, RasterOutput& output) override {
-    pipeline_.forward(device_call(call, output));
+  void forward(const RasterCall& call, RasterOutput& output, RasterBackend* first) override {
+    pipeline_.forward(
+        device_call(call, output),
+        first != nullptr ? &static_cast<RasterizerOn*>(first)->pipeline_ : nullptr
+    );
   }
   void backward(
       const RasterCall&,
@@ -124,13 +136,6 @@ inline DeviceTraceGradients device_gradients(TraceGradient& g) {
       .half_depths = g.half_depths.on_device(),
       .origins = g.rays.origins.on_device(),
       .directions = g.rays.directions.on_device()};
-}
-inline DiscRevision revision_of(const TraceInput& in) {
-  return {
-      in.means.device_revision(),
-      in.scales.device_revision(),
-      in.rotations.device_revision(),
-      in.opacities.device_revision()};
 }
 inline TraceCutoffs cutoffs(const TraceSettings& s) {
   return {s.near, s.max_rho, s.min_alpha, s.min_transmittance, s.max_hits};

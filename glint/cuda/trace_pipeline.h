@@ -19,8 +19,8 @@ struct DeviceTraceCall {
   std::size_t num_rays;
   TraceCutoffs cutoffs;
   DeviceTraceOutput out;
-  std::size_t width = 0;       // of the image that rays are, or 0
-  DiscRevision revision = {};  // where known, and as in the call before, the tree stays
+  std::size_t width = 0;           // of the image that rays are, or 0
+  GeometryRevision revision = {};  // where known, and as in the call before, the tree stays
   // A word on the device that becomes 1 where a silent call dropped hits; null: dropped_hits()
   // tells.
   std::uint32_t* overflow = nullptr;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "glint/cuda/geometry_revision.h"
 #include "glint/cuda/trace_walk.h"
 
 namespace glint::gpu {
@@ -17,13 +18,6 @@ inline bool same(const DeviceTraceInput& a, const DeviceTraceInput& b) {
          a.rotations == b.rotations && a.opacities == b.opacities;
 }
 
-// Of the arrays that discs are made of (Array::device_revision()); 0: not known.
-struct DiscRevision {
-  std::uint64_t means = 0, scales = 0, rotations = 0, opacities = 0;
-  bool known() const { return means != 0 && scales != 0 && rotations != 0 && opacities != 0; }
-  friend bool operator==(const DiscRevision&, const DiscRevision&) = default;
-};
-
 template <class Exec>
 class TraceTree {
  public:
@@ -34,7 +28,7 @@ class TraceTree {
 
   // Where the revision is known and that of the call before, nothing has moved.
   void update(
-      const DeviceTraceInput& input, const TraceCutoffs& cutoffs, const DiscRevision& revision
+      const DeviceTraceInput& input, const TraceCutoffs& cutoffs, const GeometryRevision& revision
   ) {
     const bool moved = !revision.known() || revision != revision_ || !same(input, input_) ||
                        !same(cutoffs, cutoffs_);
@@ -83,7 +77,7 @@ class TraceTree {
   Exec& exec_;
   DeviceTraceInput input_{};
   TraceCutoffs cutoffs_{};
-  DiscRevision revision_;
+  GeometryRevision revision_;
   int updates_ = 0;
   Buffer<Box> partial_bounds_, bounds_;
   Buffer<std::uint64_t> keys_;

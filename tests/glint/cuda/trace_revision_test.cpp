@@ -5,6 +5,7 @@
 
 #include "glint/render/glass_transport.h"
 #include "glint/train/trainable_set.h"
+#include "tests/support/count_launches.h"
 #include "tests/support/gpu_backends.h"
 #include "tests/support/random_scene.h"
 
@@ -31,20 +32,6 @@ Rays rays_of_camera() {
   camera_rays(look_at({0, -3, 0.5}, {0, 0, 0}, {0, 0, 1}, kSize, 60), rays);
   return rays;
 }
-
-// Launches of one kernel while this lives.
-class CountedLaunches final : public KernelTrace {
- public:
-  explicit CountedLaunches(const std::type_info& kernel) : kernel_(kernel) { kernel_trace = this; }
-  ~CountedLaunches() override { kernel_trace = nullptr; }
-  void begin(const std::type_info& kernel, void*) override { count += kernel == kernel_; }
-  void end(void*) override {}
-  std::map<std::string, KernelTime> take() override { return {}; }
-  int count = 0;
-
- private:
-  const std::type_info& kernel_;
-};
 
 struct Picture {
   std::vector<float> color, depth;
