@@ -87,7 +87,7 @@ class Glint final : public Method {
     if (phase_.transmission)
       dL_dalpha = transmission_losses_.add_opacity(iteration, model_.transmission_alpha(), stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
-    model_.backward(config_, dL_dimage_, dL_dtransparency_, dL_dalpha, !frozen_, dL_dinterface_);
+    model_.backward(dL_dimage_, dL_dtransparency_, dL_dalpha, !frozen_, dL_dinterface_);
     update(iteration, stats);
     stats.num_surfels = num_surfels();
     return stats;
@@ -201,6 +201,7 @@ class Glint final : public Method {
           interface,
           model_.buffer(),
           model_.transmission,
+          model_.transmission_pass(),
           dL_dtransparency_,
           stats
       );

@@ -47,6 +47,7 @@ const Image& GlintModel::forward(
   interface_output_ = &interface.forward(camera, phase.interface_degree);
   const GlassBuffer& buffer = transport_.read_interface(camera, *interface_output_);
   copy_color(interface_output_->features, layers_.interface);
+  rasterized_ = phase.transmission && config.transmission != "trace";
   if (phase.transmission) render_transmission(camera, config);
   if (phase.reflection)
     copy_color(
@@ -64,7 +65,7 @@ void GlintModel::render_transmission(const Camera& camera, const GlintConfig& co
       kGrain,
       ShiftDepth{buffer().depth.on_device(), config.secondary_near, near_limit_.on_device()}
   );
-  if (config.transmission == "trace") {
+  if (!rasterized_) {
     camera_rays(camera, through_);
     run_kernel(
         pixels,
@@ -83,10 +84,8 @@ void GlintModel::render_transmission(const Camera& camera, const GlintConfig& co
   }
 }
 
-void GlintModel::transmission_vjp(
-    const GlintConfig& config, const Image& dL_dradiance, float dL_dalpha
-) {
-  if (config.transmission == "trace") {
+void GlintModel::transmission_vjp(const Image& dL_dradiance, float dL_dalpha) {
+  if (!rasterized_) {
     copy_color(dL_dradiance, dL_dthrough_.color);
     fill_or_empty(dL_dradiance.size(), dL_dalpha, dL_dthrough_.alpha);
     transmission.trace_backward(dL_dthrough_);
@@ -98,7 +97,6 @@ void GlintModel::transmission_vjp(
 }
 
 void GlintModel::backward(
-    const GlintConfig& config,
     const Image& dL_dimage,
     const Image& dL_dtransparency,
     float dL_dalpha,
@@ -111,7 +109,7 @@ void GlintModel::backward(
     copy_color(dL_dlayers.reflection, dL_dtrace_.color);
     dL_drays = &reflection.trace_backward(dL_dtrace_);
   }
-  if (phase_.transmission) transmission_vjp(config, dL_dlayers.transmission, dL_dalpha);
+  if (phase_.transmission) transmission_vjp(dL_dlayers.transmission, dL_dalpha);
   if (!interface_too) return;
   transport_.interface_vjp(camera_, *interface_output_, dL_drays, dL_dtransparency, dL_dinterface);
   interface.backward(dL_dinterface);
@@ -121,7 +119,9 @@ void GlintModel::backward(
 // layers do not move; where nothing is, the interface's.
 void GlintModel::add_behind_depth(const Camera& camera, MapSet& out) {
   const RasterOutput& behind =
-      transmission.forward(behind_pass_, camera, phase_.transmission_degree, {}, near_limit_);
+      rasterized_
+          ? transmission.pass().rasterizer.output()
+          : transmission.forward(behind_pass_, camera, phase_.transmission_degree, {}, near_limit_);
   add_depth_estimates(behind, out);
   Image& depth = out["behind_depth"] = behind.depth_median;
   for (std::size_t i = 0; i < depth.num_pixels(); ++i)

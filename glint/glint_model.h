@@ -28,7 +28,6 @@ class GlintModel {
   // empty), dL_dalpha that of the transmission set's alpha, the same at every pixel.
   // `interface_too` off: the interface stays as it is.
   void backward(
-      const GlintConfig& config,
       const Image& dL_dimage,
       const Image& dL_dtransparency,
       float dL_dalpha,
@@ -40,13 +39,16 @@ class GlintModel {
   const GlassLayers& layers() const { return layers_; }
   // [H][W][1] of the transmission set behind the interface, where it took part.
   const Image& transmission_alpha() const { return *transmission_alpha_; }
+  // Of the last forward call: what rasterised the transmission set; null: nothing, or it was
+  // traced.
+  RasterPass* transmission_pass() { return rasterized_ ? &transmission.pass() : nullptr; }
 
   // All maps of a view (docs/RECORDS.md).
   MapSet render(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
 
  private:
   void render_transmission(const Camera& camera, const GlintConfig& config);
-  void transmission_vjp(const GlintConfig& config, const Image& dL_dradiance, float dL_dalpha);
+  void transmission_vjp(const Image& dL_dradiance, float dL_dalpha);
   void add_behind_depth(const Camera& camera, MapSet& out);
   void add_components(MapSet& out) const;
 
@@ -55,6 +57,7 @@ class GlintModel {
   GlassTransport transport_;
   const RasterOutput* interface_output_ = nullptr;
   const Image* transmission_alpha_ = nullptr;
+  bool rasterized_ = false;  // the transmission set
   GlassLayers layers_;
   Image near_limit_;
   Rays through_;

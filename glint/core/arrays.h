@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <initializer_list>
 #include <mutex>
 #include <span>
@@ -42,7 +43,8 @@ class OnDevice {
 
 namespace detail {
 inline std::mutex array_mutex;  // several threads of the host may look at an array first
-}
+inline std::atomic<std::uint64_t> last_revision{0};
+}  // namespace detail
 
 // T: copied byte by byte, zero when its bytes are.
 template <class T>
@@ -126,7 +128,7 @@ class Array {
       sides_ = 0;
     } else if (on_gpu() && has(kDevice) && device_.is_current()) {
       grow_on_device(count);
-      sides_ = kDevice;
+      written_on_device();
     } else if (sides_ != 0) {
       host_for_change().resize(count);
     }
@@ -152,7 +154,7 @@ class Array {
       if (on_gpu() && size_ > 0) {
         device_.fit(bytes(), 0);
         device_.fill(size_, value);
-        sides_ = kDevice;
+        written_on_device();
         return;
       }
     }
@@ -172,7 +174,7 @@ class Array {
   T* device_for_writing() {
     if (!on_gpu()) return size_ == 0 ? nullptr : data();
     T* device = to_device();
-    sides_ = kDevice;
+    written_on_device();
     return device;
   }
   // The same where every value will be written: what was there is not brought there.
@@ -180,8 +182,16 @@ class Array {
     if (!on_gpu()) return size_ == 0 ? nullptr : data();
     if (size_ == 0) return nullptr;
     device_.fit(bytes(), 0);
-    sides_ = kDevice;
+    written_on_device();
     return static_cast<T*>(device_.data());
+  }
+  // On a GPU: the same number as before only if nobody has asked for the values for writing since,
+  // on either side, and no other array has ever had it. So ops know what they need not do again. On
+  // the CPU, where it would cost each access, and of nothing: 0. Brings the values to the device.
+  std::uint64_t device_revision() const {
+    if (!on_gpu() || size_ == 0) return 0;
+    to_device();
+    return revision_;
   }
   // On a GPU: the host would have to ask for its side.
   bool is_on_device_alone() const { return on_gpu() && size_ > 0 && !has(kHost); }
@@ -243,6 +253,13 @@ class Array {
     else
       device_.clear(0, bytes());
     sides_ |= kDevice;
+    revision_ = ++detail::last_revision;
+  }
+  // Will be, before the next look. What the host writes makes the device's side invalid, so that
+  // the next look brings it there: another revision, too.
+  void written_on_device() {
+    sides_ = kDevice;
+    revision_ = ++detail::last_revision;
   }
   void grow_on_device(std::size_t count) {
     if (count <= size_) return;
@@ -254,7 +271,7 @@ class Array {
     if (other.has(kDevice) && other.device_.is_current()) {
       device_.fit(bytes(), 0);
       device_.copy(other.device_, bytes());
-      sides_ = kDevice;
+      written_on_device();
     } else {
       if (other.sides_ != 0) other.to_host();
       host_ = other.host_;
@@ -265,12 +282,14 @@ class Array {
     std::swap(host_, other.host_);
     std::swap(device_, other.device_);
     std::swap(size_, other.size_);
+    std::swap(revision_, other.revision_);
     sides_ = other.sides_.exchange(sides_);
   }
 
   mutable Host host_;
   mutable DeviceBlock device_;
   std::size_t size_ = 0;
+  mutable std::uint64_t revision_ = 0;  // of the device's side
   mutable std::atomic<int> sides_{kHost};
 };
 
@@ -301,6 +320,9 @@ class Borrowed {
     if (array_ != nullptr) return array_->device_for_reading();
     if (on_gpu() && size_ > 0) detail::throw_not_on_device();
     return host_;
+  }
+  std::uint64_t device_revision() const {
+    return array_ == nullptr ? 0 : array_->device_revision();
   }
 
  private:

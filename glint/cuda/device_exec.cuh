@@ -86,11 +86,12 @@ class DeviceExec {
       );
     });
   }
-  void sort_pairs(
-      std::size_t count, int bits, Buffer<std::uint64_t>& keys, Buffer<std::uint32_t>& values
-  ) {
+  // Stable, by the low `bits` bits of the keys, 32-bit or 64-bit ones.
+  template <class Key>
+  void sort_pairs(std::size_t count, int bits, Buffer<Key>& keys, Buffer<std::uint32_t>& values) {
     if (count == 0) return;
-    other_keys_.resize(count);
+    Buffer<Key>& other_keys = other_keys_of(keys);
+    other_keys.resize(count);
     other_values_.resize(count);
     const auto n = static_cast<int>(count);
     const TracedKernel traced(typeid(SortPairs), stream_);
@@ -99,7 +100,7 @@ class DeviceExec {
           scratch,
           bytes,
           keys.data(),
-          other_keys_.data(),
+          other_keys.data(),
           values.data(),
           other_values_.data(),
           n,
@@ -108,13 +109,16 @@ class DeviceExec {
           stream_
       );
     });
-    std::swap(keys, other_keys_);
+    std::swap(keys, other_keys);
     std::swap(values, other_values_);
   }
 
  private:
   struct ExclusiveSum {};  // CUB's kernels, as KernelTrace names them
   struct SortPairs {};
+
+  Buffer<std::uint32_t>& other_keys_of(Buffer<std::uint32_t>&) { return other_short_keys_; }
+  Buffer<std::uint64_t>& other_keys_of(Buffer<std::uint64_t>&) { return other_keys_; }
 
   // CUB: once to ask for the size of its scratch memory, once to run.
   template <class F>
@@ -129,7 +133,7 @@ class DeviceExec {
   cudaStream_t stream_;
   Buffer<char> scratch_;
   Buffer<std::uint64_t> other_keys_;
-  Buffer<std::uint32_t> other_values_;
+  Buffer<std::uint32_t> other_short_keys_, other_values_;
 };
 
 }  // namespace glint::gpu

@@ -47,6 +47,14 @@ inline DeviceGradients device_gradients(RasterGradient& g) {
       .screen = g.screen.on_device(),
       .screen_abs = g.screen_abs.on_device()};
 }
+// Of a RasterInput or a TraceInput.
+inline GeometryRevision revision_of(const auto& in) {
+  return {
+      in.means.device_revision(),
+      in.scales.device_revision(),
+      in.rotations.device_revision(),
+      in.opacities.device_revision()};
+}
 inline DeviceRasterCall device_call(const RasterCall& call, RasterOutput& output) {
   return {
       .surfels = device_surfels(call.input),
@@ -60,14 +68,18 @@ inline DeviceRasterCall device_call(const RasterCall& call, RasterOutput& output
            .in_view = output.in_view.on_device(),
            .owned_pixels = output.owned_pixels.on_device(),
            .radii = output.radii.on_device()},
+      .revision = revision_of(call.input),
       .overflow = void_word()};
 }
 
 template <class Exec>
 class RasterizerOn final : public RasterBackend {
  public:
-  void forward(const RasterCall& call, RasterOutput& output) override {
-    pipeline_.forward(device_call(call, output));
+  void forward(const RasterCall& call, RasterOutput& output, RasterBackend* first) override {
+    pipeline_.forward(
+        device_call(call, output),
+        first != nullptr ? &static_cast<RasterizerOn*>(first)->pipeline_ : nullptr
+    );
   }
   void backward(
       const RasterCall&,
@@ -136,6 +148,7 @@ inline DeviceTraceCall device_call(const TraceCall& call, TraceOutput& output) {
       .cutoffs = cutoffs(call.settings),
       .out = device_output(output),
       .width = static_cast<std::size_t>(call.rays.origins.width()),
+      .revision = revision_of(call.input),
       .overflow = void_word()};
 }
 
@@ -159,36 +172,37 @@ class TracerOn final : public TraceBackend {
   TracePipeline<Exec> pipeline_{executor<Exec>()};
 };
 
-struct WidenKeys {
+// From arrays to an executor's memory, and back.
+struct NumberKeys {
   const std::uint32_t* keys;
-  std::uint64_t* wide;
-  std::uint32_t* order;
+  std::uint32_t *copy, *order;
   GLINT_HD void operator()(std::size_t i) const {
-    wide[i] = keys[i];
+    copy[i] = keys[i];
     order[i] = static_cast<std::uint32_t>(i);
   }
 };
-struct NarrowKeys {
-  const std::uint64_t* wide;
-  const std::uint32_t* sorted;
+struct TakeSorted {
+  const std::uint32_t *sorted_keys, *sorted_order;
   std::uint32_t *keys, *order;
   GLINT_HD void operator()(std::size_t i) const {
-    keys[i] = static_cast<std::uint32_t>(wide[i]);
-    order[i] = sorted[i];
+    keys[i] = sorted_keys[i];
+    order[i] = sorted_order[i];
   }
 };
 template <class Exec>
 void sort_on(Array<std::uint32_t>& keys, Array<std::uint32_t>& order) {
-  static typename Exec::template Buffer<std::uint64_t> wide;
-  static typename Exec::template Buffer<std::uint32_t> sorted;
+  static typename Exec::template Buffer<std::uint32_t> sorted_keys, sorted_order;
   Exec& exec = executor<Exec>();
   const std::size_t count = keys.size();
   order.resize(count);
-  wide.resize(count);
-  sorted.resize(count);
-  exec.for_each(count, WidenKeys{keys.on_device(), wide.data(), sorted.data()});
-  exec.sort_pairs(count, 32, wide, sorted);
-  exec.for_each(count, NarrowKeys{wide.data(), sorted.data(), keys.on_device(), order.on_device()});
+  sorted_keys.resize(count);
+  sorted_order.resize(count);
+  exec.for_each(count, NumberKeys{keys.on_device(), sorted_keys.data(), sorted_order.data()});
+  exec.sort_pairs(count, 32, sorted_keys, sorted_order);
+  exec.for_each(
+      count,
+      TakeSorted{sorted_keys.data(), sorted_order.data(), keys.on_device(), order.on_device()}
+  );
 }
 
 // Ops run on Exec from now on; `backend` offers its memory.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "glint/cuda/block.h"
+#include "glint/cuda/geometry_revision.h"
 #include "glint/render/splat_hit.h"
 
 namespace glint::gpu {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstring>
+#include <memory>
 
 #include "glint/cuda/raster_sums.h"
 #include "glint/cuda/splat_lists.h"
@@ -20,6 +21,7 @@ struct DeviceRasterCall {
   DistortionRange range;
   DeviceMaps out;
   DeviceSeen seen;
+  GeometryRevision revision = {};
   // A word on the device that becomes 1 where a silent step (glint/core/device.h) had too little
   // room: then nothing was listed, and maps or gradients are those of no surfels. May be null.
   std::uint32_t* overflow = nullptr;
@@ -40,11 +42,13 @@ class RasterPipeline {
   // `other`: one that has just rasterised the same surfels with the same camera, if there is such a
   // one, to use its splats and lists: surfels on their own, say, behind those behind an interface.
   // Features, near limit and maps may differ. It must rasterise nothing else before backward().
-  // Where its arrays or its camera are others, it is not used.
+  // Where its arrays, their revision or its camera are others, it is not used. Where its lists had
+  // no room in a silent step, neither has this pass, and the step is void already.
   void forward(const DeviceRasterCall& call, RasterPipeline* other = nullptr) {
+    const bool share = other != nullptr && other != this && other->has_lists_of(call);
+    lists_ = share ? other->lists_ : own_lists_;
     call_ = call;
-    lists_ = other != nullptr && other->has_lists_of(call) ? other->lists_ : &own_lists_;
-    if (lists_ == &own_lists_) own_lists_.make(exec_, call.surfels, call.camera, call.overflow);
+    if (!share) own_lists_->make(exec_, call.surfels, call.camera, call.overflow);
     begin_pass();
     with_pass_code(pass_.has, [&]<class Code>() {
       exec_.launch(
@@ -93,7 +97,7 @@ class RasterPipeline {
   std::size_t num_pairs() { return lists_->num_pairs(exec_); }
   std::size_t num_pixel_pairs() { return lists_->num_pixel_pairs(exec_); }
   std::size_t num_rows() { return counted_rows_.read(exec_).pairs; }  // of the last backward call
-  bool has_own_lists() const { return lists_ == &own_lists_; }
+  bool has_own_lists() const { return lists_ == own_lists_; }
   std::size_t num_slots() const { return lists_->num_slots(); }
 
  private:
@@ -101,6 +105,7 @@ class RasterPipeline {
     const DeviceSurfels &a = call_.surfels, &b = call.surfels;
     return lists_->num_tiles() > 0 && a.count == b.count && a.means == b.means &&
            a.scales == b.scales && a.rotations == b.rotations && a.opacities == b.opacities &&
+           call_.revision == call.revision &&
            std::memcmp(&call_.camera, &call.camera, sizeof call.camera) == 0;
   }
   std::size_t num_pixels() const {
@@ -159,8 +164,8 @@ class RasterPipeline {
   Exec& exec_;
   DeviceRasterCall call_{};
   TilePass pass_{};
-  SplatLists<Exec> own_lists_;
-  SplatLists<Exec>* lists_ = &own_lists_;  // of the last forward call
+  std::shared_ptr<SplatLists<Exec>> own_lists_ = std::make_shared<SplatLists<Exec>>();
+  std::shared_ptr<SplatLists<Exec>> lists_ = own_lists_;  // of the last forward call
   KeptMaps<BufferMap> kept_memory_;
   DeviceKept kept_;
   Buffer<float> visibility_;  // of slots

@@ -20,7 +20,7 @@ struct HitGradients {
   const std::uint32_t* first;  // [places + 1]
   std::uint32_t capacity;
   HitGradient* hits;     // [capacity]
-  std::uint64_t* keys;   // the hits' slots
+  std::uint32_t* keys;   // the hits' slots
   std::uint32_t* order;  // their places in `hits`
 };
 
@@ -182,8 +182,8 @@ struct CopyWord {
 // Behind the hits that there are, keys that sort last.
 struct PadKeys {
   const std::uint32_t* num_hits;
-  std::uint64_t last;
-  std::uint64_t* keys;
+  std::uint32_t last;
+  std::uint32_t* keys;
   std::uint32_t* too_many;  // set where hits were dropped
   std::uint32_t capacity;
 

@@ -31,13 +31,13 @@ struct HitRun {
 inline constexpr std::uint32_t kLongRun = 1024;
 
 struct FindRuns {
-  const std::uint64_t* keys;
-  std::uint64_t num_slots;
+  const std::uint32_t* keys;
+  std::size_t num_slots;
   std::size_t count;
   HitRun* runs;  // [slots] zero
 
   GLINT_HD void operator()(std::size_t i) const {
-    const std::uint64_t slot = keys[i];
+    const std::uint32_t slot = keys[i];
     if (slot >= num_slots) return;
     if (i == 0 || keys[i - 1] != slot) runs[slot].begin = static_cast<std::uint32_t>(i);
     if (i + 1 == count || keys[i + 1] != slot) runs[slot].end = static_cast<std::uint32_t>(i + 1);
@@ -52,7 +52,7 @@ struct SortedHits {
   TraceCutoffs cutoffs;
   DeviceTraceOutput dL_dout;  // images may be null
   const HitGradient* hits;
-  const std::uint64_t* keys;   // sorted
+  const std::uint32_t* keys;   // sorted
   const std::uint32_t* order;  // into `hits`
   const HitRun* runs;
   std::uint32_t count;
@@ -143,7 +143,7 @@ struct SumWindows {
     const std::uint32_t begin = static_cast<std::uint32_t>(block.index) * kLongRun;
     const std::uint32_t end = min(begin + kLongRun, from.count);
     float* to = sums + std::size_t{2} * static_cast<std::size_t>(block.index) * Shared::kSums;
-    const std::uint64_t first = from.keys[begin], last = from.keys[end - 1];
+    const std::uint32_t first = from.keys[begin], last = from.keys[end - 1];
     sum(block, shared, first, {begin, end}, to);
     if (last != first) sum(block, shared, last, {begin, end}, to + Shared::kSums);
   }
@@ -152,7 +152,7 @@ struct SumWindows {
   GLINT_HD static std::uint32_t min(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
   GLINT_HD static std::uint32_t max(std::uint32_t a, std::uint32_t b) { return a > b ? a : b; }
   template <class Block>
-  GLINT_HD void sum(Block& block, Shared& shared, std::uint64_t slot, HitRun window, float* to)
+  GLINT_HD void sum(Block& block, Shared& shared, std::uint32_t slot, HitRun window, float* to)
       const {
     if (slot >= from.input.count) return;
     const HitRun run = from.runs[slot];

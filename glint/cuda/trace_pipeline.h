@@ -19,9 +19,8 @@ struct DeviceTraceCall {
   std::size_t num_rays;
   TraceCutoffs cutoffs;
   DeviceTraceOutput out;
-  std::size_t width = 0;  // of the image that rays are, or 0
-  // Another number when the surfels are others or have moved; 0: not known.
-  std::uint64_t revision = 0;
+  std::size_t width = 0;           // of the image that rays are, or 0
+  GeometryRevision revision = {};  // where known, and as in the call before, the tree stays
   // A word on the device that becomes 1 where a silent call dropped hits; null: dropped_hits()
   // tells.
   std::uint32_t* overflow = nullptr;
@@ -188,9 +187,10 @@ class TracePipeline {
   // By slot, those of a slot in the order of the places.
   void sort(const HitGradients& hits) {
     const std::size_t n = call_.input.count;
+    const auto last = static_cast<std::uint32_t>(n);
     exec_.for_each(
         hits.capacity,
-        PadKeys{hits.first + saved_.places, n, hits.keys, overflow_word(), hits.capacity}
+        PadKeys{hits.first + saved_.places, last, hits.keys, overflow_word(), hits.capacity}
     );
     exec_.sort_pairs(hits.capacity, static_cast<int>(std::bit_width(n)), keys_, order_);
     runs_.resize(n);
@@ -205,8 +205,7 @@ class TracePipeline {
   int rows_ = kFirstRows;
   float hits_a_place_ = kFirstHits;
   bool known_ = false;  // from a call
-  Buffer<std::uint32_t> counts_, slots_, first_hits_, order_, overflow_, silent_overflow_;
-  Buffer<std::uint64_t> keys_;
+  Buffer<std::uint32_t> counts_, slots_, first_hits_, keys_, order_, overflow_, silent_overflow_;
   Buffer<HitGradient> hits_;
   Buffer<HitRun> runs_;
   Buffer<float> windows_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "glint/cuda/geometry_revision.h"
 #include "glint/cuda/trace_walk.h"
 
 namespace glint::gpu {
@@ -25,10 +26,12 @@ class TraceTree {
 
   explicit TraceTree(Exec& exec) : exec_(exec) {}
 
-  // revision: another number when the surfels are others or have moved; 0: not known.
-  void update(const DeviceTraceInput& input, const TraceCutoffs& cutoffs, std::uint64_t revision) {
-    const bool moved =
-        revision == 0 || revision != revision_ || !same(input, input_) || !same(cutoffs, cutoffs_);
+  // Where the revision is known and that of the call before, nothing has moved.
+  void update(
+      const DeviceTraceInput& input, const TraceCutoffs& cutoffs, const GeometryRevision& revision
+  ) {
+    const bool moved = !revision.known() || revision != revision_ || !same(input, input_) ||
+                       !same(cutoffs, cutoffs_);
     input_ = input;
     cutoffs_ = cutoffs;
     revision_ = revision;
@@ -74,7 +77,7 @@ class TraceTree {
   Exec& exec_;
   DeviceTraceInput input_{};
   TraceCutoffs cutoffs_{};
-  std::uint64_t revision_ = 0;
+  GeometryRevision revision_;
   int updates_ = 0;
   Buffer<Box> partial_bounds_, bounds_;
   Buffer<std::uint64_t> keys_;

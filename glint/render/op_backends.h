@@ -14,7 +14,8 @@ namespace glint {
 class RasterBackend {
  public:
   virtual ~RasterBackend() = default;
-  virtual void forward(const RasterCall& call, RasterOutput& output) = 0;
+  // first: one on the same device whose lists may serve, see Rasterizer; or null.
+  virtual void forward(const RasterCall& call, RasterOutput& output, RasterBackend* first) = 0;
   // Of the last forward call, with its output.
   virtual void backward(
       const RasterCall& call,

@@ -86,11 +86,13 @@ const RasterOutput& Rasterizer::output() const { return state_->output; }
 std::size_t Rasterizer::num_pairs() const { return state_->device().num_pairs(); }
 std::size_t Rasterizer::num_pixel_pairs() const { return state_->device().num_pixel_pairs(); }
 
-const RasterOutput& Rasterizer::forward(const RasterCall& call) {
+const RasterOutput& Rasterizer::forward(const RasterCall& call, Rasterizer* first) {
   check_call(call);
   state_->call = call;
   fit_output(call, state_->output);
-  state_->device().forward(call, state_->output);
+  state_->device().forward(
+      call, state_->output, first != nullptr ? &first->state_->device() : nullptr
+  );
   return state_->output;
 }
 

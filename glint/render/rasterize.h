@@ -100,7 +100,12 @@ class Rasterizer {
   // What both return stays valid until the next call of the same. Both are deterministic: the same
   // bytes for any number of threads. Errors (kUsage): array sizes that do not match; backward()
   // without a forward().
-  const RasterOutput& forward(const RasterCall& call);
+  //
+  // first: one that has just rasterised the same arrays, which nobody wrote since, with the same
+  // camera: its splats and lists are used, and the bytes are the same. Features, near limit and
+  // maps may differ. It must rasterise nothing else before this one's backward(). Where its arrays
+  // or its camera are others, it is not used.
+  const RasterOutput& forward(const RasterCall& call, Rasterizer* first = nullptr);
   // Gradients of the last forward call.
   const RasterGradient& backward(const RasterOutputGradient& dL_doutput);
 

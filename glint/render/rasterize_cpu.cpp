@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cstring>
+#include <memory>
 #include <numeric>
 
 #include "glint/core/error.h"
@@ -13,7 +15,8 @@ namespace {
 
 // What backward needs of forward; reused between calls.
 struct RasterSaved {
-  TileLists lists;
+  std::shared_ptr<const TileLists> shared_lists;  // those of this pass or of the first of several
+  const TileLists& lists() const { return *shared_lists; }
   KeptMaps<ImageMap> kept;
   std::vector<float> pair_visibility;  // [pairs]
   std::vector<float> pair_owned;       // [pairs] pixels of the tile that the surfel owns, or empty
@@ -209,7 +212,7 @@ void for_each_tile(const RasterCall& call, const TileLists& lists, F&& body) {
 // ---- sums over a surfel's tiles ----------------------------------------------------------------
 
 void sum_pairs(const RasterSaved& saved, std::size_t surfel, int width, float* sums) {
-  const std::vector<std::uint32_t>& pair_begin = saved.lists.pair_begin;
+  const std::vector<std::uint32_t>& pair_begin = saved.lists().pair_begin;
   std::fill_n(sums, width, 0.0f);
   for (std::uint32_t pair = pair_begin[surfel]; pair < pair_begin[surfel + 1]; ++pair) {
     if (saved.pair_blocks[pair] == 0) continue;
@@ -265,8 +268,8 @@ void surfel_vjp_lanes(
     );
     out.opacities[first + i] = sums[i * width + kSumOpacity];
     if (has.statistics) store_screen_abs(sums + i * width, call.camera.size(), first + i, out);
-    num_pairs[i] = static_cast<float>(saved.lists.boxes[first + i].num_tiles());
-    z[i] = num_pairs[i] > 0 ? saved.lists.splats[first + i].z_center : 1.0f;
+    num_pairs[i] = static_cast<float>(saved.lists().boxes[first + i].num_tiles());
+    z[i] = num_pairs[i] > 0 ? saved.lists().splats[first + i].z_center : 1.0f;
   }
   const CameraOf<T> c = broadcast_camera<T>(camera);
   const SurfelGeometry<T> surfel = load_geometry<T>(input, first);
@@ -296,9 +299,9 @@ void surfel_vjp(const RasterCall& call, const RasterSaved& saved, RasterGradient
 }
 
 void fit_saved(const RasterCall& call, RasterSaved& saved) {
-  saved.pair_visibility.resize(saved.lists.num_pairs());
-  saved.pair_blocks.resize(saved.lists.num_pairs());
-  saved.pair_owned.resize(call.settings.with_statistics ? saved.lists.num_pairs() : 0);
+  saved.pair_visibility.resize(saved.lists().num_pairs());
+  saved.pair_blocks.resize(saved.lists().num_pairs());
+  saved.pair_owned.resize(call.settings.with_statistics ? saved.lists().num_pairs() : 0);
   for_each_kept_map(
       call.maps(),
       [&](int channels, float, Image& map) {
@@ -310,7 +313,7 @@ void fit_saved(const RasterCall& call, RasterSaved& saved) {
 
 // Per surfel, in the order of its pairs.
 void sum_visibility(const RasterSaved& saved, RasterOutput& output) {
-  const TileLists& lists = saved.lists;
+  const TileLists& lists = saved.lists();
   parallel_for(lists.boxes.size(), 2048, [&](std::size_t i) {
     float sum = 0;
     for (std::uint32_t pair = lists.pair_begin[i]; pair < lists.pair_begin[i + 1]; ++pair)
@@ -321,7 +324,7 @@ void sum_visibility(const RasterSaved& saved, RasterOutput& output) {
 }
 
 void sum_statistics(const RasterCall& call, const RasterSaved& saved, RasterOutput& output) {
-  const TileLists& lists = saved.lists;
+  const TileLists& lists = saved.lists();
   const CameraOf<float> camera = camera_of(call);
   parallel_for(output.radii.size(), 2048, [&](std::size_t i) {
     output.owned_pixels[i] = std::accumulate(
@@ -338,12 +341,40 @@ void sum_statistics(const RasterCall& call, const RasterSaved& saved, RasterOutp
   });
 }
 
+// What lists are made of.
+struct ListedCall {
+  const float *means = nullptr, *scales = nullptr, *rotations = nullptr, *opacities = nullptr;
+  std::size_t count = 0;
+  CameraOf<float> camera{};
+  bool scalar = false;
+
+  ListedCall() = default;
+  explicit ListedCall(const RasterCall& call)
+      : means(call.input.means.data()),
+        scales(call.input.scales.data()),
+        rotations(call.input.rotations.data()),
+        opacities(call.input.opacities.data()),
+        count(call.input.count),
+        camera(camera_of(call)),
+        scalar(call.settings.scalar) {}
+  friend bool operator==(const ListedCall& a, const ListedCall& b) {
+    return a.means == b.means && a.scales == b.scales && a.rotations == b.rotations &&
+           a.opacities == b.opacities && a.count == b.count && a.scalar == b.scalar &&
+           std::memcmp(&a.camera, &b.camera, sizeof a.camera) == 0;
+  }
+};
+
 class RasterOnCpu final : public RasterBackend {
  public:
-  void forward(const RasterCall& call, RasterOutput& output) override {
-    build_tile_lists(call, saved_.lists);
+  void forward(const RasterCall& call, RasterOutput& output, RasterBackend* first) override {
+    const auto* other = static_cast<const RasterOnCpu*>(first);
+    const ListedCall listed(call);
+    const bool share = other != nullptr && other != this && other->listed_ == listed;
+    listed_ = listed;
+    if (!share) build_tile_lists(call, *own_lists_);
+    saved_.shared_lists = share ? other->saved_.shared_lists : own_lists_;
     fit_saved(call, saved_);
-    for_each_tile(call, saved_.lists, [&]<class T, class Code>(const TileContext& tile) {
+    for_each_tile(call, saved_.lists(), [&]<class T, class Code>(const TileContext& tile) {
       forward_tile<T, Code>(tile, saved_, output);
     });
     sum_visibility(saved_, output);
@@ -355,9 +386,9 @@ class RasterOnCpu final : public RasterBackend {
       const RasterOutputGradient& dL_doutput,
       RasterGradient& gradient
   ) override {
-    const std::size_t pairs = saved_.lists.num_pairs();
+    const std::size_t pairs = saved_.lists().num_pairs();
     saved_.pair_gradients.resize(pairs * splat_sums(call.maps()));
-    for_each_tile(call, saved_.lists, [&]<class T, class Code>(const TileContext& tile) {
+    for_each_tile(call, saved_.lists(), [&]<class T, class Code>(const TileContext& tile) {
       backward_tile<T, Code>(tile, saved_, output, dL_doutput);
     });
     surfel_vjp(call, saved_, gradient);
@@ -369,16 +400,18 @@ class RasterOnCpu final : public RasterBackend {
       const FirstSurfaceSettings& settings,
       Image& depth
   ) override {
-    first_surface_on_cpu(call, saved_.lists, output, mask, settings, depth);
+    first_surface_on_cpu(call, saved_.lists(), output, mask, settings, depth);
   }
-  std::size_t num_pairs() override { return saved_.lists.num_pairs(); }
+  std::size_t num_pairs() override { return saved_.lists().num_pairs(); }
   std::size_t num_pixel_pairs() override {
     std::size_t sum = 0;
-    for (const PixelBox& box : saved_.lists.boxes) sum += box.num_pixels();
+    for (const PixelBox& box : saved_.lists().boxes) sum += box.num_pixels();
     return sum;
   }
 
  private:
+  std::shared_ptr<TileLists> own_lists_ = std::make_shared<TileLists>();
+  ListedCall listed_;  // the last one
   RasterSaved saved_;
 };
 

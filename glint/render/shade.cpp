@@ -64,11 +64,22 @@ void run_lanes(std::size_t count, const Kernel& kernel) {
   });
 }
 
+ActivationRevision revision_of(const SurfelCloud& cloud, const ActivatedSurfels& activated) {
+  if (activated.options.opacity_factor >= 0) return {};  // made of more
+  return {
+      cloud.log_scales.device_revision(),
+      cloud.opacity_logits.device_revision(),
+      activated.scales.device_revision(),
+      activated.opacities.device_revision()};
+}
+
 }  // namespace
 
 void activate_geometry(const SurfelCloud& cloud, ActivatedSurfels& activated) {
   activated.scales.resize(2 * cloud.size());
   activated.opacities.resize(cloud.size());
+  const ActivationRevision revision = revision_of(cloud, activated);
+  if (revision.known() && revision == activated.revision) return;
   run_lanes(
       cloud.size(),
       ActivateGeometry{
@@ -76,6 +87,7 @@ void activate_geometry(const SurfelCloud& cloud, ActivatedSurfels& activated) {
           activated.scales.on_device(),
           activated.opacities.on_device()}
   );
+  activated.revision = revision_of(cloud, activated);
 }
 
 void activate(const SurfelCloud& cloud, Vec3f eye, int sh_degree, ActivatedSurfels& activated) {

@@ -20,18 +20,30 @@ struct ActivationOptions {
   const FloatArray* color_offsets = nullptr;
 };
 
+// What scales and opacities were made of, and they themselves (Array::device_revision()); 0: not
+// known.
+struct ActivationRevision {
+  std::uint64_t log_scales = 0, opacity_logits = 0, scales = 0, opacities = 0;
+  bool known() const {
+    return log_scales != 0 && opacity_logits != 0 && scales != 0 && opacities != 0;
+  }
+  friend bool operator==(const ActivationRevision&, const ActivationRevision&) = default;
+};
+
 struct ActivatedSurfels {
-  ActivationOptions options;  // of activate(), not of what is traced
-  int channels = 3;           // 3 + number of extra channels, or 3
-  FloatArray scales;          // [N][2] metres
-  FloatArray opacities;       // [N]
-  FloatArray features;        // [N][channels]: colour, then extra channels
+  ActivationOptions options;    // of activate(), not of what is traced
+  int channels = 3;             // 3 + number of extra channels, or 3
+  FloatArray scales;            // [N][2] metres
+  FloatArray opacities;         // [N]
+  FloatArray features;          // [N][channels]: colour, then extra channels
+  ActivationRevision revision;  // of scales and opacities
 };
 
 // eye: camera centre, metres. sh_degree: 0..3 (coefficients above are ignored).
 void activate(const SurfelCloud& cloud, Vec3f eye, int sh_degree, ActivatedSurfels& activated);
 
-// Scales and opacities alone, for trace(): its colours depend on the rays.
+// Scales and opacities alone, for trace(): its colours depend on the rays. On a GPU, where neither
+// they nor what they are made of was written since, they stay.
 void activate_geometry(const SurfelCloud& cloud, ActivatedSurfels& activated);
 
 // The activated cloud as rasterize() takes it.

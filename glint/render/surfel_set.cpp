@@ -17,10 +17,21 @@ const RasterOutput& SurfelSet::forward(
     BorrowedImage near_limit
 ) const {
   pass.sh_degree = sh_degree;
+  pass.of_first = nullptr;
   activate(cloud_, cast<float>(camera.center()), sh_degree, pass.activated);
   RasterCall call{raster_input(cloud_, pass.activated), camera, settings};
   call.input.near_limit = near_limit;
   return pass.rasterizer.forward(call);
+}
+
+const RasterOutput& SurfelSet::forward_again(
+    RasterPass& pass, RasterPass& first, const RasterSettings& settings, BorrowedImage near_limit
+) const {
+  pass.sh_degree = first.sh_degree;
+  pass.of_first = &first.used();
+  RasterCall call{raster_input(cloud_, pass.used()), first.rasterizer.call().camera, settings};
+  call.input.near_limit = near_limit;
+  return pass.rasterizer.forward(call, &first.rasterizer);
 }
 
 const TraceOutput& SurfelSet::trace(
@@ -39,7 +50,7 @@ const RasterGradient& raster_backward(
 ) {
   const RasterGradient& gradient = pass.rasterizer.backward(dL_doutput);
   const Vec3f eye = cast<float>(pass.rasterizer.call().camera.center());
-  activate_vjp(cloud, eye, pass.sh_degree, pass.activated, gradient, dL_dcloud);
+  activate_vjp(cloud, eye, pass.sh_degree, pass.used(), gradient, dL_dcloud);
   return gradient;
 }
 

@@ -12,7 +12,10 @@ namespace glint {
 struct RasterPass {
   int sh_degree = 3;
   ActivatedSurfels activated;
+  const ActivatedSurfels* of_first = nullptr;  // of forward_again(); null: its own
   Rasterizer rasterizer;
+
+  const ActivatedSurfels& used() const { return of_first != nullptr ? *of_first : activated; }
 };
 // Buffers of rays through a set.
 struct TracePass {
@@ -40,6 +43,15 @@ class SurfelSet {
       RasterPass& pass,
       const Camera& camera,
       int sh_degree,
+      const RasterSettings& settings = {},
+      BorrowedImage near_limit = {}
+  ) const;
+  // What `first` has just rasterised of this set, which nobody wrote since, once more: seen by the
+  // same camera, with the same colours, which are not computed again, nor are the lists of surfels.
+  // `first` must rasterise nothing else before this pass's backward().
+  const RasterOutput& forward_again(
+      RasterPass& pass,
+      RasterPass& first,
       const RasterSettings& settings = {},
       BorrowedImage near_limit = {}
   ) const;

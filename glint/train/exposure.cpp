@@ -1,27 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/exposure.h"
 
-#include <cmath>
-
+#include "glint/core/error.h"
 #include "glint/core/kernel.h"
 #include "glint/render/map_ops.h"
-#include "glint/train/exposure_kernels.h"
+#include "glint/render/void_steps.h"
 
 namespace glint {
-
-void ViewExposure::adam_step(double dL_dlog_gain, double dL_doffset, double rate) {
-  constexpr double kBeta1 = 0.9, kBeta2 = 0.999, kEpsilon = 1e-8;
-  ++steps;
-  const double gradients[2] = {dL_dlog_gain, dL_doffset};
-  double* parameters[2] = {&log_gain, &offset};
-  for (int i = 0; i < 2; ++i) {
-    first[i] += (1 - kBeta1) * (gradients[i] - first[i]);
-    second[i] += (1 - kBeta2) * (gradients[i] * gradients[i] - second[i]);
-    const double m = first[i] / (1 - std::pow(kBeta1, steps));
-    const double v = second[i] / (1 - std::pow(kBeta2, steps));
-    *parameters[i] -= rate * m / (std::sqrt(v) + kEpsilon);
-  }
-}
 
 PhotometricTerms ExposureLoss::evaluate(
     std::size_t view,
@@ -33,28 +18,38 @@ PhotometricTerms ExposureLoss::evaluate(
 ) {
   if (exposures_.empty() || iteration < config_.from)
     return photometric_.evaluate(rendered, target, weights, gradient);
-  PhotometricTerms terms = photometric_.evaluate(rendered, target, {0, weights.ssim}, gradient);
-  const PhotometricWeights l1{weights.l1, 0};
-  if (terms.ssim_loss >= static_cast<double>(config_.max_ssim_loss)) {
-    photometric_.evaluate(rendered, target, l1, gradient);
-    return terms;
-  }
-  ViewExposure& exposure = exposures_.at(view);
-  const auto gain = static_cast<float>(std::exp(exposure.log_gain));
+  PhotometricTerms terms =
+      photometric_.evaluate(rendered, target, {0, weights.ssim}, gradient, &ssim_sum_);
+  GLINT_CHECK(view < exposures_.size(), kUsage, "exposure: there is no view {}", view);
+  ViewExposure* exposure = exposures_.device_for_writing() + view;
+  applied_.resize(1);
+  run_kernel(
+      1,
+      1,
+      ApplyExposure{
+          exposure,
+          ssim_sum_.on_device(),
+          static_cast<double>(3 * rendered.num_pixels()),
+          static_cast<double>(config_.max_ssim_loss),
+          applied_.on_device()}
+  );
+  const AppliedExposure* applied = applied_.on_device();
   fit(exposed_, rendered.size(), 3);
   run_kernel(
-      rendered.values().size(),
-      4096,
-      Expose{rendered.on_device(), gain, static_cast<float>(exposure.offset), exposed_.on_device()}
+      3 * rendered.num_pixels(), 4096, Expose{rendered.on_device(), applied, exposed_.on_device()}
   );
   clear_image(dL_dexposed_, rendered.size(), 3);
-  terms.l1 = photometric_.evaluate(exposed_, target, l1, dL_dexposed_).l1;
-  const ExposureGradient sum = sum_kernel(
+  terms.l1 = photometric_.evaluate(exposed_, target, {weights.l1, 0}, dL_dexposed_).l1;
+  sum_kernel_to(
       rendered.size(),
-      ExposeVjp{rendered.on_device(), dL_dexposed_.on_device(), gain, gradient.on_device()}
+      ExposeVjp{rendered.on_device(), dL_dexposed_.on_device(), applied, gradient.on_device()},
+      sums_
   );
-  exposure.adam_step(
-      static_cast<double>(gain) * sum.gain, sum.offset, static_cast<double>(config_.rate)
+  run_kernel(
+      1,
+      1,
+      StepExposure{
+          applied, sums_.on_device(), static_cast<double>(config_.rate), exposure, void_word()}
   );
   return terms;
 }

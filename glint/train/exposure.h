@@ -4,9 +4,8 @@
 // test views.
 #pragma once
 
-#include <vector>
-
 #include "glint/core/image.h"
+#include "glint/train/exposure_kernels.h"
 #include "glint/train/photometric.h"
 
 namespace glint {
@@ -26,15 +25,6 @@ struct ExposureConfig {
   }
 };
 
-// Of one view, and its moments [Kingma15].
-struct ViewExposure {
-  double log_gain = 0, offset = 0;
-  double first[2] = {}, second[2] = {};
-  int steps = 0;
-
-  void adam_step(double dL_dlog_gain, double dL_doffset, double rate);
-};
-
 class ExposureLoss {
  public:
   ExposureLoss() = default;
@@ -51,12 +41,16 @@ class ExposureLoss {
       PhotometricWeights weights,
       Image& gradient
   );
-  const std::vector<ViewExposure>& exposures() const { return exposures_; }
+  const Array<ViewExposure>& exposures() const { return exposures_; }
 
  private:
   ExposureConfig config_;
-  std::vector<ViewExposure> exposures_;
+  Array<ViewExposure> exposures_;
   PhotometricLoss photometric_;
+  // Of this step, where ops run.
+  Array<double> ssim_sum_;
+  Array<AppliedExposure> applied_;
+  Array<ExposureGradient> sums_;
   Image exposed_, dL_dexposed_;
 };
 

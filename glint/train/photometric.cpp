@@ -64,8 +64,16 @@ struct ColumnBlur {
   }
 };
 
-double mean_of(const std::vector<double>& rows, double count) {
-  return std::accumulate(rows.begin(), rows.end(), 0.0) / count;
+double sum_of(const std::vector<double>& rows) {
+  return std::accumulate(rows.begin(), rows.end(), 0.0);
+}
+
+// Told, and left where kernels read it if they do.
+template <class Kernel>
+double sum_told(ImageSize size, const Kernel& kernel, Array<double>* sum) {
+  if (sum == nullptr) return sum_kernel(size, kernel);
+  sum_kernel_to(size, kernel, *sum);
+  return told(*sum);
 }
 
 }  // namespace
@@ -168,7 +176,11 @@ void PhotometricLoss::gradient_rows(
 }
 
 PhotometricTerms PhotometricLoss::evaluate_on_gpu(
-    const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
+    const Image& rendered,
+    const Image& target,
+    PhotometricWeights weights,
+    Image& gradient,
+    Array<double>* ssim_sum
 ) {
   const std::size_t values = 3 * rendered.num_pixels();
   const PlaneStack planes{width_, height_};
@@ -182,7 +194,8 @@ PhotometricTerms PhotometricLoss::evaluate_on_gpu(
   run_kernel(
       values, 1, BlurMomentRows{rendered.on_device(), target.on_device(), window, planes, moments}
   );
-  const double ssim = sum_kernel(rendered.size(), SsimAt{window, planes, moments, gradients});
+  const double ssim =
+      sum_told(rendered.size(), SsimAt{window, planes, moments, gradients}, ssim_sum);
   run_kernel(kGradientPlanes * values, 1, BlurGradientColumns{window, planes, gradients, moments});
   const auto count = static_cast<double>(values);
   const float per_value = 1.0f / static_cast<float>(values);
@@ -200,7 +213,11 @@ PhotometricTerms PhotometricLoss::evaluate_on_gpu(
 }
 
 PhotometricTerms PhotometricLoss::evaluate(
-    const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
+    const Image& rendered,
+    const Image& target,
+    PhotometricWeights weights,
+    Image& gradient,
+    Array<double>* ssim_sum
 ) {
   const bool fits = rendered.size() == target.size() && rendered.size() == gradient.size() &&
                     rendered.channels() == 3 && target.channels() == 3 && gradient.channels() == 3;
@@ -215,7 +232,7 @@ PhotometricTerms PhotometricLoss::evaluate(
   );
   width_ = rendered.width();
   height_ = rendered.height();
-  if (on_gpu()) return evaluate_on_gpu(rendered, target, weights, gradient);
+  if (on_gpu()) return evaluate_on_gpu(rendered, target, weights, gradient, ssim_sum);
   stride_ = (static_cast<std::size_t>(width_) + 7) / 8 * 8;
   moments_.resize(5 * height_ * stride_);
   moment_gradients_.resize(3 * height_ * stride_);
@@ -226,7 +243,9 @@ PhotometricTerms PhotometricLoss::evaluate(
     gradient_rows(rendered, target, channel, weights, gradient);
   }
   const double count = 3.0 * static_cast<double>(rendered.num_pixels());
-  return {mean_of(row_l1_, count), 1.0 - mean_of(row_ssim_, count), mean_of(row_mse_, count)};
+  const double ssim = sum_of(row_ssim_);
+  if (ssim_sum != nullptr) ssim_sum->assign(1, ssim);
+  return {sum_of(row_l1_) / count, 1.0 - ssim / count, sum_of(row_mse_) / count};
 }
 
 }  // namespace glint

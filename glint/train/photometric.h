@@ -29,13 +29,22 @@ struct PhotometricTerms {
 class PhotometricLoss {
  public:
   // rendered, target: [H][W][3]. Adds weight * dL/d(rendered) to `gradient` (same shape).
+  // ssim_sum: becomes the sum of SSIM over values [1], for kernels; null: nobody asks for it.
   PhotometricTerms evaluate(
-      const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
+      const Image& rendered,
+      const Image& target,
+      PhotometricWeights weights,
+      Image& gradient,
+      Array<double>* ssim_sum = nullptr
   );
 
  private:
   PhotometricTerms evaluate_on_gpu(
-      const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
+      const Image& rendered,
+      const Image& target,
+      PhotometricWeights weights,
+      Image& gradient,
+      Array<double>* ssim_sum
   );
   void blur_rows(const Image& rendered, const Image& target, int channel);
   void ssim_rows();

@@ -152,13 +152,17 @@ void TransmissionLosses::add(
     const RasterOutput& interface,
     const GlassBuffer& buffer,
     TrainableSet& transmission,
+    RasterPass* behind,
     Image& dL_dtransparency,
     StepStats& stats
 ) {
   const bool guided = config_.lambda_transparency > 0 && iteration >= config_.transparency_from;
   const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
   if (guided || plausible || config_.has_direct()) {
-    expected_depth_map(transmission.forward(pass_, view.camera, sh_degree), direct_depth_);
+    const RasterOutput& direct = behind != nullptr
+                                     ? transmission.forward_again(pass_, *behind)
+                                     : transmission.forward(pass_, view.camera, sh_degree);
+    expected_depth_map(direct, direct_depth_);
     if (guided || plausible) guidance_.label(cues(view, interface, buffer), masks_);
     add_direct(view, iteration, weights, buffer, transmission, stats);
   }

@@ -86,7 +86,9 @@ class TransmissionLosses {
   // stats.terms and returns dL/d(alpha), the same at every pixel. 0: off, or not its time.
   float add_opacity(int iteration, const Image& alpha, StepStats& stats) const;
   // Rasterises `transmission` where a loss needs it, and adds the gradient of its parameters and of
-  // the transparency map. `interface` and `buffer` are constants.
+  // the transparency map. `interface` and `buffer` are constants. behind: the pass that has just
+  // rasterised `transmission` behind the interface for this view, which then shares its work; null:
+  // none has.
   void add(
       const View& view,
       int iteration,
@@ -95,6 +97,7 @@ class TransmissionLosses {
       const RasterOutput& interface,
       const GlassBuffer& buffer,
       TrainableSet& transmission,
+      RasterPass* behind,
       Image& dL_dtransparency,
       StepStats& stats
   );

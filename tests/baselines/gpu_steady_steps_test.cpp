@@ -35,6 +35,24 @@ void bring_to_device(const Scene& scene) {
   }
 }
 
+// Options that change what a step does: exposure counts from the start, whatever SSIM is.
+const Json kExposure{{"exposure", true}, {"exposure_from", 0}, {"exposure_max_ssim_loss", 3.0}};
+
+struct Trained {
+  std::string name, id;
+  Json options = Json::object();
+  Trained(std::string name, std::string id, Json options)
+      : name(std::move(name)), id(std::move(id)), options(std::move(options)) {}
+  explicit Trained(const std::string& id) : name(id), id(id) {}
+};
+std::vector<Trained> all_trained() {
+  std::vector<Trained> all;
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) all.emplace_back(id);
+  for (const char* id : {"pgsr", "tsgs"})
+    all.emplace_back(std::string(id) + ", exposure", id, kExposure);
+  return all;
+}
+
 struct Costs {
   DeviceCounters counters;
   int steps = 0;
@@ -91,13 +109,14 @@ std::string bytes_of(const Method& method) {
 
 TEST_CASE("A steady step asks a GPU for nothing, whatever the method") {
   use_host_kernels();
-  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
-    INFO(id);
+  for (const Trained& trained : all_trained()) {
+    INFO(trained.name);
     const Scene scene = two_views_of_room();
-    const auto method = create_method(id);
+    const auto method = create_method(trained.id, trained.options);
     const Costs costs = train_silently(*method, scene, kSilentFrom, true);
     CHECK(costs.interrupted == 0);
     CHECK(costs.steps == kEnd - kSteady);
+    CHECK(costs.counters.uploads == 0);
     CHECK(costs.counters.downloads == 0);
     CHECK(costs.counters.waits == 0);
     CHECK(costs.counters.allocations == 0);
@@ -110,11 +129,11 @@ TEST_CASE("A steady step asks a GPU for nothing, whatever the method") {
 // For docs/gpu.md: test_baselines_gpu_steady_steps "[costs]".
 TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
   use_host_kernels();
-  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
+  for (const Trained& trained : all_trained()) {
     const Scene scene = two_views_of_room();
-    const auto method = create_method(id);
+    const auto method = create_method(trained.id, trained.options);
     const Costs costs = train_silently(*method, scene, kSilentFrom);
-    fmt::print("| {} ", id);
+    fmt::print("| {} ", trained.name);
     DeviceCounters::for_each(
         [&](const char*, std::uint64_t count) {
           fmt::print("| {} ", count / static_cast<std::uint64_t>(costs.steps));
@@ -130,10 +149,13 @@ TEST_CASE(
     "A training of silent or of recorded steps ends with the bytes of one that is told everything"
 ) {
   use_host_kernels();
-  for (const char* id : {"2dgs", "pgsr", "glint/release"}) {
-    INFO(id);
+  const Trained exposed{"pgsr, exposure", "pgsr", kExposure};
+  for (const Trained& trained : {Trained("2dgs"), exposed, Trained("glint/release")}) {
+    INFO(trained.name);
     const Scene scene = two_views_of_room();
-    const auto told = create_method(id), silent = create_method(id), recorded = create_method(id);
+    const auto told = create_method(trained.id, trained.options);
+    const auto silent = create_method(trained.id, trained.options);
+    const auto recorded = create_method(trained.id, trained.options);
     train_silently(*told, scene, kEnd);
     train_silently(*silent, scene, kSilentFrom);
     const std::uint64_t kept = host_recorder().kept;

@@ -67,9 +67,8 @@ class HostExec {
     });
   }
   // Stable, by the low `bits` bits of the keys.
-  void sort_pairs(
-      std::size_t count, int bits, Buffer<std::uint64_t>& keys, Buffer<std::uint32_t>& values
-  ) {
+  template <class Key>
+  void sort_pairs(std::size_t count, int bits, Buffer<Key>& keys, Buffer<std::uint32_t>& values) {
     ++device_counters.launches;
     host_recorder().now_or_later([count, bits, k = keys.data(), v = values.data()] {
       const OpenMemory open(OpenMemory::kBoth);
@@ -85,9 +84,12 @@ class HostExec {
     const auto shared = std::make_unique<typename Body::Shared>();
     body(block, *shared);
   }
-  static void sort_now(std::size_t count, int bits, std::uint64_t* keys, std::uint32_t* values) {
-    const std::uint64_t mask = bits < 64 ? (std::uint64_t{1} << bits) - 1 : ~std::uint64_t{0};
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> pairs(count);
+  template <class Key>
+  static void sort_now(std::size_t count, int bits, Key* keys, std::uint32_t* values) {
+    constexpr int kBits = 8 * sizeof(Key);
+    const Key mask =
+        bits < kBits ? static_cast<Key>((Key{1} << bits) - 1) : static_cast<Key>(~Key{0});
+    std::vector<std::pair<Key, std::uint32_t>> pairs(count);
     for (std::size_t i = 0; i < count; ++i) pairs[i] = {keys[i], values[i]};
     std::stable_sort(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
       return (a.first & mask) < (b.first & mask);

@@ -15,12 +15,12 @@ struct LargeScene {
 };
 
 // Sizes on the screen as trained ones have; a few of every awkward kind.
-inline LargeScene large_scene(double max_opacity = 1) {
+inline LargeScene large_scene(double max_opacity = 1, std::size_t count = kManySurfels) {
   Rng rng(2024);
   LargeScene scene;
   scene.camera = random_camera(rng, kLargeSize);
   RandomSurfels options;
-  options.count = kManySurfels;
+  options.count = count;
   options.max_opacity = max_opacity;
   options.min_sigma_px = 0.3;
   options.max_sigma_px = 6;

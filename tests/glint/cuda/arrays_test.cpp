@@ -5,8 +5,10 @@
 
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <numeric>
 
 #include "glint/core/kernel.h"
+#include "glint/core/rng.h"
 #include "tests/support/gpu_backends.h"
 
 using namespace glint;
@@ -137,6 +139,25 @@ TEST_CASE("An image is looked at where ops run") {
   HostExec().for_each(2, AddOne{ref.data});
   CHECK(ref.width == 2);
   CHECK(std::as_const(image).at(1, 0) == 4);
+}
+
+TEST_CASE("Keys are sorted by all of their 32 bits, those that are the same in their order") {
+  for_each_gpu_backend([](const std::string& backend) {
+    INFO(backend);
+    Rng rng(3);
+    Array<std::uint32_t> keys(1000), order;
+    for (std::uint32_t& key : keys)
+      key = static_cast<std::uint32_t>(rng.uniform(0, 40)) * 0x06666666u;  // up to the highest bit
+    const std::vector<std::uint32_t> before(keys.begin(), keys.end());
+    std::vector<std::uint32_t> expected(keys.size());
+    std::iota(expected.begin(), expected.end(), 0u);
+    std::stable_sort(expected.begin(), expected.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return before[a] < before[b];
+    });
+    gpu_ops.sort(keys, order);
+    CHECK(std::vector<std::uint32_t>(order.begin(), order.end()) == expected);
+    CHECK(std::is_sorted(keys.begin(), keys.end()));
+  });
 }
 
 TEST_CASE("Blocks of a pool are used again, and given back before there is no room") {

@@ -130,7 +130,7 @@ TEST_CASE("A set of the same revision is not looked at again") {
   TraceOutput first = empty_output(kParitySize), again = first, moved = first, expected = first;
   const auto call = [&](TraceOutput& out, std::uint64_t revision) {
     DeviceTraceCall result = device_call({arrays.view(), rays, {}}, out);
-    result.revision = revision;
+    result.revision = {revision, revision, revision, revision};
     return result;
   };
   pipeline.forward(call(first, 1));

@@ -2,65 +2,12 @@
 // The tree of the GPU's tracer, built by its kernels on the host.
 #include "glint/cuda/trace_tree.h"
 
+#include "tests/glint/cuda/check_tree.h"
 #include "tests/glint/cuda/trace_parity.h"
 
 using namespace glint;
 using namespace glint::test;
 using namespace glint::gpu;
-
-namespace {
-
-constexpr TraceCutoffs kCutoffs{0, kMaxRho, kMinAlpha, kMinTransmittance, 256};
-
-bool holds(const Box& outer, const Box& inner) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (inner.low[axis] < outer.low[axis] || inner.high[axis] > outer.high[axis]) return false;
-  return true;
-}
-
-// How often each slot is found below a node; each disc's box lies in those of all nodes above it.
-void visit(const Tree& tree, std::uint32_t index, const Box& bounds, std::vector<int>& found) {
-  const WideNode& node = tree.wide[index];
-  for (int k = 0; k < kWidth; ++k) {
-    Box box;
-    for (int axis = 0; axis < 3; ++axis)
-      box.low[axis] = node.low[axis][k], box.high[axis] = node.high[axis][k];
-    if (box.low.x > box.high.x) continue;  // empty
-    CHECK(holds(bounds, box));
-    const ChildRef child = node.children[k];
-    if (!child.is_leaf()) {
-      visit(tree, child.node(), box, found);
-      continue;
-    }
-    for (std::uint32_t slot = child.first(); slot < child.first() + child.count(); ++slot) {
-      ++found[slot];
-      if (tree.discs[slot].max_rho > 0) CHECK(holds(box, box_of(tree.discs[slot])));
-    }
-  }
-}
-
-// Whether rays can find each surfel that counts, once.
-void check_tree(const TraceArrays& arrays) {
-  HostExec exec;
-  TraceTree<HostExec> owner(exec);
-  owner.update(device_input(arrays.view()), kCutoffs, 0);
-  const Tree tree = owner.tree();
-  const OpenMemory open(OpenMemory::kBoth);
-  const std::size_t n = arrays.surfels.count();
-  std::vector<int> found(n), owners(n);
-  constexpr float kAll = 1e30f;
-  visit(tree, 0, {{-kAll, -kAll, -kAll}, {kAll, kAll, kAll}}, found);
-  for (std::size_t slot = 0; slot < n; ++slot) {
-    const Disc& disc = tree.discs[slot];
-    CHECK(tree.slot_of[disc.surfel] == slot);
-    ++owners[disc.surfel];
-    CHECK(found[slot] <= 1);
-    if (disc.max_rho > 0) CHECK(found[slot] == 1);
-  }
-  CHECK(std::all_of(owners.begin(), owners.end(), [](int count) { return count == 1; }));
-}
-
-}  // namespace
 
 TEST_CASE("Rays can find every surfel that counts, once") {
   Rng rng(21);
@@ -100,7 +47,7 @@ TEST_CASE("A walk whose stack is full finds the same hits") {
   const Rays rays = random_rays({8, 8}, rng);
   HostExec exec;
   TraceTree<HostExec> owner(exec);
-  owner.update(device_input(arrays.view()), kCutoffs, 0);
+  owner.update(device_input(arrays.view()), kTreeCutoffs, {});
   const Tree tree = owner.tree();
   const OpenMemory open(OpenMemory::kBoth);
   using List = NearestList<16>;

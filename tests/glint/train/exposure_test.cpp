@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/exposure.h"
 
-#include "glint/train/exposure_kernels.h"
+#include "glint/render/void_steps.h"
 #include "tests/support/check_loss.h"
+#include "tests/support/gpu_backends.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -36,7 +37,8 @@ TEST_CASE("The gradients of gain, offset and render are those of the exposed pic
   const Image g = random_map<float>(kSize, 3, -1, 1, 3);
   Image dL_drender(kSize.width, kSize.height, 3, 1.0f);
   const float gain = 1.25f;
-  const ExposureGradient sum = sum_kernel(kSize, ExposeVjp{render, g, gain, dL_drender.ref()});
+  const AppliedExposure applied{gain, 0.1f, 1};
+  const ExposureGradient sum = sum_kernel(kSize, ExposeVjp{render, g, &applied, dL_drender.ref()});
   // L = sum g (gain render + offset), linear in all three.
   double of_gain = 0, of_offset = 0;
   for (std::size_t i = 0; i < g.values().size(); ++i) {
@@ -84,4 +86,53 @@ TEST_CASE("Before its start, or while the structure is wrong, exposure waits") {
   };
   check_plain(0.9f, 4);
   check_plain(0.0f, 10);
+}
+
+TEST_CASE("Exposure does the same on a GPU, and asks for nothing in a silent step") {
+  for (const float max_ssim_loss : {0.9f, 0.0f}) {
+    CAPTURE(max_ssim_loss);
+    check_same_as_cpu(1e-4, [&] {
+      Pair pair;
+      ExposureLoss loss(config_with(max_ssim_loss), 2);
+      for (int i = 0; i < 5; ++i) {
+        const SilentStep silent(i > 0);
+        pair.gradient.array().fill(0);
+        const DeviceCounters before = device_counters;
+        loss.evaluate(1, 10, pair.render, pair.photo, kWeights, pair.gradient);
+        if (i < 2) continue;
+        CHECK(device_counters.downloads == before.downloads);
+        CHECK(device_counters.waits == before.waits);
+        CHECK(device_counters.uploads == before.uploads);
+        CHECK(device_counters.allocations == before.allocations);
+      }
+      const ViewExposure& found = loss.exposures()[1];
+      return std::map<std::string, std::vector<float>>{
+          {"gradient", read(pair.gradient)},
+          {"steps", {static_cast<float>(found.steps)}},
+          {"log gain", {static_cast<float>(found.log_gain)}},
+          {"offset", {static_cast<float>(found.offset)}}};
+    });
+  }
+}
+
+TEST_CASE("A void step leaves exposure as it is") {
+  use_host_kernels();
+  Pair pair;
+  ExposureLoss loss(config_with(0.9f), 1);
+  const auto step = [&] { loss.evaluate(0, 10, pair.render, pair.photo, kWeights, pair.gradient); };
+  step();
+  const ViewExposure before = loss.exposures()[0];
+  CHECK(before.steps == 1);
+  {
+    const SilentStep silent(true);
+    HostExec().for_each(1, [word = void_word()](std::size_t) { *word = 1; });
+    step();
+    end_silent_step();
+  }
+  CHECK(take_void_steps() == 1);
+  CHECK(loss.exposures()[0].steps == 1);
+  CHECK(loss.exposures()[0].log_gain == before.log_gain);
+  step();
+  CHECK(loss.exposures()[0].steps == 2);
+  use_cpu();
 }

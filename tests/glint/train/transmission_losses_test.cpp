@@ -46,7 +46,8 @@ struct Fixture {
     wall.opacity_logits = {3};
     transmission = TrainableSet(wall, SetTraining{});
   }
-  StepStats add(const TransmissionLossConfig& config, int iteration) {
+  // behind: see TransmissionLosses::add().
+  StepStats add(const TransmissionLossConfig& config, int iteration, RasterPass* behind = nullptr) {
     TransmissionLosses losses;
     CHECK(losses.set_up(config, scene, "test").empty());
     StepStats stats;
@@ -58,6 +59,7 @@ struct Fixture {
         interface,
         buffer,
         transmission,
+        behind,
         dL_dtransparency,
         stats
     );
@@ -146,6 +148,21 @@ TEST_CASE("The set on its own has consistent and smooth normals, each from its i
   CHECK(norm(f.transmission.gradient().opacity_logits) > 0);
 }
 
+TEST_CASE("The set on its own shares the work of the pass behind the interface, to the same end") {
+  TransmissionLossConfig config = only_guidance();
+  config.lambda_direct = 2;
+  Fixture alone, shared;
+  const Camera& camera = shared.scene.train[0].camera;
+  const StepStats expected = alone.add(config, 10);
+  const Image near(kSize.width, kSize.height, 1, 5.0f);  // hides the wall
+  const RasterOutput& behind = shared.transmission.forward(camera, 0, {}, near);
+  CHECK(norm(behind.alpha.values()) == 0);
+  const StepStats stats = shared.add(config, 10, &shared.transmission.pass());
+  CHECK(stats.terms == expected.terms);
+  CHECK(shared.transmission.gradient().means == alone.transmission.gradient().means);
+  CHECK(shared.transmission.gradient().sh_dc == alone.transmission.gradient().sh_dc);
+}
+
 TEST_CASE("LPIPS of the set on its own is that of the interface's picture") {
   MeanBrightness loss;
   PerceptualConfig perceptual;
@@ -170,6 +187,7 @@ TEST_CASE("LPIPS of the set on its own is that of the interface's picture") {
           f.interface,
           f.buffer,
           f.transmission,
+          nullptr,
           f.dL_dtransparency,
           stats
       );
