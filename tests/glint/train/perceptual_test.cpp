@@ -92,7 +92,7 @@ TEST_CASE("LPIPS joins the loss when its iteration has come: value and gradient 
       lpips_weights_at(weights.folder.path(), "alex"),
       config.lpips_unit_range ? LpipsRange::kUnit : LpipsRange::kSymmetric
   );
-  const double value = lpips.evaluate(rendered, target, 0.25f, expected.ref());
+  const double value = lpips.evaluate(rendered, target, 0.25f, expected);
   CHECK(stats.terms.at("lpips") == Approx(0.25 * value).epsilon(1e-12));
   CHECK(std::equal(gradient.values().begin(), gradient.values().end(), expected.data()));
 }
