@@ -9,6 +9,7 @@
 #include "glint/render/void_steps.h"
 #include "glint/train/trainer.h"
 #include "tests/support/gpu_backends.h"
+#include "tests/support/lpips_weights_here.h"
 #include "tests/support/small_room.h"
 
 using namespace glint;
@@ -82,19 +83,37 @@ std::string bytes_of(const Method& method) {
 
 }  // namespace
 
+namespace {
+
+// The launches of a step.
+std::uint64_t check_steady(const std::string& id) {
+  INFO(id);
+  const Scene scene = two_views_of_room();
+  const auto method = create_method(id);
+  const Costs costs = train_silently(*method, scene, kSilentFrom);
+  CHECK(costs.steps == kEnd - kSteady);
+  CHECK(costs.counters.downloads == 0);
+  CHECK(costs.counters.waits == 0);
+  CHECK(costs.counters.allocations == 0);
+  CHECK(costs.counters.launches > 10 * (kEnd - kSteady));
+  CHECK(take_void_steps() == 0);
+  return costs.counters.launches / (kEnd - kSteady);
+}
+
+}  // namespace
+
 TEST_CASE("A steady step asks a GPU for nothing, whatever the method") {
   use_host_kernels();
-  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
-    INFO(id);
-    const Scene scene = two_views_of_room();
-    const auto method = create_method(id);
-    const Costs costs = train_silently(*method, scene, kSilentFrom);
-    CHECK(costs.steps == kEnd - kSteady);
-    CHECK(costs.counters.downloads == 0);
-    CHECK(costs.counters.waits == 0);
-    CHECK(costs.counters.allocations == 0);
-    CHECK(costs.counters.launches > 10 * (kEnd - kSteady));
-    CHECK(take_void_steps() == 0);
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) check_steady(id);
+  use_cpu();
+}
+
+TEST_CASE("Nor does a steady step with LPIPS") {
+  use_host_kernels();
+  for (const char* id : {"envgs", "glint/release", "rt-splatting"}) {
+    const std::uint64_t without = check_steady(id);
+    const LpipsWeightsHere weights;
+    CHECK(check_steady(id) >= without + 30);  // the network, there and back
   }
   use_cpu();
 }
@@ -120,6 +139,7 @@ TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
 
 TEST_CASE("A training of silent steps ends with the bytes of one that is told everything") {
   use_host_kernels();
+  const LpipsWeightsHere weights;  // for those that look at LPIPS
   for (const char* id : {"2dgs", "pgsr", "glint/release"}) {
     INFO(id);
     const Scene scene = two_views_of_room();
