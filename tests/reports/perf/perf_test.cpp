@@ -9,6 +9,7 @@
 #include "glint/method.h"
 #include "glint/scene/ply.h"
 #include "reports/perf/perf_scene.h"
+#include "tests/support/gpu_backends.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -75,6 +76,19 @@ TEST_CASE("the kernels of an op are timed one by one, with their launches") {
   const std::string text = kernels_to_text(options, rows);
   CHECK_THAT(text, Catch::Contains(rows[0].kernel) && Catch::Contains("ms in kernels"));
   CHECK(kernels_to_json(options, rows)["rows"].size() == rows.size());
+}
+
+TEST_CASE("LPIPS is timed on a GPU, with its target known and nothing to wait for") {
+  test::use_host_kernels();
+  PerfOptions options = small_options();
+  options.runs = 1;
+  options.only = "LPIPS*";
+  const std::vector<PerfRow> rows = run_perf(options);
+  use_cpu();
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].asked.launches == 54);  // of 13 convolutions, 4 poolings and 5 taps
+  CHECK(rows[0].asked.downloads == 0);
+  CHECK(rows[0].asked.allocations == 0);
 }
 
 TEST_CASE("the timed scene can be written for other programs to be timed on") {
