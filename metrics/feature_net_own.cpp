@@ -71,8 +71,8 @@ class OwnConvolution final : public OwnLayer {
  public:
   explicit OwnConvolution(const FeatureStep& step)
       : OwnLayer(step),
-        weight_(forward_weights(step)),
-        weight_back_(backward_weights(step)),
+        step_(step),
+        weight_(forward_weights()),
         bias_(step.bias.begin(), step.bias.end()) {
     bias_.resize(static_cast<std::size_t>(windows_.out_channels));
   }
@@ -84,6 +84,7 @@ class OwnConvolution final : public OwnLayer {
   }
 
   void backward(float* dL_dout, float* dL_din) override {
+    make_weight_back();
     run_kernel(num_outputs(), kGrain, ReluVjp{output(), dL_dout});
     if (gathers())
       run_kernel(
@@ -108,41 +109,48 @@ class OwnConvolution final : public OwnLayer {
     return back;
   }
 
-  // f(place in the window, input, output, weight)
-  template <class F>
-  static void for_each_weight(const FeatureStep& step, F&& f) {
-    const auto places = static_cast<std::size_t>(step.kernel * step.kernel);
-    const auto inputs = static_cast<std::size_t>(step.in_channels);
-    for (std::size_t i = 0; i < step.weight.size(); ++i)
-      f(i % places, i / places % inputs, i / places / inputs, step.weight[i]);
+  // Only a training asks.
+  void make_weight_back() {
+    if (!weight_back_.empty()) return;
+    weight_back_ = backward_weights();
+    step_.weight = {};
   }
 
+  // f(place in the window, input, output, weight)
+  template <class F>
+  void for_each_weight(F&& f) const {
+    const auto inputs = static_cast<std::size_t>(step_.in_channels);
+    for (std::size_t i = 0; i < step_.weight.size(); ++i)
+      f(i % places(), i / places() % inputs, i / places() / inputs, step_.weight[i]);
+  }
+  std::size_t places() const { return static_cast<std::size_t>(step_.kernel * step_.kernel); }
+
   // [place][input][output]
-  FloatArray forward_weights(const FeatureStep& step) const {
+  FloatArray forward_weights() const {
     const auto inputs = static_cast<std::size_t>(windows_.in_channels);
     const auto outputs = static_cast<std::size_t>(windows_.out_channels);
-    FloatArray weights(static_cast<std::size_t>(step.kernel * step.kernel) * inputs * outputs);
+    FloatArray weights(places() * inputs * outputs);
     float* values = weights.data();
-    for_each_weight(step, [&](std::size_t place, std::size_t i, std::size_t o, float value) {
+    for_each_weight([&](std::size_t place, std::size_t i, std::size_t o, float value) {
       values[(place * inputs + i) * outputs + o] = value;
     });
     return weights;
   }
 
   // [place][output][input], the window turned around where it is used as one.
-  FloatArray backward_weights(const FeatureStep& step) const {
+  FloatArray backward_weights() const {
     const auto inputs = static_cast<std::size_t>(windows_.in_channels);
     const auto outputs = static_cast<std::size_t>(windows_.out_channels);
-    const auto places = static_cast<std::size_t>(step.kernel * step.kernel);
-    FloatArray weights(places * inputs * outputs);
+    FloatArray weights(places() * inputs * outputs);
     float* values = weights.data();
-    for_each_weight(step, [&](std::size_t place, std::size_t i, std::size_t o, float value) {
-      const std::size_t at = gathers() ? place : places - 1 - place;
+    for_each_weight([&](std::size_t place, std::size_t i, std::size_t o, float value) {
+      const std::size_t at = gathers() ? place : places() - 1 - place;
       values[(at * outputs + o) * inputs + i] = value;
     });
     return weights;
   }
 
+  FeatureStep step_;
   FloatArray weight_, weight_back_, bias_;
 };
 
