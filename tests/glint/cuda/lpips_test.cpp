@@ -108,6 +108,25 @@ TEST_CASE("The network runs once over a target that is kept, every time where th
   use_cpu();
 }
 
+namespace {
+
+// f() in a silent step: it launches kernels, and asks for nothing else.
+template <class F>
+void check_silent(F&& f) {
+  const DeviceCounters before = device_counters;
+  {
+    const SilentStep silent(true);
+    f();
+  }
+  CHECK(device_counters.launches > before.launches);
+  CHECK(device_counters.uploads == before.uploads);
+  CHECK(device_counters.downloads == before.downloads);
+  CHECK(device_counters.waits == before.waits);
+  CHECK(device_counters.allocations == before.allocations);
+}
+
+}  // namespace
+
 TEST_CASE("A silent step of LPIPS asks a GPU for nothing and does what any other does") {
   use_host_kernels();
   const Image rendered = rendered_picture(), target = target_picture(0);
@@ -118,17 +137,33 @@ TEST_CASE("A silent step of LPIPS asks a GPU for nothing and does what any other
   CHECK(std::isfinite(lpips.evaluate(rendered, target, 1, gradient, number)));
   const std::vector<float> told = read(gradient);
   gradient.array().fill(0);
-  const DeviceCounters before = device_counters;
-  {
-    const SilentStep silent(true);
-    CHECK(std::isnan(lpips.evaluate(rendered, target, 1, gradient, number)));
-  }
-  CHECK(device_counters.launches > before.launches);
-  CHECK(device_counters.uploads == before.uploads);
-  CHECK(device_counters.downloads == before.downloads);
-  CHECK(device_counters.waits == before.waits);
-  CHECK(device_counters.allocations == before.allocations);
+  check_silent([&] { CHECK(std::isnan(lpips.evaluate(rendered, target, 1, gradient, number))); });
   CHECK(read(gradient) == told);
+  use_cpu();
+}
+
+TEST_CASE("Pictures of several sizes take turns without asking a GPU for anything") {
+  use_host_kernels();
+  struct View {
+    Image rendered, target, gradient;
+  };
+  std::vector<View> views;
+  for (const auto& [width, height] : {std::pair{70, 67}, {50, 40}})
+    views.push_back(
+        {golden::prediction_image(width, height, 3),
+         golden::reference_image(width, height, 3),
+         Image(width, height, 3)}
+    );
+  Lpips lpips(tiny_weights());
+  const auto evaluate = [&](std::size_t i) {
+    views[i].gradient.array().fill(0);
+    lpips.evaluate(views[i].rendered, views[i].target, 1, views[i].gradient, i);
+  };
+  evaluate(0), evaluate(1);
+  const std::vector<float> first = read(views[0].gradient), second = read(views[1].gradient);
+  check_silent([&] { evaluate(0), evaluate(1); });
+  CHECK(read(views[0].gradient) == first);
+  CHECK(read(views[1].gradient) == second);
   use_cpu();
 }
 
