@@ -70,7 +70,7 @@ add_library(bullet INTERFACE)
 target_include_directories(bullet SYSTEM INTERFACE ${BULLET_INCLUDE_DIRS})
 target_link_libraries(bullet INTERFACE ${BULLET_LIBRARIES})
 
-# minizip has no CMake config; oneDNN's wants OpenCL's headers, which its CPU engine does not need.
+# minizip (tests write zips with it) has no CMake config; oneDNN's wants OpenCL's headers, which its CPU engine does not need.
 macro(glint_find_library name header library)
   find_path(GLINT_${name}_INCLUDE ${header} REQUIRED)
   find_library(GLINT_${name} ${library} REQUIRED)
@@ -80,24 +80,10 @@ macro(glint_find_library name header library)
                                                           ${GLINT_${name}_INCLUDE}
   )
 endmacro()
-glint_find_library(minizip minizip/unzip.h minizip)
-glint_find_library(onednn oneapi/dnnl/dnnl.hpp dnnl)
-
-# cuDNN runs the networks on a GPU, where it is installed.
-set(GLINT_HAS_CUDNN OFF)
-if(GLINT_HAS_CUDA)
-  # A header that came with version 8: older ones are left alone.
-  find_path(GLINT_cudnn_INCLUDE cudnn_version.h HINTS ${CMAKE_CUDA_TOOLKIT_INCLUDE_DIRECTORIES})
-  find_library(GLINT_cudnn cudnn HINTS ${CMAKE_CUDA_IMPLICIT_LINK_DIRECTORIES})
-  if(GLINT_cudnn_INCLUDE AND GLINT_cudnn)
-    set(GLINT_HAS_CUDNN ON)
-    glint_find_library(cudnn cudnn.h cudnn)
-    target_include_directories(
-      cudnn SYSTEM INTERFACE ${CMAKE_CUDA_TOOLKIT_INCLUDE_DIRECTORIES}  # what its header includes
-    )
-  endif()
+if(GLINT_TESTS)
+  glint_find_library(minizip minizip/zip.h minizip)
 endif()
-message(STATUS "cuDNN: ${GLINT_HAS_CUDNN}")
+glint_find_library(onednn oneapi/dnnl/dnnl.hpp dnnl)
 
 # Letters and lines: pango places them, cairo draws them, as pixels and as PDF.
 find_package(PkgConfig REQUIRED)

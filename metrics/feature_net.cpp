@@ -51,4 +51,16 @@ bool feature_net_accepts(const std::vector<FeatureStep>& steps, ImageSize size) 
   return true;
 }
 
+std::unique_ptr<FeatureNet> make_feature_net(
+    const std::vector<FeatureStep>& steps, ImageSize size
+) {
+  if (on_gpu() || !make_onednn_net.here()) return detail::make_own_net(steps, size);
+  return make_onednn_net(steps, size);
+}
+
+std::string feature_net_libraries() {
+  return onednn_version.here() ? "oneDNN " + onednn_version() + ", own kernels on a GPU"
+                               : "own kernels";
+}
+
 }  // namespace glint

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A chain of convolutions and poolings for images of one size, forwards and backwards. Features are
 // [H][W][channels]; one image at a time, so that the largest network fits beside a training and
-// every core works on the one that is waited for.
+// every core works on the one that is waited for. All pictures are where ops run.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "glint/core/image.h"
-#include "glint/core/service.h"
 #include "metrics/lpips_weights.h"
 
 namespace glint {
@@ -20,11 +19,15 @@ class FeatureNet {
   virtual ~FeatureNet() = default;
 
   virtual ImageSize size() const = 0;
-  // [H][W][3], to be filled before forward().
+  // Runs on images of another size from now on. False: make another net. Errors (kBadReference):
+  // images too small.
+  virtual bool fit(ImageSize) { return false; }
+  // [H][W][3 or more], of which the first three are to be filled before forward().
   virtual ImageRef input() = 0;
   virtual void forward() = 0;
 
-  // After forward(), which the next forward() overwrites.
+  // After forward(), which the next forward() overwrites. Channels behind those of the step are
+  // zero.
   virtual std::size_t num_taps() const = 0;
   virtual ImageView tap(std::size_t index) const = 0;
 
@@ -37,13 +40,11 @@ class FeatureNet {
 // Whether something is left of images of that size at the end of the chain.
 bool feature_net_accepts(const std::vector<FeatureStep>& steps, ImageSize size);
 
-// On a GPU in use by cuDNN where this program was built with it; otherwise, and with a warning
-// where cuDNN fails, by oneDNN on the host. `steps` is not kept. Errors (kBadReference): images too
-// small.
-inline constinit Service<std::unique_ptr<FeatureNet>(const std::vector<FeatureStep>&, ImageSize)>
-    make_feature_net{"LPIPS", "use the full build"};
+// For the device in use: by oneDNN on the CPU of a program that has it, otherwise by kernels of our
+// own. `steps` is not kept. Errors (kBadReference): images too small.
+std::unique_ptr<FeatureNet> make_feature_net(const std::vector<FeatureStep>& steps, ImageSize size);
 
-// "oneDNN 2.7.2, cuDNN 9.1.0 on a GPU".
-inline constinit Service<std::string()> feature_net_libraries{"LPIPS", "use the full build"};
+// "oneDNN 2.7.2, own kernels on a GPU".
+std::string feature_net_libraries();
 
 }  // namespace glint

@@ -9,6 +9,7 @@
 
 #include "glint/core/parallel.h"
 #include "metrics/feature_net_backends.h"
+#include "metrics/feature_net_kernels.h"
 
 namespace glint {
 namespace {
@@ -153,15 +154,6 @@ class Compiler {
   dnnl::stream& stream_;
 };
 
-// ReLU's gradient, from its output.
-void apply_relu_vjp(ImageView output, float* gradient) {
-  const std::size_t count = output.num_pixels() * static_cast<std::size_t>(output.channels);
-  parallel_for_blocks(count, 1 << 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (!(output.data[i] > 0)) gradient[i] = 0;
-  });
-}
-
 class OneDnnNet final : public FeatureNet {
  public:
   OneDnnNet(const std::vector<FeatureStep>& steps, ImageSize size)
@@ -221,6 +213,11 @@ class OneDnnNet final : public FeatureNet {
     return {data_of(stage.dst), stage.out.width, stage.out.height, stage.out_channels};
   }
 
+  static void apply_relu_vjp(ImageView output, float* gradient) {
+    const std::size_t count = output.num_pixels() * static_cast<std::size_t>(output.channels);
+    run_kernel(count, 1 << 16, ReluVjp{output.data, gradient});
+  }
+
   void backward(Stage& stage, float* dL_dout, float* dL_din) {
     Arguments arguments = stage.backward_arguments;
     arguments.insert(
@@ -246,17 +243,18 @@ class OneDnnNet final : public FeatureNet {
   std::vector<float> gradients_[2];
 };
 
-}  // namespace
-
-std::unique_ptr<FeatureNet> detail::make_onednn_net(
-    const std::vector<FeatureStep>& steps, ImageSize size
-) {
+std::unique_ptr<FeatureNet> make_net(const std::vector<FeatureStep>& steps, ImageSize size) {
   return std::make_unique<OneDnnNet>(steps, size);
 }
 
-std::string detail::onednn_version() {
+std::string version_text() {
   const dnnl_version_t* version = dnnl_version();
   return fmt::format("{}.{}.{}", version->major, version->minor, version->patch);
 }
+
+}  // namespace
+
+GLINT_PROVIDE(make_onednn_net, make_net)
+GLINT_PROVIDE(onednn_version, version_text)
 
 }  // namespace glint

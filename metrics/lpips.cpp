@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "metrics/feature_net.h"
-#include "metrics/lpips_formula.h"
+#include "metrics/lpips_kernels.h"
+#include "metrics/lpips_targets.h"
 #include "metrics/reduce.h"
 
 namespace glint {
@@ -46,112 +47,176 @@ Json lpips_provenance(const LpipsWeights& weights) {
 
 class Lpips::Impl {
  public:
-  Impl(std::shared_ptr<const LpipsWeights> weights, LpipsRange range)
-      : weights_(std::move(weights)), range_(range) {}
+  Impl(std::shared_ptr<const LpipsWeights> weights, LpipsRange range, std::size_t most_bytes)
+      : weights_(std::move(weights)), range_(range), most_bytes_(most_bytes) {
+    for (int c = 0; c < 3; ++c) inputs_[c] = lpips_input(range == LpipsRange::kSymmetric, c);
+  }
 
-  std::vector<LpipsMap> tap_maps(ImageView prediction, ImageView reference, bool clamp) {
-    check_maps(prediction, reference, {}, 3);
-    check_finite(prediction, ExitCode::kBadPrediction, "prediction");
-    check_finite(reference, ExitCode::kBadReference, "reference");
-    if (net_ == nullptr || net_->size() != reference.size())
-      net_ = make_feature_net(weights_->steps, reference.size());
-    feed(reference, false);
-    keep_reference_taps();
-    feed(prediction, clamp);
+  std::vector<LpipsMap> tap_maps(ImageView prediction, ImageView reference) {
+    check_images(prediction, reference);
+    fit_net(reference.size());
+    const LpipsTaps& b = features(brought(reference), {});
+    feed(brought(prediction), true);
     std::vector<LpipsMap> maps;
-    for (std::size_t i = 0; i < net_->num_taps(); ++i) maps.push_back(tap_map(i));
+    for (std::size_t i = 0; i < net_->num_taps(); ++i) maps.push_back(tap_map(pair_at(i, b)));
     return maps;
   }
 
-  // After tap_maps().
-  void add_gradient(float weight, ImageRef dL_dprediction) {
-    const ImageView dL_dinput = net_->backward([&](std::size_t tap, ImageRef dL_dtap) {
-      add_tap_gradient(tap, static_cast<double>(weight), dL_dtap);
-    });
-    for_each_row(dL_dinput.height, [&](int y) {
-      for (int x = 0; x < dL_dinput.width; ++x)
-        for (int c = 0; c < 3; ++c)
-          dL_dprediction.at(x, y, c) += inputs(c).gain * dL_dinput.at(x, y, c);
-    });
+  double evaluate(
+      const Image& rendered,
+      const Image& target,
+      float weight,
+      Image& dL_drendered,
+      std::optional<std::size_t> target_id
+  ) {
+    if (on_gpu())
+      check_shapes(rendered, target);  // values: nobody waits for them
+    else
+      check_images(rendered, target);
+    fit_net(rendered.size());
+    const LpipsTaps& b = features(target.on_device(), target_id);
+    feed(rendered.on_device(), false);
+    const double mean = mean_distance(b);
+    add_gradient(b, static_cast<double>(weight), dL_drendered.on_device());
+    return mean;
   }
 
   const LpipsWeights& weights() const { return *weights_; }
   LpipsRange range() const { return range_; }
+  std::size_t num_kept_targets() const { return targets_ ? targets_->num_kept() : 0; }
 
  private:
-  template <class F>
-  static void for_each_row(int height, F&& row) {
-    parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t y) {
-      row(static_cast<int>(y));
-    });
+  static constexpr std::size_t kGrain = 1 << 10;  // pixels
+  // For targets that are kept: a quarter of what is free, and bytes.
+  static constexpr std::size_t kShareOfDevice = 4, kMostOnHost = std::size_t{1} << 30;
+
+  static void check_images(ImageView prediction, ImageView reference) {
+    check_maps(prediction, reference, {}, 3);
+    check_finite(prediction, ExitCode::kBadPrediction, "prediction");
+    check_finite(reference, ExitCode::kBadReference, "reference");
+  }
+  static void check_shapes(const Image& prediction, const Image& reference) {
+    const bool fits = prediction.size() == reference.size() && prediction.channels() == 3 &&
+                      reference.channels() == 3;
+    GLINT_CHECK(fits, kBadPrediction, "LPIPS: two pictures of one size with 3 channels are needed");
   }
 
-  LpipsInput inputs(int channel) const {
-    return lpips_input(range_ == LpipsRange::kSymmetric, channel);
-  }
-
-  void feed(ImageView image, bool clamp) {
-    const ImageRef input = net_->input();
-    for_each_row(image.height, [&](int y) {
-      for (int x = 0; x < image.width; ++x)
-        for (int c = 0; c < 3; ++c) {
-          const float value = image.at(x, y, c);
-          const LpipsInput to = inputs(c);
-          input.at(x, y, c) = to.gain * (clamp ? std::clamp(value, 0.0f, 1.0f) : value) + to.offset;
-        }
-    });
-    net_->forward();
-  }
-
-  void keep_reference_taps() {
-    reference_.resize(net_->num_taps());
-    for (std::size_t i = 0; i < reference_.size(); ++i) {
-      const ImageView tap = net_->tap(i);
-      reference_[i].assign(tap.data, tap.pixel(0, tap.height));
+  // Nets and features are those of a device.
+  void fit_net(ImageSize size) {
+    if (net_ == nullptr || on_gpu() != net_on_gpu_) {
+      net_on_gpu_ = on_gpu();
+      const std::size_t room = on_gpu() ? device_room() / kShareOfDevice : kMostOnHost;
+      targets_ = std::make_unique<LpipsTargets>(std::min(most_bytes_, room));
+      lin_.clear();
+      net_ = make_feature_net(weights_->steps, size);
+    } else if (net_->size() != size && !net_->fit(size)) {
+      net_ = make_feature_net(weights_->steps, size);
     }
   }
 
-  ImageView reference_tap(std::size_t index) const {
-    ImageView tap = net_->tap(index);
-    tap.data = reference_[index].data();
-    return tap;
+  // An image of the host where ops run, until the next one is.
+  ImageView brought(ImageView image) {
+    if (!on_gpu()) return image;
+    glint::fit(brought_, image.size(), image.channels);
+    std::copy_n(image.data, brought_.values().size(), brought_.data());
+    return std::as_const(brought_).on_device();
   }
 
-  LpipsMap tap_map(std::size_t index) const {
-    const ImageView a = net_->tap(index), b = reference_tap(index);
-    const float* lin = weights_->lin[index].data();
-    LpipsMap map(a.width, a.height, 1);
-    for_each_row(a.height, [&](int y) {
-      for (int x = 0; x < a.width; ++x)
-        map.at(x, y) = lpips_tap<double>(a.pixel(x, y), b.pixel(x, y), lin, a.channels);
-    });
+  void feed(ImageView image, bool clamp) {
+    FeedLpips feed{image, {}, clamp, net_->input()};
+    std::copy_n(inputs_, 3, feed.inputs);
+    run_kernel(image.num_pixels(), kGrain, feed);
+    net_->forward();
+  }
+
+  static std::size_t num_values(ImageView tap) {
+    return tap.num_pixels() * static_cast<std::size_t>(tap.channels);
+  }
+
+  const LpipsTaps& features(ImageView reference, std::optional<std::size_t> id) {
+    if (const LpipsTaps* kept = targets_->find(id)) return *kept;
+    feed(reference, false);
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; i < net_->num_taps(); ++i)
+      bytes += num_values(net_->tap(i)) * sizeof(float);
+    LpipsTaps& place = targets_->place_for(id, bytes);
+    place.resize(net_->num_taps());
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      const ImageView tap = net_->tap(i);
+      place[i].resize(num_values(tap));
+      run_kernel(
+          place[i].size(), kGrain, KeepFeatures{tap.data, place[i].device_for_overwriting()}
+      );
+    }
+    return place;
+  }
+
+  // Filled up like the channels of taps.
+  const float* lin(std::size_t index) {
+    if (lin_.empty())
+      for (const std::vector<float>& weights : weights_->lin) {
+        const ImageView tap = net_->tap(lin_.size());
+        FloatArray& lin = lin_.emplace_back(weights.begin(), weights.end());
+        lin.resize(static_cast<std::size_t>(tap.channels));
+      }
+    return std::as_const(lin_[index]).on_device();
+  }
+
+  LpipsTapPair pair_at(std::size_t index, const LpipsTaps& reference) {
+    LpipsTapPair pair{net_->tap(index), net_->tap(index), lin(index)};
+    pair.b.data = reference[index].on_device();
+    return pair;
+  }
+
+  static LpipsMap tap_map(const LpipsTapPair& pair) {
+    LpipsMap map(pair.a.width, pair.a.height, 1);
+    double* values = map.on_device();
+    run_kernel(map.num_pixels(), kGrain, LpipsDistanceMap{pair, values});
     return map;
   }
 
-  void add_tap_gradient(std::size_t index, double weight, ImageRef dL_dtap) const {
-    const ImageView a = net_->tap(index), b = reference_tap(index);
-    const float* lin = weights_->lin[index].data();
-    const double dL_dvalue = weight / static_cast<double>(a.num_pixels());
-    for_each_row(a.height, [&](int y) {
-      for (int x = 0; x < a.width; ++x)
-        lpips_tap_vjp(
-            a.pixel(x, y), b.pixel(x, y), lin, a.channels, dL_dvalue, dL_dtap.pixel(x, y)
-        );
+  // Only told: in a silent step nobody asks.
+  double mean_distance(const LpipsTaps& reference) {
+    if (SilentStep::now()) return unknown<double>();
+    double sum = 0;
+    for (std::size_t i = 0; i < net_->num_taps(); ++i) {
+      const LpipsTapPair pair = pair_at(i, reference);
+      sum += sum_kernel(pair.a.size(), LpipsDistanceAt{pair}) /
+             static_cast<double>(pair.a.num_pixels());
+    }
+    return sum;
+  }
+
+  void add_gradient(const LpipsTaps& reference, double weight, ImageRef dL_dimage) {
+    const ImageView dL_dfed = net_->backward([&](std::size_t tap, ImageRef dL_dtap) {
+      const LpipsTapPair pair = pair_at(tap, reference);
+      const std::size_t count = pair.a.num_pixels();
+      run_kernel(
+          count, kGrain, LpipsDistanceVjp{pair, weight / static_cast<double>(count), dL_dtap}
+      );
     });
+    AddFedGradient add{dL_dfed, {}, dL_dimage};
+    std::copy_n(inputs_, 3, add.inputs);
+    run_kernel(dL_dfed.num_pixels(), kGrain, add);
   }
 
   std::shared_ptr<const LpipsWeights> weights_;
   LpipsRange range_;
-  std::unique_ptr<FeatureNet> net_;            // for the size of the last images
-  std::vector<std::vector<float>> reference_;  // its taps
+  std::size_t most_bytes_;
+  LpipsInput inputs_[3];
+  std::unique_ptr<FeatureNet> net_;  // for the size of the last images
+  bool net_on_gpu_ = false;
+  std::unique_ptr<LpipsTargets> targets_;
+  std::vector<FloatArray> lin_;
+  Image brought_;
 };
 
-Lpips::Lpips(std::shared_ptr<const LpipsWeights> weights, LpipsRange range)
-    : impl_(std::make_unique<Impl>(std::move(weights), range)) {}
+Lpips::Lpips(std::shared_ptr<const LpipsWeights> weights, LpipsRange range, std::size_t most_bytes)
+    : impl_(std::make_unique<Impl>(std::move(weights), range, most_bytes)) {}
 Lpips::~Lpips() = default;
 
 std::vector<LpipsMap> Lpips::tap_maps(ImageView prediction, ImageView reference) {
-  return impl_->tap_maps(prediction, reference, true);
+  return impl_->tap_maps(prediction, reference);
 }
 
 double Lpips::distance(ImageView prediction, ImageView reference, MaskView mask) {
@@ -161,12 +226,17 @@ double Lpips::distance(ImageView prediction, ImageView reference, MaskView mask)
   return *mean;
 }
 
-double Lpips::evaluate(ImageView rendered, ImageView target, float weight, ImageRef dL_drendered) {
-  const double mean = lpips_mean(impl_->tap_maps(rendered, target, false));
-  impl_->add_gradient(weight, dL_drendered);
-  return mean;
+double Lpips::evaluate(
+    const Image& rendered,
+    const Image& target,
+    float weight,
+    Image& dL_drendered,
+    std::optional<std::size_t> target_id
+) {
+  return impl_->evaluate(rendered, target, weight, dL_drendered, target_id);
 }
 
+std::size_t Lpips::num_kept_targets() const { return impl_->num_kept_targets(); }
 bool Lpips::accepts(ImageSize size) const { return feature_net_accepts(weights().steps, size); }
 const LpipsWeights& Lpips::weights() const { return impl_->weights(); }
 LpipsRange Lpips::range() const { return impl_->range(); }

@@ -45,8 +45,12 @@ using LpipsMap = BasicImage<double>;  // [h][w][1]
 // Not to be used by two threads at once.
 class Lpips {
  public:
+  // most_bytes: for targets that are kept; on a GPU never more than a quarter of what is free, on
+  // the CPU than 1 GiB.
   explicit Lpips(
-      std::shared_ptr<const LpipsWeights> weights, LpipsRange range = LpipsRange::kSymmetric
+      std::shared_ptr<const LpipsWeights> weights,
+      LpipsRange range = LpipsRange::kSymmetric,
+      std::size_t most_bytes = ~std::size_t{0}
   );
   ~Lpips();
 
@@ -59,9 +63,18 @@ class Lpips {
   // lpips_map() over it. Errors besides: kBadReference for an empty mask.
   double distance(ImageView prediction, ImageView reference, MaskView mask = {});
 
-  // For training: returns the distance, nothing clamped, and adds weight * gradient to
-  // dL_drendered. Errors: as tap_maps().
-  double evaluate(ImageView rendered, ImageView target, float weight, ImageRef dL_drendered);
+  // For training: returns the distance (only told: NaN in a silent step), nothing clamped, and adds
+  // weight * gradient to dL_drendered. A target that comes again has a number, always of the same
+  // picture: its features are kept where there is room. Errors: as tap_maps(); on a GPU nobody
+  // looks whether values are finite.
+  double evaluate(
+      const Image& rendered,
+      const Image& target,
+      float weight,
+      Image& dL_drendered,
+      std::optional<std::size_t> target_id = {}
+  );
+  std::size_t num_kept_targets() const;
 
   // False: images too small for the network.
   bool accepts(ImageSize size) const;

@@ -27,7 +27,7 @@ inline LpipsInput lpips_input(bool symmetric, int channel) {
 
 // Euclidean norm over the channels.
 template <class T, class F>
-T feature_norm(const F* feature, int channels) {
+GLINT_HD T feature_norm(const F* feature, int channels) {
   T sum = 0;
   for (int c = 0; c < channels; ++c) sum += T(feature[c]) * T(feature[c]);
   return sqrt_of(sum);
@@ -35,7 +35,7 @@ T feature_norm(const F* feature, int channels) {
 
 // Sum over the channels of lin * (a / |a| - b / |b|)^2.
 template <class T, class F>
-T lpips_tap(const F* a, const F* b, const F* lin, int channels) {
+GLINT_HD T lpips_tap(const F* a, const F* b, const F* lin, int channels) {
   const T inv_a = T(1) / (feature_norm<T>(a, channels) + T(kLpipsEpsilon));
   const T inv_b = T(1) / (feature_norm<T>(b, channels) + T(kLpipsEpsilon));
   T sum = 0;
@@ -48,7 +48,9 @@ T lpips_tap(const F* a, const F* b, const F* lin, int channels) {
 
 // Adds the gradient with respect to a. Where a is all zero, its norm counts as constant.
 template <class T, class F>
-void lpips_tap_vjp(const F* a, const F* b, const F* lin, int channels, T dL_dtap, F* dL_da) {
+GLINT_HD void lpips_tap_vjp(
+    const F* a, const F* b, const F* lin, int channels, T dL_dtap, F* dL_da
+) {
   const T norm_a = feature_norm<T>(a, channels);
   const T inv_a = T(1) / (norm_a + T(kLpipsEpsilon));
   const T inv_b = T(1) / (feature_norm<T>(b, channels) + T(kLpipsEpsilon));

@@ -50,8 +50,7 @@ LpipsWeights load_lpips_weights(const fs::path& path);
 fs::path lpips_weights_place();
 // The weights of `network` in a place: a file, or lpips_<network>_v0.1.npz in a folder. Nothing
 // where there is no such file, or the file is of another network. An empty `network` means the
-// file's own, in a folder alex. Nothing either in a program without lpips_networks. Errors
-// (kEnvironment): a file that cannot be used.
+// file's own, in a folder alex. Errors (kEnvironment): a file that cannot be used.
 std::shared_ptr<const LpipsWeights> lpips_weights_at(const fs::path& place, std::string network);
 
 }  // namespace glint

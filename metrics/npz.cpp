@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "metrics/npz.h"
 
-#include <minizip/unzip.h>
+#include <libdeflate.h>
 
-#include <array>
+#include <algorithm>
 #include <cstring>
 #include <memory>
+#include <string_view>
 
 #include "glint/core/error.h"
 #include "glint/core/npy.h"
@@ -15,47 +16,116 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30;  // what entries may unpack to, together
 
-struct CloseZip {
-  void operator()(void* zip) const { unzClose(zip); }
-};
-using Zip = std::unique_ptr<void, CloseZip>;
-
 void check_zip(bool good, const fs::path& path) {
   GLINT_CHECK(
       good, kBadReference, "{}: not a complete .npz file; copy or write it again", path.string()
   );
 }
 
-std::string entry_name(const Zip& zip, const fs::path& path) {
-  std::array<char, 256> name{};
-  unz_file_info64 info{};
-  const int result = unzGetCurrentFileInfo64(
-      zip.get(), &info, name.data(), name.size() - 1, nullptr, 0, nullptr, 0
-  );
-  check_zip(result == UNZ_OK && info.size_filename < name.size(), path);
-  return name.data();
+// The numbers of a zip, little-endian; errors: behind its end.
+class ZipBytes {
+ public:
+  ZipBytes(std::string_view bytes, const fs::path& path) : bytes_(bytes), path_(path) {}
+
+  std::string_view text(std::size_t at, std::size_t count) const {
+    check_zip(at <= bytes_.size() && count <= bytes_.size() - at, path_);
+    return bytes_.substr(at, count);
+  }
+  std::uint32_t number(std::size_t at, std::size_t num_bytes) const {
+    std::uint32_t value = 0;
+    for (const char byte : text(at, num_bytes)) {
+      value = value >> 8 | static_cast<std::uint32_t>(static_cast<unsigned char>(byte)) << 24;
+    }
+    return value >> 8 * (4 - num_bytes);
+  }
+  bool has(std::size_t at, std::string_view signature) const {
+    return text(at, signature.size()) == signature;
+  }
+  std::size_t size() const { return bytes_.size(); }
+  void check(bool good) const { check_zip(good, path_); }
+
+ private:
+  std::string_view bytes_;
+  const fs::path& path_;
+};
+
+// Signatures and sizes of APPNOTE.TXT 4.3: of an entry, of its line in the directory behind all
+// entries, of the record behind the directory.
+constexpr std::string_view kEntry{"PK\x03\x04", 4}, kLine{"PK\x01\x02", 4}, kEnd{"PK\x05\x06", 4};
+constexpr std::size_t kEntryBytes = 30, kLineBytes = 46, kEndBytes = 22;
+constexpr std::size_t kMostComment = 0xffff;
+constexpr std::uint32_t kStored = 0, kDeflated = 8;
+
+struct ZipEntry {
+  std::string name;
+  std::uint32_t method, crc;
+  std::size_t packed_bytes, bytes, at;  // at: where the entry begins
+};
+
+std::size_t find_end(const ZipBytes& zip) {
+  zip.check(zip.size() >= kEndBytes);
+  const std::size_t last = zip.size() - kEndBytes;
+  for (std::size_t back = 0; back <= std::min(last, kMostComment); ++back)
+    if (zip.has(last - back, kEnd) && zip.number(last - back + 20, 2) == back) return last - back;
+  zip.check(false);
+  return 0;
 }
 
-// Sizes in the archive are not looked at: an entry ends where its data does, and no entry is larger
-// than `limit`.
-std::string read_entry(const Zip& zip, const fs::path& path, std::size_t limit) {
-  check_zip(unzOpenCurrentFile(zip.get()) == UNZ_OK, path);
-  std::string content;
-  std::array<char, 1 << 16> chunk{};
-  while (true) {
-    const int count = unzReadCurrentFile(zip.get(), chunk.data(), chunk.size());
-    check_zip(count >= 0, path);
-    if (count == 0) break;
-    content.append(chunk.data(), static_cast<std::size_t>(count));
-    GLINT_CHECK(
-        content.size() <= limit,
-        kBadReference,
-        "{}: more than {} MiB of arrays; this is no file of LPIPS weights",
-        path.string(),
-        kMaxBytes >> 20
-    );
+std::vector<ZipEntry> directory_of(const ZipBytes& zip) {
+  const std::size_t end = find_end(zip);
+  std::size_t at = zip.number(end + 16, 4);
+  std::vector<ZipEntry> entries(zip.number(end + 10, 2));
+  for (ZipEntry& entry : entries) {
+    zip.check(zip.has(at, kLine));
+    const std::size_t name_bytes = zip.number(at + 28, 2);
+    entry.name = zip.text(at + kLineBytes, name_bytes);
+    entry.method = zip.number(at + 10, 2);
+    entry.crc = zip.number(at + 16, 4);
+    entry.packed_bytes = zip.number(at + 20, 4), entry.bytes = zip.number(at + 24, 4);
+    entry.at = zip.number(at + 42, 4);
+    at += kLineBytes + name_bytes + zip.number(at + 30, 2) + zip.number(at + 32, 2);
   }
-  check_zip(unzCloseCurrentFile(zip.get()) == UNZ_OK, path);  // also compares the checksum
+  zip.check(at == end);
+  return entries;
+}
+
+struct FreeInflater {
+  void operator()(libdeflate_decompressor* inflater) const {
+    libdeflate_free_decompressor(inflater);
+  }
+};
+
+std::string inflated(std::string_view packed, std::size_t bytes, const ZipBytes& zip) {
+  const std::unique_ptr<libdeflate_decompressor, FreeInflater> inflater(
+      libdeflate_alloc_decompressor()
+  );
+  std::string content(bytes, '\0');
+  const auto result = libdeflate_deflate_decompress(
+      inflater.get(), packed.data(), packed.size(), content.data(), content.size(), nullptr
+  );
+  zip.check(result == LIBDEFLATE_SUCCESS);  // also where it would be shorter
+  return content;
+}
+
+// No entry is larger than `limit`.
+std::string read_entry(
+    const ZipBytes& zip, const ZipEntry& entry, const fs::path& path, std::size_t limit
+) {
+  GLINT_CHECK(
+      entry.bytes <= limit,
+      kBadReference,
+      "{}: more than {} MiB of arrays; this is no file of LPIPS weights",
+      path.string(),
+      kMaxBytes >> 20
+  );
+  zip.check(zip.has(entry.at, kEntry));
+  const std::size_t begin =
+      entry.at + kEntryBytes + zip.number(entry.at + 26, 2) + zip.number(entry.at + 28, 2);
+  const std::string_view packed = zip.text(begin, entry.packed_bytes);
+  zip.check(entry.method == kDeflated || (entry.method == kStored && packed.size() == entry.bytes));
+  std::string content =
+      entry.method == kStored ? std::string(packed) : inflated(packed, entry.bytes, zip);
+  zip.check(libdeflate_crc32(0, content.data(), content.size()) == entry.crc);
   return content;
 }
 
@@ -93,29 +163,25 @@ NpzArray parse_array(std::string_view file, const std::string& where) {
   return array;
 }
 
-NpzArrays read_arrays(const fs::path& path) {
+}  // namespace
+
+NpzArrays read_npz(const fs::path& path) {
   std::error_code code;
   GLINT_CHECK(fs::is_regular_file(path, code), kBadReference, "{}: no such file", path.string());
-  const Zip zip(unzOpen64(path.c_str()));
-  check_zip(zip != nullptr, path);
+  const std::string file = read_file(path);
+  const ZipBytes zip(file, path);
   NpzArrays arrays;
   std::size_t limit = kMaxBytes;
-  int position = unzGoToFirstFile(zip.get());
-  for (; position == UNZ_OK; position = unzGoToNextFile(zip.get())) {
-    const std::string file = entry_name(zip, path);
-    const std::string content = read_entry(zip, path, limit);
+  for (const ZipEntry& entry : directory_of(zip)) {
+    const std::string content = read_entry(zip, entry, path, limit);
     limit -= content.size();
-    const std::string where = fmt::format("{}: {}", path.string(), file);
-    const std::string name = file.ends_with(".npy") ? file.substr(0, file.size() - 4) : file;
+    const std::string where = fmt::format("{}: {}", path.string(), entry.name);
+    const bool npy = entry.name.ends_with(".npy");
+    const std::string name = npy ? entry.name.substr(0, entry.name.size() - 4) : entry.name;
     const bool fresh = arrays.emplace(name, parse_array(content, where)).second;
     GLINT_CHECK(fresh, kBadReference, "{}: comes twice", where);
   }
-  check_zip(position == UNZ_END_OF_LIST_OF_FILE, path);
   return arrays;
 }
-
-}  // namespace
-
-GLINT_PROVIDE(read_npz, read_arrays)
 
 }  // namespace glint

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "glint/core/files.h"
-#include "glint/core/service.h"
 
 namespace glint {
 
@@ -20,7 +19,6 @@ using NpzArrays = std::map<std::string, NpzArray>;  // by name, without ".npy"
 
 // At most 1 GiB of arrays. Errors (kBadReference): no file, not a zip or a damaged one, an entry
 // that is no array of float32, whose shape does not fit its bytes, or that comes twice.
-inline constinit Service<NpzArrays(const fs::path&)> read_npz{
-    "reading .npz files", "use the full build"};
+NpzArrays read_npz(const fs::path& path);
 
 }  // namespace glint

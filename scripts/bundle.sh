@@ -110,11 +110,8 @@ fi
 $bundle/glint-bench dataset info $bundle/scene.safetensors >&2
 gzip $bundle/scene.safetensors  # floats of normals and depth: half of it
 
-cudnn=$({ find /usr/lib /usr/local/cuda/ -name 'libcudnn*.so.[0-9]*.*' -type f -printf '%s\n' 2>/dev/null || true; } |
-  awk '{ sum += $1 } END { if (NR) printf "here it has %.0f MiB", sum / 1048576; else print "none is installed here" }')
 cat >$bundle/BUNDLE.md <<ABOUT
-Commit $(git describe --always --dirty), CUDA architectures $arch, needs ${glibc/_/ } or newer. Without cuDNN ($cudnn,
-its libraries have several hundred MiB): the networks of LPIPS are not in a lean build, and its columns say so.
+Commit $(git describe --always --dirty), CUDA architectures $arch, needs ${glibc/_/ } or newer.
 ABOUT
 
 find $bundle -type f -printf '%10s  %P\n' | sort -rn

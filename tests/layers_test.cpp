@@ -419,7 +419,6 @@ TEST_CASE(
       "metrics/fusion/clusters.cpp",
       "metrics/fusion/tsdf_open3d.cpp",
       "metrics/mesh/",
-      "metrics/npz.cpp",
       "metrics/tools/mesh",
       "reports/figures/"};
   std::size_t heavy = 0;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The kernels of run_kernel and sum_kernel (glint/core/kernel.h) on a GPU: those that the headers
-// list which have them (*_kernels.h).
+// The kernels of run_kernel, sum_kernel (glint/core/kernel.h) and run_block_kernel (block_kernel.h)
+// on a GPU: those that the headers list which have them (*_kernels.h).
 #pragma once
 
 #include <vector>
 
+#include "glint/core/block_kernel.h"
 #include "glint/core/kernel.h"
 #include "glint/cuda/block.h"
 #include "kernel_lists.h"  // made by the build
@@ -100,10 +101,17 @@ void sum_on(ImageSize size, const Kernel& kernel, SumOf<Kernel>* out) {
   if (out != nullptr) executor<Exec>().launch(1, UniteSums<Sum>{partial.data(), blocks, out});
 }
 
-// Gives a kernel of run_kernel or of sum_kernel its place on Exec.
+template <class Exec, class Kernel>
+void run_blocks_on(std::size_t blocks, const Kernel& kernel) {
+  executor<Exec>().launch(blocks, kernel);
+}
+
+// Gives a kernel of whichever kind its place on Exec.
 template <class Exec, class Kernel>
 void offer() {
-  if constexpr (requires(const Kernel& kernel) { kernel(0, 0); })
+  if constexpr (requires { typename Kernel::Shared; })
+    BlocksOnGpu<Kernel>::run = run_blocks_on<Exec, Kernel>;
+  else if constexpr (requires(const Kernel& kernel) { kernel(0, 0); })
     SumOnGpu<Kernel>::run = sum_on<Exec, Kernel>;
   else
     OnGpu<Kernel>::run = run_on<Exec, Kernel>;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/perceptual.h"
 
+#include <map>
+#include <optional>
+
 #include "glint/scene/scene.h"
 #include "metrics/lpips.h"
 
@@ -9,20 +12,26 @@ namespace {
 
 class LpipsLoss final : public PerceptualLoss {
  public:
-  LpipsLoss(std::shared_ptr<const LpipsWeights> weights, LpipsRange range)
-      : lpips_(std::move(weights), range) {}
+  LpipsLoss(std::shared_ptr<const LpipsWeights> weights, LpipsRange range, const Scene& scene)
+      : lpips_(std::move(weights), range) {
+    for (std::size_t i = 0; i < scene.train.size(); ++i) photos_[&scene.train[i].rgb] = i;
+  }
 
   bool accepts(ImageSize size) const override { return lpips_.accepts(size); }
 
-  // Pictures are fed and gradients added on the host on either device; the network may run on the
-  // GPU (feature_net.h).
   double evaluate(const Image& rendered, const Image& target, float weight, Image& dL_drendered)
       override {
-    return lpips_.evaluate(rendered, target, weight, dL_drendered.ref());
+    return lpips_.evaluate(rendered, target, weight, dL_drendered, number_of(target));
   }
 
  private:
+  std::optional<std::size_t> number_of(const Image& target) const {
+    const auto found = photos_.find(&target);
+    return found == photos_.end() ? std::nullopt : std::optional(found->second);
+  }
+
   Lpips lpips_;
+  std::map<const Image*, std::size_t> photos_;  // only compared with
 };
 
 std::shared_ptr<const LpipsWeights> weights_here() {
@@ -37,11 +46,13 @@ std::string name_of(const LpipsWeights* weights) {
 
 }  // namespace
 
-std::unique_ptr<PerceptualLoss> make_perceptual_loss(bool unit_range, std::string& note) {
+std::unique_ptr<PerceptualLoss> make_perceptual_loss(
+    const Scene& scene, bool unit_range, std::string& note
+) {
   const LpipsRange range = unit_range ? LpipsRange::kUnit : LpipsRange::kSymmetric;
   auto weights = weights_here();
   note = weights ? name_of(weights.get()) : "no weights";
-  return weights ? std::make_unique<LpipsLoss>(std::move(weights), range) : nullptr;
+  return weights ? std::make_unique<LpipsLoss>(std::move(weights), range, scene) : nullptr;
 }
 
 std::string perceptual_network() {
@@ -57,7 +68,7 @@ std::unique_ptr<PerceptualLoss> wanted_perceptual_loss(
 ) {
   if (config.lambda_lpips <= 0) return nullptr;
   std::string note;
-  auto loss = make_perceptual_loss(config.lpips_unit_range, note);
+  auto loss = make_perceptual_loss(scene, config.lpips_unit_range, note);
   for (const View& view : scene.train)
     if (loss != nullptr && !loss->accepts(view.camera.size())) {
       loss = nullptr;

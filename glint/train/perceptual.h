@@ -17,7 +17,7 @@ class PerceptualLoss {
   // False: images too small for the network.
   virtual bool accepts(ImageSize size) const = 0;
   // rendered, target: [H][W][3]. Adds weight * gradient to dL_drendered and returns the unweighted
-  // loss.
+  // loss, which is only told (NaN in a silent step).
   virtual double evaluate(
       const Image& rendered, const Image& target, float weight, Image& dL_drendered
   ) = 0;
@@ -42,8 +42,12 @@ struct PerceptualConfig {
 };
 
 // With VGG16 where its weights are found, otherwise with AlexNet; `note` says which. Null without
-// weights; `note` says so. Errors (kEnvironment): weights that cannot be used.
-std::unique_ptr<PerceptualLoss> make_perceptual_loss(bool unit_range, std::string& note);
+// weights; `note` says so. Photos of the scene's training views, which stay where and what they are
+// while there is a loss, are known when they come again. Errors (kEnvironment): weights that cannot
+// be used.
+std::unique_ptr<PerceptualLoss> make_perceptual_loss(
+    const Scene& scene, bool unit_range, std::string& note
+);
 
 // The network that it finds on this machine, "vgg, sha256 ..."; empty: none. Looked for once in a
 // process.

@@ -51,8 +51,7 @@ Examined cuda() {
 // Which networks LPIPS has weights of.
 Examined lpips_weights() {
   const fs::path place = lpips_weights_place();
-  if (place.empty() || !make_feature_net.here())
-    return {"lpips", "off: its columns will say 'no weights'", true, ""};
+  if (place.empty()) return {"lpips", "off: its columns will say 'no weights'", true, ""};
   std::vector<std::string> found;
   try {
     for (const LpipsNetwork& network : lpips_networks())
@@ -93,7 +92,7 @@ std::vector<Examined> examine(const CommonOptions& common) {
        disk >= kNeededDisk,
        "2 GiB are needed; free some or choose another --out"},
       cuda(),
-      {"networks", feature_net_libraries.here() ? feature_net_libraries() : "none", true, ""},
+      {"networks", feature_net_libraries(), true, ""},
       lpips_weights(),
       font(),
       {"revision", git_revision(), true, ""}};

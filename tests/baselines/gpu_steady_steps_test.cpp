@@ -10,6 +10,7 @@
 #include "glint/render/void_steps.h"
 #include "glint/train/trainer.h"
 #include "tests/support/gpu_backends.h"
+#include "tests/support/lpips_weights_here.h"
 #include "tests/support/small_room.h"
 
 using namespace glint;
@@ -105,24 +106,37 @@ std::string bytes_of(const Method& method) {
   return bytes;
 }
 
+// The launches of a step.
+std::uint64_t check_steady(const Trained& trained) {
+  INFO(trained.name);
+  const Scene scene = two_views_of_room();
+  const auto method = create_method(trained.id, trained.options);
+  const Costs costs = train_silently(*method, scene, kSilentFrom, true);
+  CHECK(costs.interrupted == 0);
+  CHECK(costs.steps == kEnd - kSteady);
+  CHECK(costs.counters.uploads == 0);
+  CHECK(costs.counters.downloads == 0);
+  CHECK(costs.counters.waits == 0);
+  CHECK(costs.counters.allocations == 0);
+  CHECK(costs.counters.launches > 10 * (kEnd - kSteady));
+  CHECK(take_void_steps() == 0);
+  return costs.counters.launches / (kEnd - kSteady);
+}
+
 }  // namespace
 
 TEST_CASE("A steady step asks a GPU for nothing, whatever the method") {
   use_host_kernels();
-  for (const Trained& trained : all_trained()) {
-    INFO(trained.name);
-    const Scene scene = two_views_of_room();
-    const auto method = create_method(trained.id, trained.options);
-    const Costs costs = train_silently(*method, scene, kSilentFrom, true);
-    CHECK(costs.interrupted == 0);
-    CHECK(costs.steps == kEnd - kSteady);
-    CHECK(costs.counters.uploads == 0);
-    CHECK(costs.counters.downloads == 0);
-    CHECK(costs.counters.waits == 0);
-    CHECK(costs.counters.allocations == 0);
-    CHECK(costs.counters.launches > 10 * (kEnd - kSteady));
-    CHECK(take_void_steps() == 0);
-  }
+  for (const Trained& trained : all_trained()) check_steady(trained);
+  use_cpu();
+}
+
+TEST_CASE("Nor does a steady step with LPIPS") {
+  use_host_kernels();
+  const std::uint64_t without = check_steady(Trained("envgs"));
+  const LpipsWeightsHere weights;
+  CHECK(check_steady(Trained("envgs")) > without + 10);  // a network, there and back
+  for (const char* id : {"glint/release", "rt-splatting"}) check_steady(Trained(id));
   use_cpu();
 }
 
@@ -149,6 +163,7 @@ TEST_CASE(
     "A training of silent or of recorded steps ends with the bytes of one that is told everything"
 ) {
   use_host_kernels();
+  const LpipsWeightsHere weights;  // for those that look at LPIPS
   const Trained exposed{"pgsr, exposure", "pgsr", kExposure};
   for (const Trained& trained : {Trained("2dgs"), exposed, Trained("glint/release")}) {
     INFO(trained.name);

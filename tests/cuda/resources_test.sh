@@ -19,6 +19,7 @@ CompositeRays 0
 BackwardRays 0
 SumWindows 0
 GatherSurfels 0
+ConvolveTile 0
 FirstSurface 2560 (list of all hits; of masked pixels, in one method)
 '
 

@@ -57,7 +57,7 @@ MaskImage columns(int begin, int end) {
 
 Image gradient_of(Lpips& lpips, float weight = 1) {
   Image gradient(kWidth, kHeight, 3);
-  lpips.evaluate(prediction(), reference(), weight, gradient.ref());
+  lpips.evaluate(prediction(), reference(), weight, gradient);
   return gradient;
 }
 
@@ -139,7 +139,7 @@ TEST_CASE("As a loss LPIPS returns the unweighted distance and adds the weighted
   Lpips lpips = tiny_lpips();
   const Image one = gradient_of(lpips, 1);
   Image gradient(kWidth, kHeight, 3, 10.0f);
-  const double loss = lpips.evaluate(prediction(), reference(), 0.5f, gradient.ref());
+  const double loss = lpips.evaluate(prediction(), reference(), 0.5f, gradient);
   CHECK(loss == lpips.distance(prediction(), reference()));
   for (std::size_t i = 0; i < one.values().size(); ++i)
     CHECK(gradient.data()[i] == Approx(10.0f + 0.5f * one.data()[i]).epsilon(1e-6));

@@ -15,16 +15,16 @@ namespace {
 
 std::vector<fs::path> kernel_headers() {
   std::vector<fs::path> headers;
-  for (const char* folder : {"glint/render", "glint/train", "baselines"})
+  for (const char* folder : {"glint/render", "glint/train", "baselines", "metrics"})
     for (const auto& entry : fs::directory_iterator(folder))
       if (entry.path().string().ends_with("_kernels.h")) headers.push_back(entry.path());
   return headers;
 }
 
-// Structs that run_kernel() or sum_kernel() take: by their call operator.
+// Structs that run_kernel(), sum_kernel() or run_block_kernel() take: by their call operator.
 std::vector<std::string> kernels_of(const std::string& text) {
   static const std::regex part(
-      R"(\nstruct (\w+)|operator\(\)\((?:std::size_t(?: \w+)?|int \w+, int \w+)\) const)"
+      R"(\nstruct (\w+)|operator\(\)\((?:std::size_t(?: \w+)?|int \w+, int \w+|Block& \w+, Shared& \w+)\) const)"
   );
   std::vector<std::string> kernels;
   std::string last;
@@ -44,7 +44,9 @@ std::string list_of(const std::string& text) {
 
 template <class Kernel>
 bool is_offered() {
-  if constexpr (requires(const Kernel& kernel) { kernel(0, 0); })
+  if constexpr (requires { typename Kernel::Shared; })
+    return BlocksOnGpu<Kernel>::run != nullptr;
+  else if constexpr (requires(const Kernel& kernel) { kernel(0, 0); })
     return SumOnGpu<Kernel>::run != nullptr;
   else
     return OnGpu<Kernel>::run != nullptr;

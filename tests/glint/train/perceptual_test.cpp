@@ -6,9 +6,7 @@
 #include "glint/scene/scene.h"
 #include "metrics/lpips.h"
 #include "tests/metrics/golden_images.h"
-#include "tests/metrics/tiny_lpips.h"
-#include "tests/support/temp_folder.h"
-#include "tests/support/write_npz.h"
+#include "tests/support/lpips_weights_here.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -16,16 +14,6 @@ using namespace glint::test;
 namespace {
 
 constexpr int kWidth = 48, kHeight = 40;
-
-// Random weights of AlexNet, where the loss looks for them.
-struct Weights {
-  TempFolder folder;
-  Weights() {
-    write_npz(folder / "lpips_alex_v0.1.npz", random_arrays(lpips_networks()[0]));
-    ::setenv("GLINT_LPIPS_WEIGHTS", folder.path().c_str(), 1);
-  }
-  ~Weights() { ::unsetenv("GLINT_LPIPS_WEIGHTS"); }
-};
 
 Scene scene_of(int width, int height) {
   Scene scene;
@@ -50,7 +38,7 @@ struct Wanted {
 }  // namespace
 
 TEST_CASE("LPIPS with AlexNet stands in where there is no VGG16, and the warning says so") {
-  const Weights weights;
+  const LpipsWeightsHere weights;
   const Wanted wanted(scene_of(kWidth, kHeight));
   REQUIRE(wanted.loss != nullptr);
   CHECK(wanted.config.lambda_lpips > 0);
@@ -59,7 +47,7 @@ TEST_CASE("LPIPS with AlexNet stands in where there is no VGG16, and the warning
 
 TEST_CASE("LPIPS is off for views too small for its network, without weights, and unasked") {
   {
-    const Weights weights;
+    const LpipsWeightsHere weights;
     const Wanted small(scene_of(20, 20));
     CHECK(small.loss == nullptr);
     CHECK(small.config.lambda_lpips == 0);
@@ -76,7 +64,7 @@ TEST_CASE("LPIPS is off for views too small for its network, without weights, an
 }
 
 TEST_CASE("LPIPS joins the loss when its iteration has come: value and gradient are the metric's") {
-  const Weights weights;
+  const LpipsWeightsHere weights;
   PerceptualConfig config;
   config.lambda_lpips = 0.25f, config.lpips_from = 10;
   config.lpips_unit_range = GENERATE(false, true);
@@ -92,7 +80,26 @@ TEST_CASE("LPIPS joins the loss when its iteration has come: value and gradient 
       lpips_weights_at(weights.folder.path(), "alex"),
       config.lpips_unit_range ? LpipsRange::kUnit : LpipsRange::kSymmetric
   );
-  const double value = lpips.evaluate(rendered, target, 0.25f, expected.ref());
+  const double value = lpips.evaluate(rendered, target, 0.25f, expected);
   CHECK(stats.terms.at("lpips") == Approx(0.25 * value).epsilon(1e-12));
   CHECK(std::equal(gradient.values().begin(), gradient.values().end(), expected.data()));
+}
+
+TEST_CASE("Photos of the scene are known when they come again; other targets are looked at anew") {
+  const LpipsWeightsHere weights;
+  Scene scene = scene_of(kWidth, kHeight);
+  scene.train[0].rgb = golden::reference_image(kWidth, kHeight, 3);
+  const Wanted wanted(scene);
+  const Image rendered = golden::prediction_image(kWidth, kHeight, 3);
+  Image other = scene.train[0].rgb;
+  const auto evaluate = [&](const Image& target) {
+    Image gradient(kWidth, kHeight, 3);
+    const double loss = wanted.loss->evaluate(rendered, target, 1, gradient);
+    return std::pair{loss, std::vector<float>(gradient.values().begin(), gradient.values().end())};
+  };
+  const auto first = evaluate(scene.train[0].rgb);
+  CHECK(evaluate(other) == first);
+  other.at(3, 4, 1) += 0.5f;
+  CHECK(evaluate(other) != first);
+  CHECK(evaluate(scene.train[0].rgb) == first);
 }

@@ -9,6 +9,7 @@
 #include "glint/method.h"
 #include "glint/scene/ply.h"
 #include "reports/perf/perf_scene.h"
+#include "tests/support/gpu_backends.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -75,6 +76,15 @@ TEST_CASE("the kernels of an op are timed one by one, with their launches") {
   const std::string text = kernels_to_text(options, rows);
   CHECK_THAT(text, Catch::Contains(rows[0].kernel) && Catch::Contains("ms in kernels"));
   CHECK(kernels_to_json(options, rows)["rows"].size() == rows.size());
+}
+
+TEST_CASE("LPIPS is timed on a GPU alone") {
+  PerfOptions options = small_options();
+  options.only = "LPIPS*";
+  CHECK(make_perf_cases(options).empty());
+  test::use_host_kernels();
+  CHECK(make_perf_cases(options).size() == 1);
+  use_cpu();
 }
 
 TEST_CASE("the timed scene can be written for other programs to be timed on") {
