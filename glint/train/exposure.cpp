@@ -5,8 +5,34 @@
 #include "glint/core/kernel.h"
 #include "glint/render/map_ops.h"
 #include "glint/render/void_steps.h"
+#include "glint/train/training_state.h"
 
 namespace glint {
+
+void ExposureLoss::visit_state(TrainingState& state) {
+  std::vector<double> numbers;  // [views][6]
+  std::vector<std::uint32_t> steps;
+  for (const ViewExposure& e : std::as_const(exposures_)) {
+    for (const double number :
+         {e.log_gain, e.offset, e.first[0], e.first[1], e.second[0], e.second[1]})
+      numbers.push_back(number);
+    steps.push_back(static_cast<std::uint32_t>(e.steps));
+  }
+  state("numbers", numbers);
+  state("steps", steps);
+  if (!state.reading()) return;
+  GLINT_CHECK(
+      steps.size() == exposures_.size() && numbers.size() == 6 * steps.size(),
+      kBadReference,
+      "exposures of {} views, expected {}",
+      steps.size(),
+      exposures_.size()
+  );
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const double* n = &numbers[6 * i];
+    exposures_[i] = {n[0], n[1], {n[2], n[3]}, {n[4], n[5]}, static_cast<int>(steps[i])};
+  }
+}
 
 PhotometricTerms ExposureLoss::evaluate(
     std::size_t view,

@@ -10,6 +10,8 @@
 
 namespace glint {
 
+class TrainingState;
+
 struct ExposureConfig {
   bool enabled = false;
   int from = 1000;
@@ -42,6 +44,7 @@ class ExposureLoss {
       Image& gradient
   );
   const Array<ViewExposure>& exposures() const { return exposures_; }
+  void visit_state(TrainingState& state);
 
  private:
   ExposureConfig config_;

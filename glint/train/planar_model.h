@@ -82,6 +82,7 @@ class PlanarModel {
   void visit_state(State& state) {
     state("set", set_);
     state("views", views_);
+    state("exposure", photometric_);
   }
 
  private:

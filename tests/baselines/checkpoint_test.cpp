@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "glint/method.h"
+#include "tests/support/all_trained.h"
 #include "tests/support/gpu_backends.h"
 #include "tests/support/small_room.h"
 
@@ -31,9 +32,12 @@ Scene few_views() {
 
 // What a method is after all steps; it writes a checkpoint before each step of `stops`.
 std::string train_through(
-    const std::string& id, const Scene& scene, const std::vector<int>& stops, const fs::path& folder
+    const Trained& trained,
+    const Scene& scene,
+    const std::vector<int>& stops,
+    const fs::path& folder
 ) {
-  const auto method = create_method(id);
+  const auto method = create_method(trained.id, trained.options);
   method->initialize(scene, {kSteps, 3});
   for (int i = 0; i < kSteps; ++i) {
     if (std::find(stops.begin(), stops.end(), i) != stops.end())
@@ -42,8 +46,8 @@ std::string train_through(
   }
   return bytes_of(*method);
 }
-std::string train_from(const std::string& id, const Scene& scene, const fs::path& checkpoint) {
-  const auto method = create_method(id);
+std::string train_from(const Trained& trained, const Scene& scene, const fs::path& checkpoint) {
+  const auto method = create_method(trained.id, trained.options);
   method->initialize(scene, {kSteps, 3});
   TrainingProgress done;
   read_checkpoint(checkpoint, *method, done);
@@ -56,14 +60,14 @@ std::string train_from(const std::string& id, const Scene& scene, const fs::path
 TEST_CASE("A training that goes on ends with the same bytes, whatever the method") {
   const Scene scene = few_views();
   int shift = 0;  // another place for every method
-  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
+  for (const Trained& trained : all_trained()) {
     const TempFolder folder;
     const std::vector<int> stops{1 + shift % 12, 14 + shift % 25};
     shift += 5;
-    const std::string expected = train_through(id, scene, stops, folder.path());
+    const std::string expected = train_through(trained, scene, stops, folder.path());
     for (const int stop : stops) {
-      INFO(id << " from step " << stop);
-      CHECK((train_from(id, scene, folder.path() / std::to_string(stop)) == expected));
+      INFO(trained.name << " from step " << stop);
+      CHECK((train_from(trained, scene, folder.path() / std::to_string(stop)) == expected));
     }
   }
 }
@@ -73,8 +77,8 @@ TEST_CASE("Checkpoints of a GPU are those of its memory") {
   watch_memory(false);
   Scene scene = few_views();
   const TempFolder folder;
-  const std::string expected = train_through("2dgs", scene, {25}, folder.path());
-  CHECK((train_from("2dgs", scene, folder.path() / "25") == expected));
+  const std::string expected = train_through(Trained("2dgs"), scene, {25}, folder.path());
+  CHECK((train_from(Trained("2dgs"), scene, folder.path() / "25") == expected));
   use_cpu();
 }
 

@@ -9,6 +9,7 @@
 #include "glint/method.h"
 #include "glint/render/void_steps.h"
 #include "glint/train/trainer.h"
+#include "tests/support/all_trained.h"
 #include "tests/support/gpu_backends.h"
 #include "tests/support/lpips_weights_here.h"
 #include "tests/support/small_room.h"
@@ -34,24 +35,6 @@ void bring_to_device(const Scene& scene) {
     for (const MapSet* maps : {&view.priors, &view.truth})
       maps->for_each([](const MapRow&, const Image& map) { map.array().device_for_reading(); });
   }
-}
-
-// Options that change what a step does: exposure counts from the start, whatever SSIM is.
-const Json kExposure{{"exposure", true}, {"exposure_from", 0}, {"exposure_max_ssim_loss", 3.0}};
-
-struct Trained {
-  std::string name, id;
-  Json options = Json::object();
-  Trained(std::string name, std::string id, Json options)
-      : name(std::move(name)), id(std::move(id)), options(std::move(options)) {}
-  explicit Trained(const std::string& id) : name(id), id(id) {}
-};
-std::vector<Trained> all_trained() {
-  std::vector<Trained> all;
-  for (const auto& [id, spec] : Registry<MethodSpec>::all()) all.emplace_back(id);
-  for (const char* id : {"pgsr", "tsgs"})
-    all.emplace_back(std::string(id) + ", exposure", id, kExposure);
-  return all;
 }
 
 struct Costs {
