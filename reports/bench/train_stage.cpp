@@ -3,8 +3,9 @@
 
 #include "glint/core/machine.h"
 #include "glint/train/trainer.h"
-#include "reports/bench/run_stage.h"
 #include "reports/bench/stages.h"
+#include "reports/records/earlier_run.h"
+#include "reports/records/stage_files.h"
 
 namespace glint {
 
@@ -26,15 +27,17 @@ TrainOptions train_options(const RunSpec& spec) {
 }  // namespace
 
 std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
-  clear_run_folder(spec.folder);
   auto method = create_method(spec.method, spec.config);
+  EarlierRun earlier(spec.folder);
   write_run_spec(spec, method->config());
   reset_peak_memory();
   const TrainReport report = train(*method, scene, train_options(spec));
   const double peak_memory = peak_memory_mb();
-  method->save(spec.folder.string());
+  const auto files =
+      save_in_place(spec.folder, [&](const fs::path& folder) { method->save(folder.string()); });
   write_trained(spec, {report.seconds, peak_memory, method->warnings(), method->notes()});
-  end_stage(spec.folder, Stage::kTrain, spec.train_document);
+  write_stage(spec.folder, Stage::kTrain, spec.train_document, files);
+  earlier.drop();
   return method;
 }
 

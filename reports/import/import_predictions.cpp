@@ -9,6 +9,7 @@
 #include "metrics/depth.h"
 #include "metrics/normal.h"
 #include "reports/pictures/strip.h"
+#include "reports/records/earlier_run.h"
 
 namespace glint {
 namespace {
@@ -210,7 +211,7 @@ std::vector<std::string> import_predictions(
     notes.emplace_back("8-bit images: their PSNR is psnr-8bit, which is not ranked beside psnr");
   note_absent(folder, found, scene.test.front(), notes);
   note_conventions(found.views.front(), scene.test.front(), options, notes);
-  clear_run_folder(spec.folder);
+  remove_renders(spec.folder / "renders");
   write_run_spec(
       spec,
       {{"imported", folder.string()},

@@ -8,6 +8,7 @@
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
 #include "reports/import/import_predictions.h"
+#include "reports/records/earlier_run.h"
 #include "reports/records/environment.h"
 #include "reports/verbs/headline_scores.h"
 #include "reports/verbs/single_run.h"
@@ -237,6 +238,7 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
       common.records_file(profile), {spec.scene, spec.method, spec.options.seed}, arguments
   );
   Record record = record_of(spec, profile, arguments.predictions);
+  EarlierRun earlier(spec.folder);
   record.warnings = import_predictions(arguments.predictions, scene, spec, options);
   log::info(record.warnings.front());  // whose renders they are
   for (std::size_t i = 1; i < record.warnings.size(); ++i) log::warn(record.warnings[i]);
@@ -257,6 +259,7 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
   const Camera& camera = scene.test.front().camera;
   record.resolution = fmt::format("{}x{}", camera.width, camera.height);
   append_record(common.records_file(profile), record);
+  earlier.drop();
   log::info("recorded in " + common.records_file(profile).string());
   return print_scores(common, spec.folder, record.metrics, arguments.all);
 }

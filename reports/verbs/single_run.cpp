@@ -6,6 +6,7 @@
 #include "datasets/dataset.h"
 #include "glint/core/progress.h"
 #include "reports/bench/stage_documents.h"
+#include "reports/records/earlier_run.h"
 
 namespace glint {
 
@@ -26,6 +27,7 @@ void check_new_run(const fs::path& folder, bool force) {
       "{}: holds a run already; --force trains it again, --run names another folder",
       folder.string()
   );
+  check_run_folder(folder);
 }
 
 }  // namespace
