@@ -45,13 +45,6 @@ std::string join(const std::vector<std::string>& parts, std::string_view separat
   return text;
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string csv_value(const TableCell& cell, const TableColumn& column) {
   const bool text = !column.field.empty();
   if (!cell.has_value()) return csv_field(word_of(cell));
