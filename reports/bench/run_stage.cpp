@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/run_stage.h"
 
+#include "glint/core/left_behind.h"
+
 namespace glint {
 namespace {
 
@@ -15,6 +17,7 @@ std::vector<std::string> outputs_of(Stage stage) {
 }  // namespace
 
 void begin_stage(const fs::path& run, Stage stage) {
+  remove_left_behind(run);
   for (const Stage undone : {stage, Stage::kScore}) forget_stage(run, undone);
 }
 

@@ -7,6 +7,7 @@
 
 #include "glint/core/config.h"
 #include "glint/core/error.h"
+#include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
 #include "glint/scene/maps.h"
 #include "reports/records/stage_files.h"
@@ -176,7 +177,7 @@ bool is_our_run(const fs::path& folder) {
   std::error_code code;
   const fs::path path = folder / "config.json";
   if (!fs::is_regular_file(path, code)) return false;
-  const Json json = Json::parse(read_file(path), nullptr, false);
+  const Json json = parse_json(read_file(path));
   if (!json.is_object()) return false;
   if (json.value(kWrittenByField, Json()) == kWrittenBy) return true;
   constexpr std::array kFields = {
@@ -208,6 +209,7 @@ void check_run_folder(const fs::path& folder) {
 
 EarlierRun::EarlierRun(const fs::path& folder) : folder_(folder) {
   check_run_folder(folder);
+  remove_left_behind(folder);
   std::error_code code;
   const fs::path previous = folder / kPreviousRun;
   if (is_our_run(folder) && is_finished(folder)) {

@@ -28,8 +28,10 @@ Scores earlier_cost(const RunSpec& spec) {
   }
   const fs::path path = spec.folder / "metrics.json";
   if (!fs::exists(path)) return cost;
-  const Json json = read_json_object(path, ExitCode::kBadPrediction);
-  if (json.contains("metrics"))
+  const Json json = parse_json(read_file(path));
+  if (!json.is_object())
+    log::warn(fmt::format("{}: damaged; fps and surfels are not known any more", path.string()));
+  if (json.is_object() && json.value("metrics", Json()).is_object())
     for (const char* id : {"fps", "num-surfels"})
       if (const auto it = json["metrics"].find(id); it != json["metrics"].end() && it->is_number())
         cost[id] = it->get<double>();
@@ -53,10 +55,16 @@ MeshProtocol mesh_protocol_of(const RunSpec& spec) {
 }
 
 int print_scores(
-    const CommonOptions& common, const fs::path& folder, const Scores& means, bool all
+    const CommonOptions& common,
+    const fs::path& folder,
+    const Scores& means,
+    bool all,
+    const std::vector<std::string>& warnings = {}
 ) {
   if (common.json) {
-    print_json({{"run", folder.string()}, {"metrics", means}});
+    Json json = {{"run", folder.string()}, {"metrics", means}};
+    if (!warnings.empty()) json["warnings"] = warnings;
+    print_json(json);
     return 0;
   }
   print_text(all ? all_scores(means) : headline_scores(means));
@@ -225,6 +233,15 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
       "pgsr-official",
       arguments.method
   );
+  for (const fs::path& part : fs::path(arguments.method + "/").parent_path())
+    GLINT_CHECK(
+        why_no_folder_name(part.string()).empty(),
+        kUsage,
+        "--method '{}': '{}' {}; results lie in a folder of that name",
+        arguments.method,
+        part.string(),
+        why_no_folder_name(part.string())
+    );
   LoadOptions load;
   load.max_pixels = arguments.max_pixels;
   const Scene scene = load_scene(arguments.dataset, load);
@@ -261,7 +278,7 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
   append_record(common.records_file(profile), record);
   earlier.drop();
   log::info("recorded in " + common.records_file(profile).string());
-  return print_scores(common, spec.folder, record.metrics, arguments.all);
+  return print_scores(common, spec.folder, record.metrics, arguments.all, record.warnings);
 }
 
 void add_prediction_options(CLI::App& verb, CLI::Option& predictions, EvalArguments& arguments) {
