@@ -241,9 +241,10 @@ TriangleMesh fuse_depth(
   TsdfReport local;
   GLINT_CHECK(num_views > 0, kBadPrediction, "no view to fuse");
   const int stride = depth_stride(view(0), options);
-  const auto volume = make_volume(options, stride);
+  auto volume = make_volume(options, stride);
   estimate(view, num_views, options, stride, volume->bytes_per_voxel(), local);
   const TriangleMesh fused = integrate_all(view, num_views, options, *volume);
+  volume.reset();  // pieces need memory of their own
   local.fused_triangles = fused.faces.size();
   ClusterCount clusters;
   TriangleMesh mesh = keep_large_clusters(fused, options.min_cluster, &clusters);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "glint/core/printable.h"
+
 namespace glint {
 
 namespace {
