@@ -17,12 +17,12 @@ namespace glint {
 namespace {
 
 void check_names(const SceneIndex& index, std::vector<Finding>& findings) {
-  std::set<std::string> names;
+  std::map<std::string, std::string> names;
   bool has_train = false;
   for (const ViewSource& view : index.views) {
     has_train = has_train || view.is_train;
-    if (!names.insert(view.name).second)
-      findings.push_back({"duplicate-view", view.where, "the name is used twice; rename one view"});
+    if (const std::string problem = view_name_problem(view.name, names); !problem.empty())
+      findings.push_back({"view-name", view.where, problem});
     if (view.is_train && view.is_test)
       findings.push_back(
           {"test-in-train", view.where, "listed as train and as test view; remove it from one list"}

@@ -63,6 +63,9 @@ void check_values(
          where,
          "holds negative depth; expected metres in front of the camera, or 0"}
     );
+  if (kind == MapKind::kColor)
+    if (const std::string problem = color_range_problem(map); !problem.empty())
+      findings.push_back({"color-values", where, problem});
   if (kind != MapKind::kNormal) return;
   // Anti-aliased edges leave a few.
   const std::size_t count = count_not_unit(map);

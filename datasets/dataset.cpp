@@ -93,10 +93,7 @@ std::string format_vector(Vec3f v) {
 }  // namespace
 
 const LoaderSpec& find_loader(const fs::path& folder, const std::string& id) {
-  std::error_code code;
-  GLINT_CHECK(
-      fs::exists(folder, code), kBadReference, "{}: no such folder or file", folder.string()
-  );
+  check_exists(folder, "folder or file");
   if (!id.empty()) return loader_called(id);
   const std::vector<Candidate> surest = surest_loaders(folder);
   GLINT_CHECK(

@@ -31,6 +31,19 @@ std::optional<Finding> camera_problem(const Camera& camera, const std::string& w
     if (!std::isfinite(row.x + row.y + row.z + camera.translation_cam_from_world[i]))
       return Finding{"non-finite", where, "the pose is not finite"};
   }
+  constexpr double kFarthest = 1e6;  // metres
+  const double distance = length(camera.translation_cam_from_world);
+  if (distance > kFarthest)
+    return Finding{
+        "pose",
+        where,
+        fmt::format(
+            "the camera stands {:g} m from the origin; expected at most {:g}: the pose is damaged, "
+            "or "
+            "in another unit",
+            distance,
+            kFarthest
+        )};
   if (!(camera.fx > 0 && camera.fy > 0)) {
     return Finding{
         "intrinsics",

@@ -136,6 +136,11 @@ void check_index(const SceneIndex& index) {
       index.problems.front().where,
       index.problems.front().message
   );
+  std::map<std::string, std::string> names;
+  for (const ViewSource& view : index.views) {
+    const std::string problem = view_name_problem(view.name, names);
+    GLINT_CHECK(problem.empty(), kBadReference, "{}: {}", view.where, problem);
+  }
   const bool has_train = std::any_of(
       index.views.begin(), index.views.end(), [](const ViewSource& view) { return view.is_train; }
   );

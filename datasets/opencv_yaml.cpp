@@ -12,11 +12,41 @@ namespace {
 
 constexpr double kMaxSide = 1 << 20;  // pixels; more is no image size
 
+// OpenCV's parser calls itself for each level, and files of cameras have four.
+constexpr int kDeepestYaml = 50;
+
+// An upper bound: a level is a bracket, or stands further to the right, or behind a dash.
+int yaml_depth(std::string_view text) {
+  int deepest = 0, brackets = 0, columns = 0;
+  bool in_margin = true;
+  for (const char c : text) {
+    if (c == '\n')
+      in_margin = true, columns = 0;
+    else if (in_margin && (c == ' ' || c == '-' || c == '?' || c == '\t'))
+      ++columns;
+    else
+      in_margin = false;
+    if (c == '[' || c == '{') ++brackets;
+    if ((c == ']' || c == '}') && brackets > 0) --brackets;
+    deepest = std::max(deepest, brackets + columns / 2);
+  }
+  return deepest;
+}
+
 class YamlFile {
  public:
   explicit YamlFile(const fs::path& path) : path_(path.string()) {
     const std::string text = read_file(path);
     GLINT_CHECK(!text.empty(), kBadReference, "{}: the file is empty", path_);
+    GLINT_CHECK(
+        yaml_depth(text) <= kDeepestYaml,
+        kBadReference,
+        "{}: nested more than {} deep; expected matrices and a list of names: it is damaged, write "
+        "it "
+        "again",
+        path_,
+        kDeepestYaml
+    );
     try {
       constexpr int kMode =
           cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML;
@@ -32,6 +62,12 @@ class YamlFile {
           )
       );
     }
+    GLINT_CHECK(
+        storage_.root().isMap(),
+        kBadReference,
+        "{}: holds no fields; expected 'names' and a matrix per camera",
+        path_
+    );
   }
 
   const std::string& path() const { return path_; }

@@ -41,7 +41,7 @@ class PackedReader {
     return it->second;
   }
   std::vector<std::string> list(const std::string& key) const {
-    const auto json = nlohmann::json::parse(field(key), nullptr, false);
+    const Json json = parse_json(field(key));
     const bool good = json.is_array() && std::all_of(json.begin(), json.end(), [](const auto& v) {
                         return v.is_string();
                       });
@@ -238,9 +238,36 @@ void check_vectors(std::span<const Vec3f> vectors, std::size_t count, const std:
   check_finite({reinterpret_cast<const float*>(vectors.data()), 3 * count}, where);
 }
 
+// Results lie in folders of these names.
+void check_names(const Scene& scene, const std::string& file) {
+  const std::string why = why_no_folder_name(scene.name);
+  GLINT_CHECK(
+      why.empty(),
+      kBadReference,
+      "{}: __metadata__: name: '{}' {}; pack a folder with a plain name",
+      file,
+      scene.name,
+      why
+  );
+  std::map<std::string, std::string> names;
+  for (const Split& split : packed::kSplits)
+    for (const View& view : scene.*split.views) {
+      const std::string problem = view_name_problem(view.name, names);
+      GLINT_CHECK(
+          problem.empty(),
+          kBadReference,
+          "{}: __metadata__: {}_views: {}",
+          file,
+          split.name,
+          problem
+      );
+    }
+}
+
 }  // namespace
 
 void packed::check_scene(const Scene& scene, const std::string& file) {
+  check_names(scene, file);
   GLINT_CHECK(!scene.train.empty(), kBadReference, "{}: no train views", file);
   for (const Split& split : kSplits)
     for (std::size_t i = 0; i < (scene.*split.views).size(); ++i)
@@ -261,7 +288,9 @@ void packed::check_scene(const Scene& scene, const std::string& file) {
   );
 }
 
-Scene read_packed_scene(const fs::path& file) {
+namespace {
+
+Scene read_scene(const fs::path& file) {
   PackedReader reader(file);
   check_format(reader);
   Scene scene;
@@ -278,6 +307,12 @@ Scene read_packed_scene(const fs::path& file) {
   reader.check_all_used();
   packed::check_scene(scene, file.string());
   return scene;
+}
+
+}  // namespace
+
+Scene read_packed_scene(const fs::path& file) {
+  return read_within_memory(file, [&] { return read_scene(file); });
 }
 
 }  // namespace glint

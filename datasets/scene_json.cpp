@@ -37,8 +37,19 @@ void read_scene_json(const fs::path& folder, SceneIndex& index) {
   std::error_code code;
   if (!fs::exists(path, code)) return;
   try {
-    const Json json = Json::parse(read_file(path));
+    const std::string text = read_file(path);
+    check_json_depth(text, path);
+    const Json json = Json::parse(text);
     index.name = json.value("name", index.name);
+    const std::string why = why_no_folder_name(index.name);
+    GLINT_CHECK(
+        why.empty(),
+        kBadReference,
+        "{}: name: '{}' {}; results lie in a folder of that name, give a plain one",
+        path.string(),
+        index.name,
+        why
+    );
     index.dataset = json.value("dataset", index.dataset);
     index.spec_hash = json.value("hash", index.spec_hash);
     index.simulated_priors = json.value("simulated_priors", false);

@@ -170,7 +170,9 @@ ViewSource make_view(const FrameReader& reader, const fs::path& folder) {
 
 Json parse_transforms(const fs::path& path) {
   try {
-    Json json = Json::parse(read_file(path));
+    const std::string text = read_file(path);
+    check_json_depth(text, path);
+    Json json = Json::parse(text);
     GLINT_CHECK(
         json.is_object() && json.contains("frames") && json["frames"].is_array(),
         kBadReference,

@@ -27,7 +27,7 @@ bool is_export(const fs::path& folder) {
   std::error_code code;
   const fs::path file = folder / "scene.json";
   if (!fs::is_regular_file(file, code)) return false;
-  const Json json = Json::parse(read_file(file), nullptr, false);
+  const Json json = parse_json(read_file(file));
   return json.is_object() && json.value("exported_by", Json()) == kExportedBy;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/glassroom/glassroom.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 
 #include "datasets/glassroom/contact_sheet.h"
@@ -13,6 +11,8 @@
 #include "datasets/glassroom/write_scene.h"
 #include "datasets/scene_index.h"
 #include "glint/core/error.h"
+#include "glint/core/interrupt.h"
+#include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 
@@ -36,8 +36,9 @@ class UnfinishedFolder {
   explicit UnfinishedFolder(const fs::path& final_path) {
     const fs::path absolute = fs::absolute(final_path).lexically_normal();
     const fs::path target = absolute.has_filename() ? absolute : absolute.parent_path();
-    path_ = target.parent_path() / fmt::format(".{}.{}", target.filename().string(), ::getpid());
+    path_ = unfinished_path(target);
     std::error_code code;
+    remove_left_behind(target.parent_path(), false);
     fs::remove_all(path_, code);
     fs::create_directories(path_, code);
     GLINT_CHECK(!code, kEnvironment, "{}: cannot be created ({})", path_.string(), code.message());
@@ -65,14 +66,36 @@ class UnfinishedFolder {
   fs::path path_;
 };
 
+// Of a folder whose scene.json is damaged: what is left of it says so, or the key of the data.
+bool was_a_scene(const fs::path& folder, const std::string& description) {
+  std::error_code code;
+  return description.find("\"dataset\": \"glassroom\"") != std::string::npos ||
+         fs::exists(folder / "keys" / "data.json", code);
+}
+
+// The first file of a finished scene that is not there or not as it was written; empty: none.
+// Earlier versions made no mesh of what lies behind the glass.
+std::string damaged_file(const fs::path& folder) {
+  const Json files = read_json_object(folder / "scene.json").value("files", Json::object());
+  for (const auto& [name, hash] : files.items()) {
+    std::error_code code;
+    const fs::path file = folder / name;
+    const bool there = fs::is_regular_file(file, code);
+    if (!there && file.filename() == kBehindMeshFile) continue;
+    if (!there || hash != fmt::format("{:016x}", hash_name(read_file(file)))) return name;
+  }
+  return {};
+}
+
 // Hash of the scene that a folder holds; empty when there is nothing. A folder with anything else
 // in it is not touched.
 std::string stored_hash(const fs::path& folder) {
   std::error_code code;
   if (!fs::exists(folder, code) || fs::is_empty(folder, code)) return {};
   const fs::path description = folder / "scene.json";
-  const Json json =
-      fs::exists(description, code) ? Json::parse(read_file(description), nullptr, false) : Json();
+  const std::string text = fs::exists(description, code) ? read_file(description) : "";
+  const Json json = parse_json(text);
+  if (!json.is_object() && was_a_scene(folder, text)) return {};
   GLINT_CHECK(
       json.is_object() && json.value("dataset", "") == "glassroom" && json.contains("hash") &&
           json["hash"].is_string(),
@@ -278,7 +301,11 @@ std::string hash_of(const GlassRoomOptions& options) {
 }
 
 bool make_room(const GlassRoomOptions& options, const fs::path& folder, bool again) {
-  if (stored_hash(folder) == hash_of(options) && !again) {
+  const bool is_same = stored_hash(folder) == hash_of(options) && !again;
+  const std::string damaged = is_same ? damaged_file(folder) : "";
+  if (!damaged.empty())
+    log::warn(fmt::format("{}: damaged; making the scene again", (folder / damaged).string()));
+  if (is_same && damaged.empty()) {
     // Made before there was such a file: the scene is the same, so nothing is rendered again.
     if (!fs::exists(folder / "gt" / kBehindMeshFile))
       write_meshes(build_glassroom_scene(options)->room.scene, folder);

@@ -6,6 +6,7 @@
 #include "datasets/glassroom/fresnel.h"
 #include "datasets/glassroom/path_integrator.h"
 #include "glint/core/error.h"
+#include "glint/core/interrupt.h"
 #include "glint/core/parallel.h"
 
 namespace glint {
@@ -148,6 +149,7 @@ PathTracerOutput PathTracer::render(const Camera& camera, const PathTracerSettin
   PathTracerOutput out = empty_output(camera.width, camera.height);
   const Rendering rendering(state_->rays, state_->lights, camera, settings, out);
   parallel_for(static_cast<std::size_t>(camera.height), 1, [&](std::size_t row) {
+    throw_if_interrupted();
     for (int x = 0; x < camera.width; ++x) rendering.pixel(x, static_cast<int>(row));
   });
   return out;

@@ -25,6 +25,15 @@ namespace glint {
 
 using Json = nlohmann::ordered_json;
 
+// Lists and objects inside each other: deeper ones, which nobody writes, would fill the stack when
+// they are copied or printed.
+inline constexpr int kDeepestJson = 100;
+bool is_nested_too_deeply(std::string_view json_text);
+// Errors (kBadReference): the file's text is nested too deeply.
+void check_json_depth(std::string_view json_text, const std::filesystem::path& file);
+// Discarded (is_discarded()) where it is no JSON, or nested too deeply.
+Json parse_json(std::string_view text);
+
 // The file, which must hold a JSON object. Errors (`code`): read_file()'s, anything else in it.
 Json read_json_object(const std::filesystem::path& path, ExitCode code = ExitCode::kBadReference);
 
@@ -114,7 +123,7 @@ void config_override(Config& config, std::string_view assignment, std::string_vi
       assignment
   );
   const std::string text(assignment.substr(equals + 1));
-  Json value = Json::parse(text, nullptr, false);
+  Json value = parse_json(text);
   if (value.is_discarded()) value = text;
   Json object = Json::object();
   object[std::string(assignment.substr(0, equals))] = value;

@@ -29,6 +29,10 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
+struct OutOfMemory : Error {
+  explicit OutOfMemory(const std::string& message) : Error(ExitCode::kEnvironment, message) {}
+};
+
 // The same failure with another exit code: loaders do not know whether a file is a prediction or a
 // reference, their callers do.
 template <class F>

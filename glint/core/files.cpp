@@ -7,17 +7,58 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <fstream>
 
 #include "glint/core/error.h"
+#include "glint/core/left_behind.h"
 
 namespace glint {
 
-std::string read_file(const fs::path& path) {
+namespace {
+
+bool lacks_permission(const std::error_code& code) {
+  return code == std::errc::permission_denied || code == std::errc::operation_not_permitted;
+}
+
+std::string read_whole(std::ifstream& in, std::size_t block) {
+  std::string content;
+  for (std::size_t size = 0; in.good(); content.resize(size)) {
+    content.resize(size + block);
+    in.read(&content[size], static_cast<std::streamsize>(block));
+    size += static_cast<std::size_t>(in.gcount());
+  }
+  return content;
+}
+
+}  // namespace
+
+void throw_out_of_memory(const fs::path& path) {
   std::error_code code;
-  GLINT_CHECK(fs::exists(path, code), kBadReference, "{}: no such file", path.string());
+  const std::uintmax_t bytes = fs::file_size(path, code);
+  throw OutOfMemory(fmt::format(
+      "{}: out of memory while reading it ({} bytes on disk); use smaller images or fewer threads",
+      path.string(),
+      code ? 0 : bytes
+  ));
+}
+
+void check_exists(const fs::path& path, std::string_view what) {
+  std::error_code code;
+  if (fs::exists(path, code)) return;
+  GLINT_CHECK(
+      !lacks_permission(code),
+      kEnvironment,
+      "{}: permission denied; let this user read it and enter its folder",
+      path.string()
+  );
+  GLINT_CHECK(!code, kBadReference, "{}: cannot be looked up ({})", path.string(), code.message());
+  GLINT_CHECK(code, kBadReference, "{}: no such {}", path.string(), what);
+}
+
+std::string read_file(const fs::path& path) {
+  check_exists(path);
+  std::error_code code;
   GLINT_CHECK(
       !fs::is_directory(path, code),
       kBadReference,
@@ -25,19 +66,21 @@ std::string read_file(const fs::path& path) {
       path.string()
   );
   std::ifstream in(path, std::ios::binary);
+  const int why = errno;
   GLINT_CHECK(
-      in.good(), kBadReference, "{}: cannot be opened ({})", path.string(), std::strerror(errno)
+      in.good() || (why != EACCES && why != EPERM),
+      kEnvironment,
+      "{}: permission denied; let this user read it",
+      path.string()
+  );
+  GLINT_CHECK(
+      in.good(), kBadReference, "{}: cannot be opened ({})", path.string(), std::strerror(why)
   );
   // The size it claims may be wrong; where it is right, one read ends the file.
   constexpr std::uintmax_t kSmallest = 1 << 16, kLargest = 1 << 26;
   const std::uintmax_t claimed = fs::file_size(path, code);
   const std::size_t block = std::clamp(code ? kSmallest : claimed + 1, kSmallest, kLargest);
-  std::string content;
-  for (std::size_t size = 0; in.good(); content.resize(size)) {
-    content.resize(size + block);
-    in.read(&content[size], static_cast<std::streamsize>(block));
-    size += static_cast<std::size_t>(in.gcount());
-  }
+  std::string content = read_within_memory(path, [&] { return read_whole(in, block); });
   GLINT_CHECK(!in.bad(), kBadReference, "{}: reading failed", path.string());
   return content;
 }
@@ -48,10 +91,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
   GLINT_CHECK(
       !code, kEnvironment, "{}: cannot create its folder ({})", path.string(), code.message()
   );
-  // The extension stays last: image writers choose the format by it.
-  const fs::path temporary =
-      path.parent_path() /
-      fmt::format(".{}.{}{}", path.stem().string(), ::getpid(), path.extension().string());
+  const fs::path temporary = unfinished_path(path);
   try {
     write(temporary);
     fs::rename(temporary, path);
@@ -61,20 +101,6 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
   } catch (...) {
     fs::remove(temporary, code);
     throw;
-  }
-}
-
-void remove_stale_temporaries(const fs::path& path) {
-  const std::string before = fmt::format(".{}.", path.stem().string()),
-                    after = path.extension().string();
-  std::error_code code;
-  for (const auto& entry : fs::directory_iterator(path.parent_path(), code)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(before) || !name.ends_with(after)) continue;
-    const std::string pid = name.substr(before.size(), name.size() - before.size() - after.size());
-    const bool number =
-        !pid.empty() && pid.size() < 10 && pid.find_first_not_of("0123456789") == std::string::npos;
-    if (number && ::kill(std::stoi(pid), 0) != 0 && errno == ESRCH) fs::remove(entry.path(), code);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,15 +14,30 @@ namespace glint {
 
 namespace fs = std::filesystem;
 
-// The whole file. Errors (kBadReference): missing, unreadable, a folder.
+[[noreturn]] void throw_out_of_memory(const fs::path& path);  // while reading it
+
+// Errors: there is no such file or folder (kBadReference); it cannot be seen for want of a
+// permission (kEnvironment).
+void check_exists(const fs::path& path, std::string_view what = "file");
+
+// The whole file. Errors (kBadReference): missing, unreadable, a folder; (kEnvironment): without
+// permission, larger than the memory.
 std::string read_file(const fs::path& path);
+
+// What `read` makes of a file; where memory runs out, the error names the file and its size.
+template <class F>
+auto read_within_memory(const fs::path& path, F&& read) {
+  try {
+    return read();
+  } catch (const std::bad_alloc&) {
+    throw_out_of_memory(path);
+  }
+}
 
 // Calls `write(temporary)`, then renames to `path`; on any exception removes the temporary and
 // throws on. Creates the parent folder. Errors (kEnvironment): cannot create, write, or rename.
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write);
 void write_file(const fs::path& path, std::string_view content);
-// Removes temporaries that processes of this machine which are no more left beside `path`.
-void remove_stale_temporaries(const fs::path& path);
 
 // Appends one line and flushes it; a torn last line of an earlier crash is closed first.
 void append_line(const fs::path& path, std::string_view line);

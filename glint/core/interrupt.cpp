@@ -10,8 +10,8 @@ namespace glint {
 namespace {
 volatile std::sig_atomic_t interrupt_seen = 0;
 
-void note_interrupt(int) {
-  interrupt_seen = 1;
+void note_interrupt(int signal) {
+  interrupt_seen = signal;
   // Only write() may be called in a handler; nothing can be done about a failure.
   static constexpr char kMessage[] = "\nstopping after this step; once more to stop at once\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
@@ -27,6 +27,8 @@ void install_interrupt_handler() {
 }
 
 bool is_interrupted() { return interrupt_seen != 0; }
+
+int interrupted_exit() { return 128 + (is_interrupted() ? interrupt_seen : SIGINT); }
 
 void throw_if_interrupted() {
   if (is_interrupted()) throw Interrupted();

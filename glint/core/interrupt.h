@@ -7,14 +7,14 @@
 
 namespace glint {
 
-inline constexpr int kInterruptedExit = 130;  // 128 + SIGINT, the shells' convention
-
 struct Interrupted : std::exception {
   const char* what() const noexcept override { return "interrupted"; }
 };
 
 void install_interrupt_handler();  // SIGINT and SIGTERM
 bool is_interrupted();
+// 128 + the signal that was seen, the shells' convention: 130 after Ctrl-C, 143 after SIGTERM.
+int interrupted_exit();
 void throw_if_interrupted();  // Interrupted
 
 }  // namespace glint

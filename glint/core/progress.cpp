@@ -6,6 +6,8 @@
 
 #include <cstdio>
 
+#include "glint/core/printable.h"
+
 namespace glint {
 
 namespace {
@@ -17,9 +19,9 @@ bool is_quiet() { return quiet; }
 
 namespace log {
 void info(std::string_view message) {
-  if (!quiet) fmt::print(stderr, "{}\n", message);
+  if (!quiet) fmt::print(stderr, "{}\n", printable(message));
 }
-void warn(std::string_view message) { fmt::print(stderr, "warning: {}\n", message); }
+void warn(std::string_view message) { fmt::print(stderr, "warning: {}\n", printable(message)); }
 }  // namespace log
 
 std::string format_duration(double seconds) {
@@ -67,12 +69,12 @@ void Progress::draw(std::string_view note, bool last) {
       stderr,
       "{}{} {:3.0f}% {}/{} {} {}{}",
       terminal_ ? "\r\x1b[K" : "",
-      title_,
+      printable(title_),
       percent,
       done,
       total_,
       time,
-      note,
+      printable(note),
       terminal_ && !last ? "" : "\n"
   );
   std::fflush(stderr);

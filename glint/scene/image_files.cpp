@@ -87,7 +87,9 @@ void fail_incomplete(const fs::path& path, std::string_view format, std::string_
 
 }  // namespace detail
 
-Image read_image(const fs::path& path) {
+namespace {
+
+Image read_by_extension(const fs::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".exr") return detail::read_exr(path);
   if (extension == ".npy") return detail::read_npy(path);
@@ -103,6 +105,12 @@ Image read_image(const fs::path& path) {
   return detail::read_png_or_jpeg(path);
 }
 
+}  // namespace
+
+Image read_image(const fs::path& path) {
+  return read_within_memory(path, [&] { return read_by_extension(path); });
+}
+
 Image read_image(const fs::path& path, int channels) {
   Image image = read_image(path);
   if (image.channels() == channels) return image;
@@ -115,6 +123,22 @@ Image read_image(const fs::path& path, int channels) {
       channels
   );
   return repeat_grey(image, channels);
+}
+
+std::string color_range_problem(ImageView colors) {
+  constexpr float kLeast = -1, kMost = 2;  // renders and ringing stay within
+  if (colors.empty()) return {};
+  const std::size_t count = static_cast<std::size_t>(colors.width) *
+                            static_cast<std::size_t>(colors.height) *
+                            static_cast<std::size_t>(colors.channels);
+  const auto [least, most] = std::minmax_element(colors.data, colors.data + count);
+  if (*least >= kLeast && *most <= kMost) return {};
+  return fmt::format(
+      "values from {:.4g} to {:.4g}, but colours as displayed lie in [0, 1]; divide bytes by 255, "
+      "encode or clamp radiance",
+      *least,
+      *most
+  );
 }
 
 MaskImage read_mask(const fs::path& path) {

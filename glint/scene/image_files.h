@@ -27,6 +27,10 @@ ImageSize read_image_size(const fs::path& path);
 // of 0 and 1 in 8 bits).
 MaskImage read_mask(const fs::path& path);
 
+// What is odd about the values of colours as displayed, which lie in [0, 1] and not far from it:
+// those of radiance or of 0 to 255. Empty: nothing.
+std::string color_range_problem(ImageView colors);
+
 // [0, 1] clamped, times 255, rounded half to even. 1 or 3 channels.
 void write_png(const fs::path& path, ImageView image);
 // The same with 65535 in place of 255; 1 channel.

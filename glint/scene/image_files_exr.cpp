@@ -108,6 +108,7 @@ Imf::FrameBuffer interleaved_slices(
 }
 
 Image read_exr_bytes(const fs::path& path, const std::string& bytes) {
+  detail::check_exr_header(path, bytes);
   MemoryInput stream(path.string(), bytes);
   Imf::InputFile file(stream, 0);
   const Imf::Header& header = file.header();

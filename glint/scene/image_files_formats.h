@@ -38,6 +38,9 @@ inline std::uint32_t big_endian(std::string_view bytes) {
   return value;
 }
 
+// Of an EXR. Errors (kBadReference): deep, in parts, or with sizes that the file cannot fill.
+void check_exr_header(const fs::path& path, std::string_view file);
+
 // What the integers 0 ... full_range of a file stand for.
 inline float unit_value(int n, int full_range) {
   return static_cast<float>(n) / static_cast<float>(full_range);

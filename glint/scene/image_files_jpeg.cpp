@@ -15,13 +15,10 @@ struct Destroy {
   void operator()(void* decoder) const { tjDestroy(decoder); }
 };
 
-// A warning is damage, too (missing data become grey), but for bytes between segments.
+// A warning is damage, too: missing data become grey, and where bytes are left over between parts
+// of the picture, the decoder may have lost its place long before.
 void check(const fs::path& path, tjhandle decoder, int result) {
-  if (result == 0) return;
-  const std::string_view message = tjGetErrorStr2(decoder);
-  const bool harmless = tjGetErrorCode(decoder) == TJERR_WARNING &&
-                        message.find("extraneous bytes") != std::string_view::npos;
-  if (!harmless) detail::fail_incomplete(path, "JPEG", message);
+  if (result != 0) detail::fail_incomplete(path, "JPEG", tjGetErrorStr2(decoder));
 }
 
 }  // namespace

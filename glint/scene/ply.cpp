@@ -159,6 +159,20 @@ void copy_columns(
 void copy_sh_rest(const PlyFile& file, const PlyElement& element, SurfelCloud& cloud) {
   std::size_t count = 0;
   while (element.find_scalar(fmt::format("f_rest_{}", count)) >= 0) ++count;
+  const auto named = std::count_if(
+      element.properties.begin(),
+      element.properties.end(),
+      [](const PlyProperty& property) { return property.name.starts_with("f_rest_"); }
+  );
+  GLINT_CHECK(
+      static_cast<std::size_t>(named) == count,
+      kBadReference,
+      "{}: {} properties f_rest_*, but no f_rest_{}; expected f_rest_0, f_rest_1, ... without a "
+      "gap",
+      file.path,
+      named,
+      count
+  );
   GLINT_CHECK(
       count == 0 || count == 9 || count == 24 || count == 45,
       kBadReference,
@@ -188,6 +202,27 @@ std::vector<std::string> extra_fields(const PlyElement& element) {
       extra.push_back(property.name);
   }
   return extra;
+}
+
+// Beyond it a float has no decimetres left, and no scene reaches there.
+constexpr float kFarthest = 1e6f;  // metres
+
+void check_near(const PlyFile& file, const PlyElement& element, const std::vector<Vec3f>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      GLINT_CHECK(
+          !std::isfinite(points[i][axis]) || std::abs(points[i][axis]) <= kFarthest,
+          kBadReference,
+          "{}: {} {}: {} is {:g}; expected metres within {:g} of the origin: the file is damaged, "
+          "or "
+          "in another unit",
+          file.path,
+          element.name,
+          i,
+          "xyz"[axis],
+          points[i][axis],
+          kFarthest
+      );
 }
 
 std::vector<Vec3f> read_vectors(
@@ -315,6 +350,7 @@ PointCloud read_point_ply(const fs::path& path) {
   const PlyElement& vertices = file.element("vertex");
   PointCloud points;
   points.positions = read_vectors(file, vertices, {"x", "y", "z"});
+  check_near(file, vertices, points.positions);
   points.colors = read_colors(file, vertices);
   if (points.colors.empty()) points.colors.assign(vertices.count, Vec3f{0.5f, 0.5f, 0.5f});
   if (vertices.find_scalar("nx") >= 0)
@@ -351,6 +387,7 @@ TriangleMesh read_mesh_ply(const fs::path& path, NonFinite non_finite) {
   );
   TriangleMesh mesh;
   mesh.vertices = read_vectors(file, vertices, {"x", "y", "z"}, non_finite);
+  check_near(file, vertices, mesh.vertices);
   mesh.colors = read_colors(file, vertices);
   mesh.faces = read_triangles(file, vertices.count);
   return mesh;

@@ -152,6 +152,12 @@ class RowSource {
   RowSource(std::string_view rows, bool binary) : rows_(rows), binary_(binary) {}
 
   std::size_t remaining() const { return rows_.size() - at_; }
+  // Bytes that are no value's. Text ends with any space, binary rows with one line break at most.
+  std::size_t left_over() const {
+    const std::string_view rest = rows_.substr(at_);
+    const bool blank = rest.find_first_not_of(" \t\r\n") == std::string_view::npos;
+    return blank && (!binary_ || rest.size() <= 2) ? 0 : rest.size();
+  }
   // The fewest bytes that one value can take: ASCII needs a digit and a separator.
   std::size_t least_bytes(PlyType type) const { return binary_ ? byte_size(type) : 2; }
   // False when the rows end or hold no number.
@@ -276,6 +282,14 @@ void read_rows(const std::string& path, RowSource& source, PlyElement& element) 
     }
 }
 
+// "100 vertex, 196 face".
+std::string counts_text(const std::vector<PlyElement>& elements) {
+  std::string text;
+  for (const PlyElement& element : elements)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", element.count, element.name);
+  return text;
+}
+
 }  // namespace
 
 int PlyElement::find_scalar(std::string_view property) const {
@@ -297,12 +311,29 @@ const PlyElement& PlyFile::element(std::string_view name) const {
   fail(path, fmt::format("no element '{}'; found: {}", name, found.empty() ? "none" : found));
 }
 
-PlyFile read_ply(const fs::path& path) {
+namespace {
+PlyFile read_ply_file(const fs::path& path) {
   const std::string file = read_file(path);
   Header header = parse_header(path.string(), file);
   RowSource source(std::string_view(file).substr(header.rows_at), header.binary);
   for (PlyElement& element : header.elements) read_rows(path.string(), source, element);
+  if (source.left_over() > 0)
+    fail(
+        path.string(),
+        fmt::format(
+            "{} bytes are left behind the rows that the header counts ({}); a count or the file is "
+            "damaged, write it again",
+            source.left_over(),
+            counts_text(header.elements)
+        )
+    );
   return {path.string(), std::move(header.elements)};
+}
+
+}  // namespace
+
+PlyFile read_ply(const fs::path& path) {
+  return read_within_memory(path, [&] { return read_ply_file(path); });
 }
 
 std::vector<std::string> read_ply_element_names(const fs::path& path) {

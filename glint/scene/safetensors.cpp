@@ -179,7 +179,7 @@ SafetensorsFile::Entry SafetensorsFile::parse_entry(
 
 SafetensorsFile::SafetensorsFile(const fs::path& path) : path_(path) {
   std::error_code code;
-  GLINT_CHECK(fs::exists(path, code), kBadReference, "{}: no such file", path.string());
+  check_exists(path);
   GLINT_CHECK(
       fs::is_regular_file(path, code), kBadReference, "{}: not a regular file", path.string()
   );
@@ -206,6 +206,7 @@ void SafetensorsFile::read_header(std::size_t file_bytes) {
   if (!in_.read(text.data(), static_cast<std::streamsize>(length)))
     fail(path_, "the header cannot be read");
   // Sorted keys: looking one up among many that a damaged file may claim stays fast.
+  if (is_nested_too_deeply(text)) fail(path_, "the header is nested too deeply");
   const auto header = nlohmann::json::parse(text, nullptr, false);
   if (!header.is_object()) fail(path_, "the header is no JSON object");
   data_begin_ = kLengthBytes + length;

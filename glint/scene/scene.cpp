@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "glint/core/error.h"
+
 namespace glint {
 namespace {
 
@@ -57,6 +59,31 @@ void bounds_from_cameras(Scene& scene) {
 std::string flat_view_name(std::string view_name) {
   std::replace(view_name.begin(), view_name.end(), '/', '_');
   return view_name;
+}
+
+std::string why_no_folder_name(std::string_view name) {
+  constexpr std::size_t kLongest = 200;  // bytes; file systems allow 255 with what is added
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; };
+  if (name.empty()) return "is empty";
+  if (name == "." || name == "..") return "names another folder";
+  if (std::any_of(name.begin(), name.end(), is_control)) return "holds control characters";
+  if (name.find('/') != std::string_view::npos) return "holds a path separator";
+  return name.size() > kLongest ? "is longer than 200 bytes" : "";
+}
+
+std::string view_name_problem(const std::string& name, std::map<std::string, std::string>& before) {
+  const std::string flat = flat_view_name(name);
+  if (const std::string why = why_no_folder_name(flat); !why.empty())
+    return fmt::format("the view's name '{}' {}; rename the view", name, why);
+  const auto [other, is_new] = before.emplace(flat, name);
+  if (is_new) return {};
+  return other->second == name ? fmt::format("the name {} is used twice; rename one view", name)
+                               : fmt::format(
+                                     "views {} and {} would share the folder {}; rename one",
+                                     other->second,
+                                     name,
+                                     flat
+                                 );
 }
 
 float camera_extent(const std::vector<View>& views) {

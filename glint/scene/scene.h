@@ -3,7 +3,9 @@
 // ground truth. Loaders (datasets/) fill it; nothing here knows a file format.
 #pragma once
 
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "glint/core/image.h"
@@ -35,6 +37,14 @@ struct Scene {
 
 // The name of a view as file names have it: '_' for '/'.
 std::string flat_view_name(std::string view_name);
+
+// Why a name from a file cannot be that of a folder: "is empty", "holds a path separator". Empty:
+// it can.
+std::string why_no_folder_name(std::string_view name);
+
+// What is wrong with the name of a view, given those before it (flat name -> name); it is added to
+// them. Empty: nothing.
+std::string view_name_problem(const std::string& name, std::map<std::string, std::string>& before);
 
 // 1.1 x the largest distance of a camera centre to the mean of the centres.
 float camera_extent(const std::vector<View>& views);

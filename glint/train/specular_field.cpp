@@ -156,6 +156,14 @@ int SpecularField::load(const fs::path& folder, int stages) {
   SafetensorsFile file(folder / kFile);
   network_.read(file, kNetwork);
   read_floats(file, kMap, map_shape(), map_.values);
+  try {
+    check_finite();
+  } catch (const Error& error) {
+    throw Error(
+        ExitCode::kBadReference,
+        fmt::format("{}: {}; train again", (folder / kFile).string(), error.what())
+    );
+  }
   map_changed();
   const auto stage = file.metadata().find(kStage);
   if (stage == file.metadata().end()) return stages - 1;

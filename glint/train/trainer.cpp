@@ -126,7 +126,6 @@ class Training {
   }
 
   void begin() {
-    if (on_disk_) remove_stale_temporaries(checkpoint_);
     method_.initialize(scene_, options_.run);
     for (const std::string& warning : method_.warnings()) log::warn(warning);
     if (on_disk_ && is_checkpoint_of(checkpoint_, options_.identity)) resume();

@@ -14,16 +14,22 @@
 namespace glint {
 namespace {
 
-constexpr int kBlockVoxels = 16;  // edge of Open3D's unit of allocation, in voxels
+constexpr double kMostTruncation = 100;  // voxels
+constexpr int kBlockVoxels = 16;         // edge of Open3D's unit of allocation, in voxels
 
 void check_options(const TsdfOptions& options) {
   const auto check = [](bool good, const char* field, double value, const char* expected) {
     GLINT_CHECK(good, kUsage, "{} is {}; expected {}", field, value, expected);
   };
   check(options.voxel > 0, "voxel", options.voxel, "metres above 0");
+  // A point opens the blocks within the truncation distance, and their number goes with its cube.
   check(
-      options.truncation_voxels >= 1, "truncation_voxels", options.truncation_voxels, "at least 1"
+      options.truncation_voxels >= 1 && options.truncation_voxels <= kMostTruncation,
+      "truncation_voxels",
+      options.truncation_voxels,
+      "1 to 100"
   );
+  check(options.max_memory_mb >= 0, "max_memory_mb", options.max_memory_mb, "MB, or 0");
   check(options.max_depth >= 0, "max_depth", options.max_depth, "metres, or 0");
   check(options.min_cluster >= 0, "min_cluster", options.min_cluster, "a number of triangles");
   for (std::size_t i = 0; i < 3; ++i)
@@ -94,9 +100,27 @@ int depth_stride(const FusionView& view, const TsdfOptions& options) {
 
 using Block = std::array<std::int32_t, 3>;
 
+// Blocks are counted in 32 bits.
+void check_block_numbers(Vec3d p, const TsdfOptions& options, double edge) {
+  constexpr double kMost = 1e9;
+  const double farthest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  GLINT_CHECK(
+      farthest / edge < kMost,
+      kUsage,
+      "voxel is {:g} m, too small for depths {:g} m from the origin; set bounds, or a larger voxel",
+      options.voxel,
+      farthest
+  );
+}
+
 // The blocks that Open3D opens for a view: all that come within the truncation distance of a depth.
+// Ends early once there are more than `most`.
 void add_blocks(
-    const FusionView& view, const TsdfOptions& options, int stride, std::set<Block>& blocks
+    const FusionView& view,
+    const TsdfOptions& options,
+    int stride,
+    std::size_t most,
+    std::set<Block>& blocks
 ) {
   const double edge = options.voxel * kBlockVoxels;
   const double truncation = options.voxel * options.truncation_voxels;
@@ -105,6 +129,8 @@ void add_blocks(
     for (int x = 0; x < view.depth.width(); x += stride) {
       if (!(view.depth.at(x, y) > 0)) continue;
       const Vec3d p = unproject(view.camera, x, y, static_cast<double>(view.depth.at(x, y)));
+      check_block_numbers(p, options, edge);
+      if (blocks.size() > most) return;
       for (std::int32_t i = index(p.x - truncation); i <= index(p.x + truncation); ++i)
         for (std::int32_t j = index(p.y - truncation); j <= index(p.y + truncation); ++j)
           for (std::int32_t k = index(p.z - truncation); k <= index(p.z + truncation); ++k)
@@ -159,9 +185,10 @@ void estimate(
     FusionView view = source(i);
     check_sizes(view, i);
     report.num_depths += keep_valid(view, options);
-    add_blocks(view, options, stride, blocks);
-    const double needed = megabytes(blocks.size(), bytes_per_voxel),
-                 allowed = allowed_megabytes(options);
+    const double allowed = allowed_megabytes(options);
+    const auto most = static_cast<std::size_t>(allowed / megabytes(1, bytes_per_voxel));
+    add_blocks(view, options, stride, most, blocks);
+    const double needed = megabytes(blocks.size(), bytes_per_voxel);
     GLINT_CHECK(
         needed <= allowed,
         kUsage,
@@ -214,9 +241,10 @@ TriangleMesh fuse_depth(
   TsdfReport local;
   GLINT_CHECK(num_views > 0, kBadPrediction, "no view to fuse");
   const int stride = depth_stride(view(0), options);
-  const auto volume = make_volume(options, stride);
+  auto volume = make_volume(options, stride);
   estimate(view, num_views, options, stride, volume->bytes_per_voxel(), local);
   const TriangleMesh fused = integrate_all(view, num_views, options, *volume);
+  volume.reset();  // pieces need memory of their own
   local.fused_triangles = fused.faces.size();
   ClusterCount clusters;
   TriangleMesh mesh = keep_large_clusters(fused, options.min_cluster, &clusters);

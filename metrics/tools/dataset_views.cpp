@@ -15,7 +15,7 @@ double max_pixels_of(const fs::path& run) {
   const fs::path config = run / "config.json";
   std::error_code code;
   if (!fs::is_regular_file(config, code)) return 0;
-  const Json json = Json::parse(read_file(config), nullptr, false);
+  const Json json = parse_json(read_file(config));
   const auto it = json.is_object() ? json.find("max_pixels") : json.end();
   return json.is_object() && it != json.end() && it->is_number() ? it->get<double>() : 0;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <ostream>
 
+#include "glint/core/printable.h"
 #include "glint/drawing/color_maps.h"
 #include "glint/scene/ply.h"
 #include "metrics/tools/tool_output.h"

@@ -9,11 +9,15 @@
 #include <cctype>
 #include <exception>
 #include <iostream>
+#include <new>
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
+#include "glint/core/printable.h"
+#include "glint/core/process.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
+#include "metrics/tools/numeric_options.h"
 #include "metrics/tools/tool_output.h"
 
 namespace glint {
@@ -96,10 +100,22 @@ LoadedPair load_pair(const MetricTool& tool, const FilePair& files) {
   return pair;
 }
 
+std::vector<std::string> warnings_of(const MetricTool& tool, const LoadedPair& pair) {
+  std::vector<std::string> warnings;
+  if (tool.reference_map() != "rgb") return warnings;
+  const auto add = [&](const fs::path& path, const Image& image) {
+    if (const std::string problem = color_range_problem(image); !problem.empty())
+      warnings.push_back(fmt::format("{}: {}", path.string(), problem));
+  };
+  add(pair.files.prediction, pair.prediction);
+  add(pair.files.reference, pair.reference);
+  return warnings;
+}
+
 ImageScores score_pair(const MetricTool& tool, const LoadedPair& pair) {
   const FilePair& files = pair.files;
   const std::vector<Region> regions = load_regions(pair);
-  ImageScores image{files, {}};
+  ImageScores image{files, {}, warnings_of(tool, pair)};
   try {
     const std::vector<ToolScores> scores = tool.score(pair, regions);
     for (std::size_t r = 0; r < regions.size(); ++r)
@@ -188,6 +204,8 @@ ToolReport score_all(const MetricTool& tool, const PairingOptions& options) {
     for (ImageScores& image :
          batches.score(files.subspan(begin, std::min(batches.size(), files.size() - begin))))
       report.images.push_back(std::move(image));
+  for (const ImageScores& image : report.images)
+    for (const std::string& warning : image.warnings) log::warn(warning);
   return report;
 }
 
@@ -240,24 +258,31 @@ int run_program(
     std::ostream& err,
     const std::function<void()>& body
 ) {
+  const auto fail = [&](std::string_view message, ExitCode code) {
+    err << app.get_name() << ": " << printable(message) << "\n";
+    return static_cast<int>(code);
+  };
+  ignore_file_size_signal();
   try {
     if (args.empty()) {
       err << app.help();
       return static_cast<int>(ExitCode::kUsage);
     }
     app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
+    check_numbers(app);
     body();
   } catch (const CLI::ParseError& error) {
-    const bool success = app.exit(error, out, err) == 0;
-    return static_cast<int>(success ? ExitCode::kSuccess : ExitCode::kUsage);
+    if (app.exit(error, out, err) != 0) return static_cast<int>(ExitCode::kUsage);
   } catch (const Error& error) {
-    err << app.get_name() << ": " << error.what() << "\n";
-    return static_cast<int>(error.code());
+    return fail(error.what(), error.code());
+  } catch (const std::bad_alloc&) {
+    return fail(kOutOfMemory, ExitCode::kEnvironment);
   } catch (const std::exception& error) {
-    err << app.get_name() << ": " << error.what() << "\n";
-    return static_cast<int>(ExitCode::kEnvironment);
+    return fail(error.what(), ExitCode::kEnvironment);
   }
-  return static_cast<int>(ExitCode::kSuccess);
+  out.flush();
+  return out.good() ? static_cast<int>(ExitCode::kSuccess)
+                    : fail(kNoOutput, ExitCode::kEnvironment);
 }
 
 int run_tool(

@@ -32,7 +32,8 @@ struct LoadedPair {
 
 struct ImageScores {
   FilePair files;
-  ToolScores scores;  // "psnr", then "psnr@glass", ...
+  ToolScores scores;                  // "psnr", then "psnr@glass", ...
+  std::vector<std::string> warnings;  // of its files, whose scores hold all the same
 };
 
 class MetricTool {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <ostream>
 
+#include "glint/core/printable.h"
 #include "metrics/metric.h"
 
 namespace glint {
@@ -31,6 +32,7 @@ Json image_json(const ImageScores& image) {
   if (!image.files.mask.empty()) json["mask"] = image.files.mask.string();
   if (!image.files.glass.empty()) json["glass"] = image.files.glass.string();
   json["metrics"] = scores_json(image.scores);
+  if (!image.warnings.empty()) json["warnings"] = image.warnings;
   return json;
 }
 
@@ -59,13 +61,6 @@ void print_table(const ToolReport& report, const ToolScores& means, std::ostream
 }
 
 }  // namespace
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 Json scores_json(const ToolScores& scores) {
   Json json = Json::object();
@@ -104,6 +99,9 @@ void print_text(const MetricTool& tool, const ToolReport& report, std::ostream& 
     print_table(report, means, out);
   const Json summary = tool.summary(report.images);
   for (const auto& [key, value] : summary.items()) out << key << " " << summary_text(value) << "\n";
+  for (const ImageScores& image : report.images)
+    for (const std::string& warning : image.warnings)
+      out << "warning: " << printable(warning) << "\n";
 }
 
 void print_csv(const ToolReport& report, std::ostream& out) {

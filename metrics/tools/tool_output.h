@@ -15,8 +15,6 @@ struct ToolReport {
   std::vector<std::string> missing;  // names left out by --allow-missing
 };
 
-// Quoted when it has a separator, quote or line break.
-std::string csv_field(const std::string& text);
 Json scores_json(const ToolScores& scores);
 // A line each: id, value with two digits more than tables print, unit.
 void print_scores(const ToolScores& scores, std::ostream& out);
@@ -25,7 +23,7 @@ void print_scores(const ToolScores& scores, std::ostream& out);
 ToolScores mean_scores(std::span<const ImageScores> images);
 
 void print_text(const MetricTool& tool, const ToolReport& report, std::ostream& out);
-// A row per image and one named "mean"; unrounded.
+// A row per image and one named "mean"; unrounded. Warnings are on standard error alone.
 void print_csv(const ToolReport& report, std::ostream& out);
 // Unrounded numbers, protocols, file names.
 void print_json(const MetricTool& tool, const ToolReport& report, std::ostream& out);

@@ -9,6 +9,7 @@
 
 #include "datasets/dataset.h"
 #include "glint/core/parallel.h"
+#include "glint/core/printable.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"

@@ -217,7 +217,8 @@ Record record_without_data(
 }
 
 std::string failure_kind(const std::exception& error, const std::string& stage) {
-  if (dynamic_cast<const std::bad_alloc*>(&error)) return "out-of-memory";
+  if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const OutOfMemory*>(&error))
+    return "out-of-memory";
   const auto* ours = dynamic_cast<const Error*>(&error);
   if (!ours) return "unknown";
   switch (ours->code()) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/mesh_stage.h"
+#include "reports/records/earlier_run.h"
 
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
@@ -54,11 +55,10 @@ Json mesh_stage(
     bool keep_renders
 ) {
   fuse_stage.require();
-  std::error_code code;
-  fs::remove_all(spec.folder / "renders_train", code);
+  remove_renders(spec.folder / "renders_train");
   render_train_stage(spec, scene, method);
   const Json result = fuse_stage(spec, scene, options);
-  if (!keep_renders) fs::remove_all(spec.folder / "renders_train", code);
+  if (!keep_renders) remove_renders(spec.folder / "renders_train");
   return result;
 }
 

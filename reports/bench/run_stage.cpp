@@ -1,34 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/run_stage.h"
 
-#include "glint/train/checkpoint.h"
+#include "glint/core/left_behind.h"
 
 namespace glint {
 namespace {
 
 // The files of a stage, below the run's folder.
-std::vector<std::string> outputs_of(const fs::path& run, Stage stage) {
+std::vector<std::string> outputs_of(Stage stage) {
   if (stage == Stage::kRender) return {"renders", "strip.png"};
   if (stage == Stage::kMesh) return {"mesh.ply", "mesh_transmission.ply", "mesh.json"};
   if (stage == Stage::kScore) return {"metrics.json"};
-  std::vector<std::string> trained;
-  for (const auto& entry : fs::directory_iterator(run)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.is_regular_file() && name != "log.jsonl" && name != "config.json" &&
-        name != "env.json" && name != kCheckpointFile)
-      trained.push_back(name);
-  }
-  return trained;
+  return {};  // training says what it saved
 }
 
 }  // namespace
 
 void begin_stage(const fs::path& run, Stage stage) {
+  remove_left_behind(run);
   for (const Stage undone : {stage, Stage::kScore}) forget_stage(run, undone);
 }
 
 void end_stage(const fs::path& run, Stage stage, const Json& document, const std::string& note) {
-  write_stage(run, stage, document, outputs_of(run, stage), note);
+  write_stage(run, stage, document, outputs_of(stage), note);
 }
 
 void run_stage(

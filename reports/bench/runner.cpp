@@ -2,6 +2,7 @@
 #include "reports/bench/runner.h"
 
 #include "glint/core/interrupt.h"
+#include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
 #include "reports/bench/cell_run.h"
 #include "reports/records/run_folder.h"
@@ -17,6 +18,8 @@ class Runner {
       : options_(options), records_file_(options.out / "records.jsonl") {}
 
   RunSummary run() {
+    remove_left_behind(options_.out, false);
+    remove_left_behind(options_.out / "tables");
     const auto plan = make_plan(options_.profile, options_.filter, options_.assignments);
     records_ = read_records(records_file_);
     for (std::size_t i = 0; i < plan.size(); ++i) try {

@@ -9,6 +9,7 @@
 #include "reports/bench/mesh_eval.h"
 #include "reports/bench/run_stage.h"
 #include "reports/pictures/strip.h"
+#include "reports/records/earlier_run.h"
 
 namespace glint {
 
@@ -47,8 +48,7 @@ std::unique_ptr<Method> load_trained(const RunSpec& spec) {
 }
 
 void render_stage(const RunSpec& spec, const Scene& scene, Method& method) {
-  std::error_code code;
-  fs::remove_all(spec.folder / "renders", code);
+  remove_renders(spec.folder / "renders");
   for (const View& view : scene.test) {
     throw_if_interrupted();
     const MapSet output = method.render_view(view);

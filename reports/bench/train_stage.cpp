@@ -4,8 +4,9 @@
 #include "glint/core/machine.h"
 #include "glint/train/checkpoint.h"
 #include "glint/train/trainer.h"
-#include "reports/bench/run_stage.h"
 #include "reports/bench/stages.h"
+#include "reports/records/earlier_run.h"
+#include "reports/records/stage_files.h"
 
 namespace glint {
 
@@ -28,16 +29,18 @@ TrainOptions train_options(const RunSpec& spec) {
 
 std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
   const fs::path checkpoint = spec.folder / kCheckpointFile;
-  if (spec.anew || !is_checkpoint_of(checkpoint, stage_key(spec.train_document)))
-    clear_run_folder(spec.folder);
+  const bool goes_on = !spec.anew && is_checkpoint_of(checkpoint, stage_key(spec.train_document));
   auto method = create_method(spec.method, spec.config);
+  EarlierRun earlier(spec.folder, goes_on);
   write_run_spec(spec, method->config());
   reset_peak_memory();
   const TrainReport report = train(*method, scene, train_options(spec));
-  method->save(spec.folder.string());
+  const auto files =
+      save_in_place(spec.folder, [&](const fs::path& folder) { method->save(folder.string()); });
   write_trained(spec, {report.seconds, report.peak_memory_mb, method->warnings(), method->notes()});
-  end_stage(spec.folder, Stage::kTrain, spec.train_document);
+  write_stage(spec.folder, Stage::kTrain, spec.train_document, files);
   fs::remove(checkpoint);
+  earlier.drop();
   return method;
 }
 

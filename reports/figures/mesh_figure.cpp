@@ -32,11 +32,15 @@ MeshProtocol protocol_of(const FigureScene& scene) {
   for (const auto& [method, folder] : scene.runs) {
     const fs::path path = folder / "metrics.json";
     if (!fs::exists(path)) continue;
-    const Json json = read_json_object(path, ExitCode::kBadPrediction);
-    if (!json.contains("meshes")) continue;
-    MeshProtocol protocol;
-    config_from_json(protocol, json["meshes"].value("protocol", Json::object()), path.string());
-    return protocol;
+    try {
+      const Json json = read_json_object(path, ExitCode::kBadPrediction);
+      if (!json.contains("meshes")) continue;
+      MeshProtocol protocol;
+      config_from_json(protocol, json["meshes"].value("protocol", Json::object()), path.string());
+      return protocol;
+    } catch (const std::exception& error) {  // another run's may be whole
+      log::warn(fmt::format("figures: {}; score the run again", error.what()));
+    }
   }
   return {};
 }

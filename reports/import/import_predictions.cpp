@@ -9,6 +9,7 @@
 #include "metrics/depth.h"
 #include "metrics/normal.h"
 #include "reports/pictures/strip.h"
+#include "reports/records/earlier_run.h"
 
 namespace glint {
 namespace {
@@ -210,19 +211,19 @@ std::vector<std::string> import_predictions(
     notes.emplace_back("8-bit images: their PSNR is psnr-8bit, which is not ranked beside psnr");
   note_absent(folder, found, scene.test.front(), notes);
   note_conventions(found.views.front(), scene.test.front(), options, notes);
-  clear_run_folder(spec.folder);
+  remove_renders(spec.folder / "renders");
   write_run_spec(
       spec,
       {{"imported", folder.string()},
        {"import", config_to_json(options)},
        {kEightBitField, eight_bit}}
   );
-  for (std::size_t i = 0; i < scene.test.size(); ++i)
-    write_render(
-        view_folder(spec.folder, scene.test[i].name),
-        read_view(found.views[i], scene.test[i], options),
-        eight_bit
-    );
+  for (std::size_t i = 0; i < scene.test.size(); ++i) {
+    const MapSet rendered = read_view(found.views[i], scene.test[i], options);
+    if (const std::string problem = color_range_problem(rendered["rgb"]); !problem.empty())
+      notes.push_back(fmt::format("{}: {}", found.views[i].at("rgb").string(), problem));
+    write_render(view_folder(spec.folder, scene.test[i].name), rendered, eight_bit);
+  }
   const fs::path mesh = options.mesh.empty() ? found.mesh : fs::path(options.mesh);
   if (!mesh.empty()) copy_mesh(mesh, spec.folder / "mesh.ply");
   if (write_strips.here()) write_strips(spec.folder, scene.test);

@@ -32,7 +32,7 @@ std::optional<RunSpec> spec_of(const fs::path& folder) {
 Json read_scores(const fs::path& folder) {
   const fs::path path = folder / "metrics.json";
   if (!fs::is_regular_file(path)) return Json::object();
-  const Json json = Json::parse(read_file(path), nullptr, false);
+  const Json json = parse_json(read_file(path));
   const auto views = json.find("views");
   if (json.is_object() && views != json.end() && views->is_array()) return json;
   log::warn(fmt::format("report: shown as missing: {}: no scores of views", path.string()));
@@ -247,15 +247,17 @@ class SceneWriter {
       const fs::path& path, const std::string& title, const std::string& owner, Json& meshes
   ) const {
     if (!fs::is_regular_file(path)) return;
+    progress_.advance(owner.front() == 'r');  // the truth's is no step: no run has it
+    TriangleMesh mesh;
     try {
-      progress_.advance(owner.front() == 'r');  // the truth's is no step: no run has it
-      const TriangleMesh mesh = read_mesh_ply(path);
-      const std::string part = fmt::format("mesh_{}_{}", index_, owner);
-      write_part(part, mesh_json(with_few_faces(mesh, mesh_faces(options_))));
-      meshes.push_back({{"title", title}, {"part", part}, {"faces", mesh.faces.size()}});
+      mesh = read_mesh_ply(path);
     } catch (const Error& error) {
       log::warn(fmt::format("report: shown as missing: {}", error.what()));
+      return;
     }
+    const std::string part = fmt::format("mesh_{}_{}", index_, owner);
+    write_part(part, mesh_json(with_few_faces(mesh, mesh_faces(options_))));
+    meshes.push_back({{"title", title}, {"part", part}, {"faces", mesh.faces.size()}});
   }
 
   const PageScene& scene_;

@@ -44,7 +44,7 @@ std::vector<Step> read_steps(const fs::path& log) {
   std::vector<Step> steps;
   std::istringstream lines(read_file(log));
   for (std::string line; std::getline(lines, line);) {
-    const Json json = Json::parse(line, nullptr, false);
+    const Json json = parse_json(line);
     if (json.is_object() && json.contains("iteration"))
       steps.push_back(
           {number(json, "iteration"),

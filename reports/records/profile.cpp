@@ -6,6 +6,7 @@
 #include "glint/core/files.h"
 #include "glint/core/nearest.h"
 #include "glint/method.h"
+#include "glint/scene/scene.h"
 #include "reports/records/embedded.h"
 
 namespace glint {
@@ -86,6 +87,8 @@ std::vector<SceneSource> Profile::sources() const {
         where,
         source.scene
     );
+    const std::string why = why_no_folder_name(source.scene);
+    GLINT_CHECK(why.empty(), kUsage, "{}: scene '{}' {}", where, source.scene, why);
     sources.push_back(source);
   }
   return sources;
@@ -102,7 +105,7 @@ Json method_overrides(
       continue;
     }
     const std::size_t equals = assignment.find('=');
-    Json value = Json::parse(assignment.substr(equals + 1), nullptr, false);
+    Json value = parse_json(assignment.substr(equals + 1));
     if (value.is_discarded()) value = assignment.substr(equals + 1);
     config[assignment.substr(0, equals)] = value;
   }

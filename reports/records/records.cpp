@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "glint/core/progress.h"
+#include "glint/scene/scene.h"
 
 namespace glint {
 
@@ -66,6 +67,21 @@ Record fields_of(const Json& json) {
   return record;
 }
 
+// Files of results and figures have these names, with parts as "glint/no-trans".
+void check_names(const CellKey& cell, std::string_view where) {
+  const auto check = [&](const char* field, const std::string& name) {
+    std::istringstream parts(name + "/");
+    for (std::string part; std::getline(parts, part, '/');) {
+      const std::string why = why_no_folder_name(part);
+      GLINT_CHECK(
+          why.empty(), kBadPrediction, "{}: {} '{}': '{}' {}", where, field, name, part, why
+      );
+    }
+  };
+  check("scene", cell.scene);
+  check("method", cell.method);
+}
+
 // The last record of a cell wins and keeps the cell's place.
 class RecordList {
  public:
@@ -107,6 +123,7 @@ Record record_from_json(const Json& json, std::string_view where) {
   );
   try {
     Record record = fields_of(json);
+    check_names(record.cell, where);
     GLINT_CHECK(
         record.schema <= kRecordSchema,
         kBadPrediction,
@@ -138,9 +155,9 @@ std::vector<Record> read_records(const fs::path& file) {
   for (std::string line; std::getline(lines, line);) {
     const std::string where = fmt::format("{}:{}", file.string(), ++number);
     if (line.empty()) continue;
-    const Json json = Json::parse(line, nullptr, false);
+    const Json json = parse_json(line);
     if (json.is_discarded())
-      log::warn(where + ": torn record (interrupted write), skipped");
+      log::warn(where + ": torn record (interrupted write) or nested too deeply, skipped");
     else
       records.add(record_from_json(json, where));
   }

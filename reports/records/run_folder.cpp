@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "glint/scene/image_files.h"
+#include "reports/records/earlier_run.h"
 #include "reports/records/environment.h"
 
 namespace glint {
@@ -52,7 +53,7 @@ void check_map(const fs::path& folder, const MapRow& row, const Image& map, Imag
 fs::path run_folder(const fs::path& out, const CellKey& cell) { return out / "runs" / cell.text(); }
 
 void write_run_spec(const RunSpec& spec, const Json& resolved_config) {
-  Json json = Json::object();
+  Json json = {{kWrittenByField, kWrittenBy}};
   visit_spec(spec, [&](const char* name, const auto& field) { json[name] = field; });
   json["dataset_folder"] = spec.dataset_folder.string();
   json["config"] = resolved_config;
@@ -79,22 +80,6 @@ RunSpec read_run_spec(const fs::path& folder) {
     );
   }
   return spec;
-}
-
-void clear_run_folder(const fs::path& folder) {
-  std::error_code code;
-  const bool used = fs::exists(folder, code) && !fs::is_empty(folder, code);
-  GLINT_CHECK(
-      !used || fs::exists(folder / "config.json"),
-      kUsage,
-      "{}: holds files, but no earlier run; choose another folder",
-      folder.string()
-  );
-  fs::remove_all(folder, code);
-  if (!code) fs::create_directories(folder, code);
-  GLINT_CHECK(
-      !code, kEnvironment, "{}: cannot be made empty ({})", folder.string(), code.message()
-  );
 }
 
 void write_trained(const RunSpec& spec, const TrainCost& cost) {

@@ -35,9 +35,6 @@ void write_run_spec(const RunSpec& spec, const Json& resolved_config);
 // Errors (kBadPrediction): no run folder, config.json damaged.
 RunSpec read_run_spec(const fs::path& folder);
 
-// An empty folder for a new run. Errors (kUsage): it holds something that is not an earlier run.
-void clear_run_folder(const fs::path& folder);
-
 // What training cost and had to say, in env.json; nothing: no training has ended there.
 struct TrainCost {
   double seconds = 0, peak_memory_mb = 0;

@@ -41,7 +41,7 @@ class HashCache {
   HashCache(const fs::path& data, const fs::path& cache)
       : path_(cache / (sha256(fs::absolute(data).lexically_normal().string()) + ".json")) {
     std::error_code code;
-    if (fs::exists(path_, code)) known_ = Json::parse(read_file(path_), nullptr, false);
+    if (fs::exists(path_, code)) known_ = parse_json(read_file(path_));
     if (!known_.is_object()) known_ = Json::object();
   }
 
@@ -83,7 +83,7 @@ std::optional<StageFile> read_stage(const fs::path& folder, Stage stage) {
   const fs::path path = file_of(folder, stage);
   std::error_code code;
   if (!fs::exists(path, code)) return std::nullopt;
-  const Json json = Json::parse(read_file(path), nullptr, false);
+  const Json json = parse_json(read_file(path));
   try {
     StageFile file{json.at("made_from"), json.at("files"), json.at("note")};
     if (json.at("key") != stage_key(file.document)) return std::nullopt;

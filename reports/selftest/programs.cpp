@@ -40,8 +40,7 @@ ProgramResult result_of(Arguments arguments, Run&& run) {
   ProgramResult result;
   result.exit_code = static_cast<ExitCode>(run(arguments, out, err));
   result.message = err.str();
-  if (result.exit_code == ExitCode::kSuccess)
-    result.values = values_of(Json::parse(out.str(), nullptr, false));
+  if (result.exit_code == ExitCode::kSuccess) result.values = values_of(parse_json(out.str()));
   return result;
 }
 

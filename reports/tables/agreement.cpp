@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <vector>
 
@@ -30,14 +31,26 @@ std::vector<ValueKey> common_keys(std::span<const ComparedMethod> methods) {
   return keys;
 }
 
-// A resample counts each key as often as it was drawn.
-std::vector<double> resampled_means(
-    std::span<const ComparedMethod> methods, const std::vector<ValueKey>& keys, Rng& rng
+// [keys][methods]: looking keys up in each of thousands of resamples would take seconds.
+std::vector<double> value_matrix(
+    std::span<const ComparedMethod> methods, const std::vector<ValueKey>& keys
 ) {
-  std::vector<double> sums(methods.size());
-  for (std::size_t draw = 0; draw < keys.size(); ++draw) {
-    const ValueKey& key = keys[rng.below(static_cast<std::uint32_t>(keys.size()))];
-    for (std::size_t m = 0; m < methods.size(); ++m) sums[m] += methods[m].values.at(key);
+  std::vector<double> matrix;
+  matrix.reserve(keys.size() * methods.size());
+  for (const ValueKey& key : keys)
+    for (const ComparedMethod& method : methods) matrix.push_back(method.values.at(key));
+  return matrix;
+}
+
+// A resample counts each of the matrix' rows as often as it was drawn.
+std::vector<double> resampled_means(
+    const std::vector<double>& matrix, std::size_t num_methods, Rng& rng
+) {
+  std::vector<double> sums(num_methods);
+  const std::size_t num_keys = matrix.size() / num_methods;
+  for (std::size_t draw = 0; draw < num_keys; ++draw) {
+    const double* values = &matrix[num_methods * rng.below(static_cast<std::uint32_t>(num_keys))];
+    for (std::size_t m = 0; m < num_methods; ++m) sums[m] += values[m];
   }
   return sums;
 }
@@ -47,10 +60,11 @@ std::optional<Interval> bootstrapped_tau(
 ) {
   const std::vector<ValueKey> keys = common_keys(methods);
   if (keys.size() < kMinBootstrapPairs) return std::nullopt;
+  const std::vector<double> matrix = value_matrix(methods, keys);
   Rng rng(kOrderSeed);
   std::vector<double> taus;
   for (std::size_t i = 0; i < kResamples; ++i)
-    if (const double tau = kendall_tau(resampled_means(methods, keys, rng), published);
+    if (const double tau = kendall_tau(resampled_means(matrix, methods.size(), rng), published);
         std::isfinite(tau))
       taus.push_back(tau);
   if (taus.empty()) return std::nullopt;
@@ -78,15 +92,22 @@ std::vector<double> taus_of_random_orders(int n) {
   return taus;
 }
 
-}  // namespace
-
-Interval chance_interval(int n) {
-  if (n < 2) return {-1, 1};
+Interval sampled_chance(int n) {
   std::vector<double> sizes = taus_of_random_orders(n);
   for (double& tau : sizes) tau = std::abs(tau);
   std::sort(sizes.begin(), sizes.end());
   const auto rank = static_cast<std::size_t>(std::ceil(kLevel * static_cast<double>(sizes.size())));
   return {-sizes[rank - 1], sizes[rank - 1]};
+}
+
+}  // namespace
+
+Interval chance_interval(int n) {
+  if (n < 2) return {-1, 1};
+  static std::map<int, Interval> known;  // columns of a table have the same methods
+  const auto [it, is_new] = known.try_emplace(n);
+  if (is_new) it->second = sampled_chance(n);
+  return it->second;
 }
 
 std::optional<OrderAgreement> order_agreement(std::span<const ComparedMethod> methods) {

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "glint/core/printable.h"
+
 #include "reports/tables/table_writers.h"
 
 namespace glint {
@@ -58,9 +60,9 @@ struct TextRows {
 };
 
 std::vector<std::string> row_texts(const Table& table, const TableRow& row) {
-  std::vector<std::string> texts{row.title};
+  std::vector<std::string> texts{printable(row.title)};
   for (std::size_t i = 0; i < row.cells.size(); ++i)
-    texts.push_back(shown_text(row.cells[i], table.columns[i]));
+    texts.push_back(printable(shown_text(row.cells[i], table.columns[i])));
   return texts;
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "glint/core/printable.h"
+
 namespace glint {
 
 namespace {
@@ -43,13 +45,6 @@ std::string join(const std::vector<std::string>& parts, std::string_view separat
   for (std::size_t i = 0; i < parts.size(); ++i)
     text += (i ? std::string(separator) : "") + parts[i];
   return text;
-}
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::string csv_value(const TableCell& cell, const TableColumn& column) {

@@ -13,7 +13,7 @@ namespace glint {
 namespace {
 
 int exit_code_of(const RunSummary& summary) {
-  if (summary.interrupted) return kInterruptedExit;
+  if (summary.interrupted) return interrupted_exit();
   return static_cast<int>(summary.failed > 0 ? ExitCode::kPartial : ExitCode::kSuccess);
 }
 

@@ -4,11 +4,16 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <iostream>
 #include <new>
 
+#include "glint/core/interrupt.h"
 #include "glint/core/nearest.h"
 #include "glint/core/parallel.h"
+#include "glint/core/printable.h"
+#include "glint/core/process.h"
 #include "glint/core/progress.h"
+#include "metrics/tools/numeric_options.h"
 #include "reports/records/embedded.h"
 #include "reports/records/environment.h"
 #include "reports/records/revision.h"
@@ -79,7 +84,7 @@ void add_machine_options(const CommonOptionAdder& add, CommonOptions& common) {
 }
 
 int report_error(const std::string& message, ExitCode code) {
-  fmt::print(stderr, "error: {}\n", message);
+  fmt::print(stderr, "error: {}\n", printable(message));
   return static_cast<int>(code);
 }
 
@@ -154,6 +159,7 @@ int parse_and_run(CommandLine& line, int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     return explain(line.app, error);
   }
+  check_numbers(line.app);
   line.common.apply(line.uses);
   warn_of_unused(line.app);
   return line.action();
@@ -212,15 +218,20 @@ CLI::App* CommandLine::add_verb(
 }
 
 int run_command_line(int argc, const char* const* argv) {
+  ignore_file_size_signal();
   CommandLine line;
   try {
-    return parse_and_run(line, argc, argv);
+    const int code = parse_and_run(line, argc, argv);
+    std::cout.flush();  // what CLI11 prints
+    GLINT_CHECK(std::cout.good() && std::fflush(stdout) == 0, kEnvironment, "{}", kNoOutput);
+    return code;
   } catch (const Error& error) {
     return report_error(error.what(), error.code());
+  } catch (const Interrupted&) {
+    log::warn("interrupted: what was begun is not complete");
+    return interrupted_exit();
   } catch (const std::bad_alloc&) {
-    return report_error(
-        "out of memory; use smaller images or fewer threads", ExitCode::kEnvironment
-    );
+    return report_error(std::string(kOutOfMemory), ExitCode::kEnvironment);
   } catch (const std::exception& error) {
     return report_error(error.what(), ExitCode::kEnvironment);
   }
@@ -234,7 +245,7 @@ void print_json(const Json& json) {
 
 void print_text(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
-  GLINT_CHECK(std::fflush(stdout) == 0, kEnvironment, "standard output cannot be written");
+  GLINT_CHECK(std::fflush(stdout) == 0, kEnvironment, "{}", kNoOutput);
 }
 
 bool color_terminal() { return ::isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }

@@ -4,6 +4,7 @@
 #include "datasets/dataset.h"
 #include "datasets/glassroom/glassroom.h"
 #include "datasets/packed_scene.h"
+#include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "reports/verbs/dataset_export.h"
 #include "reports/verbs/verb.h"
@@ -35,6 +36,7 @@ int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
       "dataset make {}: no such generator; expected glassroom",
       options.dataset
   );
+  install_interrupt_handler();
   options.room.seed = common.seed.value_or(0);
   Json made = Json::array();
   for (const std::string& scene : options.scenes) {

@@ -8,6 +8,7 @@
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
 #include "reports/import/import_predictions.h"
+#include "reports/records/earlier_run.h"
 #include "reports/records/environment.h"
 #include "reports/verbs/headline_scores.h"
 #include "reports/verbs/single_run.h"
@@ -27,8 +28,10 @@ Scores earlier_cost(const RunSpec& spec) {
   }
   const fs::path path = spec.folder / "metrics.json";
   if (!fs::exists(path)) return cost;
-  const Json json = read_json_object(path, ExitCode::kBadPrediction);
-  if (json.contains("metrics"))
+  const Json json = parse_json(read_file(path));
+  if (!json.is_object())
+    log::warn(fmt::format("{}: damaged; fps and surfels are not known any more", path.string()));
+  if (json.is_object() && json.value("metrics", Json()).is_object())
     for (const char* id : {"fps", "num-surfels"})
       if (const auto it = json["metrics"].find(id); it != json["metrics"].end() && it->is_number())
         cost[id] = it->get<double>();
@@ -52,10 +55,16 @@ MeshProtocol mesh_protocol_of(const RunSpec& spec) {
 }
 
 int print_scores(
-    const CommonOptions& common, const fs::path& folder, const Scores& means, bool all
+    const CommonOptions& common,
+    const fs::path& folder,
+    const Scores& means,
+    bool all,
+    const std::vector<std::string>& warnings = {}
 ) {
   if (common.json) {
-    print_json({{"run", folder.string()}, {"metrics", means}});
+    Json json = {{"run", folder.string()}, {"metrics", means}};
+    if (!warnings.empty()) json["warnings"] = warnings;
+    print_json(json);
     return 0;
   }
   print_text(all ? all_scores(means) : headline_scores(means));
@@ -224,6 +233,15 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
       "pgsr-official",
       arguments.method
   );
+  for (const fs::path& part : fs::path(arguments.method + "/").parent_path())
+    GLINT_CHECK(
+        why_no_folder_name(part.string()).empty(),
+        kUsage,
+        "--method '{}': '{}' {}; results lie in a folder of that name",
+        arguments.method,
+        part.string(),
+        why_no_folder_name(part.string())
+    );
   LoadOptions load;
   load.max_pixels = arguments.max_pixels;
   const Scene scene = load_scene(arguments.dataset, load);
@@ -237,6 +255,7 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
       common.records_file(profile), {spec.scene, spec.method, spec.options.seed}, arguments
   );
   Record record = record_of(spec, profile, arguments.predictions);
+  EarlierRun earlier(spec.folder);
   record.warnings = import_predictions(arguments.predictions, scene, spec, options);
   log::info(record.warnings.front());  // whose renders they are
   for (std::size_t i = 1; i < record.warnings.size(); ++i) log::warn(record.warnings[i]);
@@ -257,8 +276,9 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
   const Camera& camera = scene.test.front().camera;
   record.resolution = fmt::format("{}x{}", camera.width, camera.height);
   append_record(common.records_file(profile), record);
+  earlier.drop();
   log::info("recorded in " + common.records_file(profile).string());
-  return print_scores(common, spec.folder, record.metrics, arguments.all);
+  return print_scores(common, spec.folder, record.metrics, arguments.all, record.warnings);
 }
 
 void add_prediction_options(CLI::App& verb, CLI::Option& predictions, EvalArguments& arguments) {

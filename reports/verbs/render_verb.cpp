@@ -162,7 +162,7 @@ int run_render(const CommonOptions& common, const RenderArguments& arguments) {
                                   : render_along_path(common, arguments, single);
   } catch (const Interrupted&) {
     log::warn("interrupted: not all is rendered");
-    return kInterruptedExit;
+    return interrupted_exit();
   }
 }
 

@@ -7,6 +7,7 @@
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
 #include "reports/bench/stage_documents.h"
+#include "reports/records/earlier_run.h"
 #include "reports/records/stage_files.h"
 
 namespace glint {
@@ -30,6 +31,7 @@ void check_new_run(const fs::path& folder, bool force, const std::string& identi
       "{}: holds a run already; --force trains it again, --run names another folder",
       folder.string()
   );
+  check_run_folder(folder);
 }
 
 }  // namespace

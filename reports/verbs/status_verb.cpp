@@ -18,7 +18,7 @@ struct StatusRow {
 // The last step that an unfinished run logged; empty when there is none.
 std::string last_step(const fs::path& run) {
   for (const std::string& line : log_tail(run, 1)) {
-    const Json json = Json::parse(line, nullptr, false);
+    const Json json = parse_json(line);
     if (json.is_object())
       return fmt::format(
           "step {}, PSNR {:.2f}", json.value("iteration", 0), json.value("psnr", 0.0)

@@ -32,7 +32,7 @@ int run_train(
       ));
   } catch (const Interrupted&) {
     log::warn("interrupted: " + folder + " is not complete; the same command goes on");
-    return kInterruptedExit;
+    return interrupted_exit();
   }
   log::info(fmt::format(
       "not in any records yet; next: glint-bench render --run {0}, then eval --run {0}, which "

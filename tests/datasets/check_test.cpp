@@ -9,6 +9,7 @@
 
 #include "datasets/check_geometry.h"
 #include "datasets/dataset.h"
+#include "datasets/scene_index.h"
 #include "glint/core/config.h"
 #include "glint/core/rng.h"
 #include "glint/scene/image_files.h"
@@ -416,4 +417,41 @@ TEST_CASE("several defects at once are all named") {
 TEST_CASE("a folder that no loader knows cannot be checked") {
   const TempFolder folder;
   bad_reference([&] { check_dataset(folder.path()); });
+}
+
+TEST_CASE("names that share a folder, and a scene's name that leaves it, are found and not loaded"
+) {
+  const TempFolder folder;
+  write_easyvolcap(folder.path(), box_room_views(10, kSize));
+  write_file(folder / "scene.json", R"({"name": "../../elsewhere"})");
+  const std::string message = bad_reference([&] { load_scene(folder.path(), {}); });
+  CHECK_THAT(message, Contains("scene.json: name: '../../elsewhere' holds a path separator"));
+  CHECK_THAT(list(check_dataset(folder.path())), Contains("holds a path separator"));
+}
+
+TEST_CASE("views whose names become one folder's are told with both names") {
+  SceneIndex index;
+  index.name = "x";
+  index.views = {
+      {.name = "a/b", .where = "file: a/b", .is_train = true},
+      {.name = "a_b", .where = "file: a_b", .is_train = true}};
+  const std::string message = bad_reference([&] { load_indexed(index, {}); });
+  CHECK_THAT(message, Contains("a/b and a_b would share the folder a_b"));
+  CHECK_THAT(list(check_indexed(index)), Contains("[view-name] file: a_b: views a/b and a_b"));
+}
+
+TEST_CASE("a camera that stands nowhere near is found") {
+  const auto findings = findings_after([](std::vector<View>& views) {
+    views[3].camera.translation_cam_from_world.x = 1e50;
+  });
+  CHECK_THAT(list(findings), Contains("[pose]") && Contains("1e+50 m from the origin"));
+}
+
+TEST_CASE("float images of another range are found") {
+  const TempFolder folder;
+  write_npy(folder / "a.npy", Image(8, 6, 3, 255.0f));
+  SceneIndex index;
+  index.views = {{.name = "a", .where = "file: a", .image = folder / "a.npy", .is_train = true}};
+  index.views[0].camera.fx = index.views[0].camera.fy = 8;
+  CHECK_THAT(list(check_indexed(index)), Contains("[color-values]") && Contains("by 255"));
 }

@@ -338,3 +338,16 @@ TEST_CASE("coloured depth priors carry 24 bits") {
       read_prior(folder / "depth.png", MapKind::kDepth).at(0, 0) == Approx(expected).epsilon(1e-7)
   );
 }
+
+TEST_CASE("YAML of another kind, or nested deeply, is the file's error") {
+  const TempFolder folder;
+  write_easyvolcap(folder.path(), box_room_views(3, {16, 12}));
+  for (const std::string& text :
+       {std::string("%YAML:1.0\n---\n- 1\n- 2\n"),
+        "%YAML:1.0\n---\nnames: " + std::string(100000, '[') + "\n",
+        "%YAML:1.0\n---\n" + std::string(100000, '-') + "\n",
+        "%YAML:1.0\n---\nnames: " + std::string(100000, '{') + "\n"}) {
+    write_file(folder / "intri.yml", text);
+    CHECK_THAT(bad_reference([&] { load_scene(folder.path(), {}); }), Contains("intri.yml"));
+  }
+}

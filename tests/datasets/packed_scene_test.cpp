@@ -242,3 +242,29 @@ TEST_CASE("a damaged file is read or is an error, and nothing else") {
     }
   }
 }
+
+TEST_CASE("names of a packed scene that would lead out of the results or share a folder are refused"
+) {
+  const TempFolder folder;
+  const auto error_of_scene = [&](const std::function<void(Scene&)>& change) {
+    Scene scene = box_scene();
+    change(scene);
+    return bad_reference([&] { write_packed_scene(folder / "x.safetensors", scene); });
+  };
+  for (const char* name : {"/etc", "..", "../x", "", "a\x1b[2Jb"})
+    CHECK_THAT(error_of_scene([&](Scene& s) { s.name = name; }), Contains("__metadata__: name: '"));
+  const std::string same = error_of_scene([](Scene& s) { s.train[1].name = s.train[0].name; });
+  CHECK_THAT(same, Contains("is used twice"));
+  const std::string shared =
+      error_of_scene([](Scene& s) { s.train[0].name = "a/b", s.test[0].name = "a_b"; });
+  CHECK_THAT(shared, Contains("a/b and a_b") && Contains("share the folder a_b"));
+  for (const char* name : {"..", "", "x\n"})
+    CHECK_THAT(
+        error_of_scene([&](Scene& s) { s.test[0].name = name; }), Contains("rename the view")
+    );
+  // The same in a file that someone else wrote.
+  const PackedFile file;
+  Json header = file.header();
+  header["__metadata__"]["name"] = "../b";
+  CHECK_THAT(file.error_with(header), Contains("name: '../b' holds a path separator"));
+}

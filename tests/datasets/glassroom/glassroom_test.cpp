@@ -197,3 +197,23 @@ TEST_CASE("glTF furniture replaces the procedural pieces") {
   for (const Json& material : json["materials"]) materials.insert(material["name"]);
   CHECK(materials.count("sofa_03_1k") == 1);
 }
+
+TEST_CASE("A damaged scene is made again") {
+  const QuietFolder temporary;
+  const fs::path a = temporary.path() / "a";
+  REQUIRE(make_glassroom(kTiny, a, false));
+  const Json hashes = file_hashes(a);
+  const fs::path picture = a / "images/0000/000000.png";
+  REQUIRE(fs::exists(picture));
+  std::string bytes = read_file(picture);
+  bytes[bytes.size() / 2] ^= 1;
+  write_file(picture, bytes);
+  CHECK(make_glassroom(kTiny, a, false));
+  CHECK(file_hashes(a) == hashes);
+  fs::remove(picture);
+  CHECK(make_glassroom(kTiny, a, false));
+  const std::string description = read_file(a / "scene.json");
+  write_file(a / "scene.json", description.substr(0, description.size() / 2));
+  CHECK(make_glassroom(kTiny, a, true));
+  CHECK(file_hashes(a) == hashes);
+}

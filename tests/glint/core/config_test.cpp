@@ -109,3 +109,17 @@ TEST_CASE("A file that must hold a JSON object says what it holds instead") {
   CHECK(read_json_object(folder / "a.json") == Json{{"a", 1}});
   test::bad_reference([&] { read_json_object(folder / "absent.json"); });
 }
+
+TEST_CASE("JSON that is nested too deeply is none") {
+  const auto nested = [](int depth) {
+    return std::string(static_cast<std::size_t>(depth), '[') +
+           std::string(static_cast<std::size_t>(depth), ']');
+  };
+  CHECK(parse_json(nested(kDeepestJson)).is_array());
+  CHECK(parse_json(nested(kDeepestJson + 1)).is_discarded());
+  CHECK(parse_json(nested(10'000'000)).is_discarded());
+  CHECK(parse_json("{\"a\": \"" + nested(1000) + "\\\"[\"}").is_object());  // in a text
+  CHECK_THROWS_WITH(
+      check_json_depth(nested(101), "x.json"), Catch::Contains("x.json: lists and objects nested")
+  );
+}

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
+#include "glint/core/process.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -171,4 +172,33 @@ TEST_CASE("A temporary folder goes with all that is in it") {
     write_file(folder / "a" / "b.txt", "text");
   }
   CHECK_FALSE(fs::exists(path));
+}
+
+TEST_CASE("a path that cannot be looked up is not called missing") {
+  const TempFolder folder;
+  const std::string message = bad_reference([&] { read_file(folder / std::string(300, 'x')); });
+  CHECK_THAT(message, Catch::Contains("cannot be looked up"));
+  CHECK_THAT(bad_reference([&] { read_file(folder / "x"); }), Catch::Contains("no such file"));
+  if (::geteuid() == 0) return;  // may read everything
+  write_file(folder / "closed/x", "x");
+  fs::permissions(folder / "closed", fs::perms::none);
+  const std::string closed =
+      error_of(ExitCode::kEnvironment, [&] { read_file(folder / "closed/x"); });
+  fs::permissions(folder / "closed", fs::perms::owner_all);
+  CHECK_THAT(closed, Catch::Contains("permission denied"));
+}
+
+TEST_CASE("memory that runs out names the file and its size") {
+  const TempFolder folder;
+  write_file(folder / "x", "12345");
+  const std::string message = error_of(ExitCode::kEnvironment, [&] {
+    read_within_memory(folder / "x", []() -> int { throw std::bad_alloc(); });
+  });
+  CHECK_THAT(message, Catch::Contains("/x: out of memory") && Catch::Contains("5 bytes on disk"));
+}
+
+TEST_CASE("a limit on the size of files is an error of the writer, not a signal") {
+  const auto before = std::signal(SIGXFSZ, SIG_DFL);
+  ignore_file_size_signal();
+  CHECK(std::signal(SIGXFSZ, before) == SIG_IGN);
 }

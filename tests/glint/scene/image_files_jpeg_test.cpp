@@ -18,7 +18,9 @@ struct Destroy {
 };
 
 // A JPEG of one colour, given as bytes by format (TJPF_RGB, TJPF_GRAY or TJPF_CMYK).
-std::string jpeg(int width, int height, TJPF format, const std::vector<unsigned char>& color) {
+std::string jpeg(
+    int width, int height, TJPF format, const std::vector<unsigned char>& color, int flags = 0
+) {
   const std::unique_ptr<void, Destroy> coder(tjInitCompress());
   std::vector<unsigned char> pixels;
   for (int i = 0; i < width * height; ++i) pixels.insert(pixels.end(), color.begin(), color.end());
@@ -27,7 +29,7 @@ std::string jpeg(int width, int height, TJPF format, const std::vector<unsigned 
   const int sampling = format == TJPF_GRAY ? TJSAMP_GRAY : TJSAMP_420;
   REQUIRE(
       tjCompress2(
-          coder.get(), pixels.data(), width, 0, height, format, &bytes, &size, sampling, 95, 0
+          coder.get(), pixels.data(), width, 0, height, format, &bytes, &size, sampling, 95, flags
       ) == 0
   );
   std::string file(reinterpret_cast<const char*>(bytes), size);
@@ -63,13 +65,24 @@ TEST_CASE("grey JPEGs have one channel, inks are an error") {
   CHECK_THAT(bad_reference([&] { read_image(folder / "inks.jpg"); }), Contains("save it as RGB"));
 }
 
-TEST_CASE("a JPEG whose data stop before its end marker is an error; bytes between segments are not"
+TEST_CASE("a JPEG whose data stop before its end marker is an error; bytes in front of that are not"
 ) {
   const TempFolder folder;
   const std::string file = jpeg(64, 64, TJPF_RGB, {204, 102, 51});
   write_file(folder / "short.jpg", file.substr(0, file.size() - 12) + "\xff\xd9");
   CHECK_THAT(bad_reference([&] { read_image(folder / "short.jpg"); }), Contains("JPEG"));
-  const std::string padded = file.substr(0, file.size() - 2) + "abc\xff\xd9";
-  write_file(folder / "padded.jpg", padded);
+  write_file(folder / "padded.jpg", file.substr(0, file.size() - 2) + "abc\xff\xd9");
   CHECK(read_image(folder / "padded.jpg").size() == ImageSize{64, 64});
+}
+
+TEST_CASE("bytes that are left over between the scans of a JPEG are an error") {
+  // They may be all that was read from a wrong place on.
+  const TempFolder folder;
+  const std::string file = jpeg(64, 64, TJPF_RGB, {204, 102, 51}, TJFLAG_PROGRESSIVE);
+  const std::size_t scan = file.find("\xff\xda", file.find("\xff\xda") + 2);
+  REQUIRE(scan != std::string::npos);
+  write_file(folder / "x.jpg", file);
+  CHECK(read_image(folder / "x.jpg").size() == ImageSize{64, 64});
+  write_file(folder / "x.jpg", file.substr(0, scan) + "abc" + file.substr(scan));
+  CHECK_THAT(bad_reference([&] { read_image(folder / "x.jpg"); }), Contains("3 extraneous bytes"));
 }

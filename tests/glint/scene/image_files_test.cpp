@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "glint/core/rng.h"
+#include "glint/scene/image_files_formats.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -306,4 +307,57 @@ TEST_CASE("sRGB encoding follows IEC 61966-2-1 and decodes back") {
     const float v = static_cast<float>(i) / 50.0f;
     CHECK(srgb_encode(srgb_decode(v)) == Approx(v).margin(2e-4));
   }
+}
+
+namespace {
+
+// An attribute of an EXR's header, as the file has it.
+std::string exr_attribute(const std::string& name, const std::string& type, std::string value) {
+  const auto bytes = static_cast<std::uint32_t>(value.size());
+  std::string text = name + '\0' + type + '\0';
+  text.append(reinterpret_cast<const char*>(&bytes), sizeof bytes);
+  return text + value;
+}
+
+std::string little_endian(std::initializer_list<std::uint32_t> numbers) {
+  std::string bytes;
+  for (const std::uint32_t number : numbers)
+    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("an EXR's header is believed only as far as the file can hold") {
+  const TempFolder folder;
+  write_exr(folder / "x.exr", random_image(8, 6, 3));
+  const std::string good = read_file(folder / "x.exr");
+  const auto error_of_file = [&](const std::string& bytes) {
+    write_file(folder / "bad.exr", bytes);
+    return bad_reference([&] { read_image(folder / "bad.exr"); });
+  };
+  const auto with_version = [&](std::uint32_t flag) {
+    return good.substr(0, 4) + little_endian({2u | flag}) + good.substr(8);
+  };
+  CHECK_THAT(error_of_file(with_version(1u << 11)), Contains("a deep EXR"));
+  CHECK_THAT(error_of_file(with_version(1u << 12)), Contains("a multi-part EXR"));
+  // An attribute larger than the file.
+  std::string header = good.substr(0, 8);
+  std::string huge = exr_attribute("comments", "string", "abc");
+  huge.replace(huge.size() - 7, 4, little_endian({0x3fffffffu}));
+  CHECK_THAT(error_of_file(header + huge + good.substr(8)), Contains("an attribute of 1073741823"));
+  // Tiles that nobody needs, of a small picture.
+  std::string tiles = exr_attribute("tiles", "tiledesc", little_endian({60000, 60000}) + '\0');
+  CHECK_THAT(error_of_file(header + tiles + good.substr(8)), Contains("60000 x 60000"));
+  // A window that the bytes cannot fill.
+  const std::size_t window = good.find("dataWindow");
+  REQUIRE(window != std::string::npos);
+  std::string wide = good;
+  wide.replace(
+      window + std::string("dataWindow box2i ").size() + 4, 16, little_endian({0, 0, 59999, 59999})
+  );
+  CHECK_THAT(error_of_file(wide), Contains("60000 x 60000") && Contains("too many for a file"));
+  // Unknown attributes are none of our business.
+  write_file(folder / "note.exr", header + exr_attribute("note", "string", "abc") + good.substr(8));
+  detail::check_exr_header(folder / "note.exr", read_file(folder / "note.exr"));
 }

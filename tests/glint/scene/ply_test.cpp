@@ -321,3 +321,52 @@ TEST_CASE("damaged PLY files are read or are errors, and nothing else") {
     }
   }
 }
+
+TEST_CASE("rows that the header does not count are an error, in both formats") {
+  const TempFolder folder;
+  write_mesh_ply(folder / "mesh.ply", tetrahedron());
+  std::string bytes = read_file(folder / "mesh.ply");
+  const auto recount = [&](const std::string& from, const std::string& to) {
+    std::string changed = bytes;
+    changed.replace(changed.find(from), from.size(), to);
+    write_file(folder / "recounted.ply", changed);
+    return bad_reference([&] { read_mesh_ply(folder / "recounted.ply"); });
+  };
+  CHECK_THAT(
+      recount("element face 4", "element face 2"),
+      Contains("26 bytes are left behind") && Contains("4 vertex, 2 face")
+  );
+  // Too few vertices shift the faces.
+  CHECK_FALSE(recount("element vertex 4", "element vertex 3").empty());
+  write_file(folder / "points.ply", ascii_points("1 2 3 0 0 0\n4 5 6 0 0 0\n", 1));
+  CHECK_THAT(
+      bad_reference([&] { read_point_ply(folder / "points.ply"); }), Contains("are left behind")
+  );
+  write_file(folder / "blank.ply", ascii_points("1 2 3 0 0 0\n\n  \n", 1));
+  CHECK(read_point_ply(folder / "blank.ply").positions.size() == 1);
+  write_file(folder / "line.ply", bytes + "\n");  // some writers end binary rows with one
+  CHECK(read_mesh_ply(folder / "line.ply").faces.size() == 4);
+}
+
+TEST_CASE("a gap in the coefficients is an error that names it") {
+  const TempFolder folder;
+  write_surfel_ply(folder / "x.ply", random_cloud(2, {}));
+  std::string bytes = read_file(folder / "x.ply");
+  bytes.replace(bytes.find("f_rest_9\n"), 8, "f_rost_9");
+  write_file(folder / "x.ply", bytes);
+  CHECK_THAT(
+      bad_reference([&] { read_surfel_ply(folder / "x.ply"); }), Contains("but no f_rest_9")
+  );
+}
+
+TEST_CASE("vertices out of any scene are an error that names them") {
+  const TempFolder folder;
+  TriangleMesh mesh = tetrahedron();
+  mesh.vertices[2].y = -1e36f;
+  write_mesh_ply(folder / "far.ply", mesh);
+  CHECK_THAT(
+      bad_reference([&] { read_mesh_ply(folder / "far.ply"); }), Contains("vertex 2: y is -1e+36")
+  );
+  write_point_ply(folder / "far.ply", {{{2e6f, 0, 0}}, {{0, 0, 0}}, {}});
+  CHECK_THAT(bad_reference([&] { read_point_ply(folder / "far.ply"); }), Contains("x is 2e+06"));
+}

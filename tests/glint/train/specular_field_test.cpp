@@ -2,6 +2,9 @@
 // Reflections from a map of directions: their formulas in double, the whole by central differences.
 #include "glint/train/specular_field.h"
 
+#include <cmath>
+#include <cstring>
+
 #include "glint/render/tone.h"
 #include "tests/support/check_loss.h"
 #include "tests/support/check_vjp.h"
@@ -230,6 +233,19 @@ TEST_CASE("Reflections come back from a file with the same bytes") {
   larger.map_height = 16;
   SpecularField wrong(larger, {0, 0}, 1);
   CHECK_THROWS_WITH(wrong.load(folder.path(), 2), Catch::Contains("field.map"));
+}
+
+TEST_CASE("Weights that are not finite are refused with their file") {
+  Fixture f(1);
+  const TempFolder folder;
+  f.field.save(folder.path(), 1);
+  std::string bytes = read_file(folder / "specular_field.safetensors");
+  const float nan = std::nanf("");
+  std::memcpy(bytes.data() + bytes.size() - sizeof nan, &nan, sizeof nan);
+  write_file(folder / "specular_field.safetensors", bytes);
+  CHECK_THROWS_WITH(
+      f.field.load(folder.path(), 2), Catch::Contains("specular_field.safetensors: field")
+  );
 }
 
 TEST_CASE("A stage that the method does not have is an error that names file and stages") {

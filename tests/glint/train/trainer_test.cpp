@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/trainer.h"
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 
 #include <limits>
@@ -263,22 +261,4 @@ TEST_CASE("Without room for a checkpoint training goes on and the last good one 
   train(second, one_view(), options);
   CHECK(second.steps == count_to(6));
   CHECK(steps_in(options.folder) == count_to(3));
-}
-
-TEST_CASE("Temporaries of processes that are no more go, others stay") {
-  const test::TempFolder folder;
-  const fs::path file = folder.path() / "checkpoint.safetensors";
-  const auto left = [&](const std::string& name) { return fs::exists(folder.path() / name); };
-  const std::string mine = fmt::format(".checkpoint.{}.safetensors", ::getpid());
-  for (const std::string& name :
-       {std::string("checkpoint.safetensors"),  // by way of the name of mine
-        mine,
-        std::string(".checkpoint.999999999.safetensors"),
-        std::string(".checkpoint.notes.safetensors")})
-    write_file(folder.path() / name, "x");
-  remove_stale_temporaries(file);
-  CHECK(left(mine));
-  CHECK(!left(".checkpoint.999999999.safetensors"));
-  CHECK(left(".checkpoint.notes.safetensors"));
-  CHECK(left("checkpoint.safetensors"));
 }

@@ -10,6 +10,7 @@
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf_volume.h"
+#include "tests/support/temp_folder.h"
 
 using namespace glint;
 
@@ -189,4 +190,21 @@ TEST_CASE("Pieces are found in meshes that are not manifold") {
   CHECK(all.faces.size() == 4);
   CHECK(count.dropped == 0);
   CHECK(keep_large_clusters(mesh, 5).faces.empty());
+}
+
+TEST_CASE("Options that would take all memory are refused at once") {
+  const auto nothing = [](std::size_t) { return FusionView{}; };
+  const auto error_with = [&](auto&& change) {
+    TsdfOptions options;
+    change(options);
+    return test::error_of(ExitCode::kUsage, [&] { fuse_depth(nothing, 1, options); });
+  };
+  CHECK_THAT(
+      error_with([](TsdfOptions& o) { o.truncation_voxels = 1e9; }),
+      Catch::Contains("truncation_voxels is 1000000000") && Catch::Contains("1 to 100")
+  );
+  CHECK_THAT(
+      error_with([](TsdfOptions& o) { o.max_memory_mb = std::nan(""); }),
+      Catch::Contains("max_memory_mb is nan")
+  );
 }

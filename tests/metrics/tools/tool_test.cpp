@@ -311,6 +311,32 @@ TEST_CASE("a prediction that is not finite is refused with its file and pixel") 
   CHECK_THAT(result.err, Catch::Contains("broken.exr") && Catch::Contains("(7, 3)"));
 }
 
+TEST_CASE("colours far outside of their range are told in every output") {
+  const test::TempFolder folder;
+  Image bytes = rendered();
+  for (float& value : bytes.values()) value *= 255;
+  write_exr(folder / "bytes.exr", bytes);
+  write_png(folder / "a.png", reference());
+  const std::vector<std::string> pair = {folder / "bytes.exr", folder / "a.png"};
+  const Result text = psnr_tool(pair);
+  CHECK(text.code == 0);
+  CHECK_THAT(
+      text.out,
+      Catch::Contains("warning: ") && Catch::Contains("bytes.exr: values from") &&
+          Catch::Contains("divide bytes by 255")
+  );
+  const Result json = psnr_tool({pair[0], pair[1], "--json"});
+  REQUIRE(json.json()["images"][0]["warnings"].size() == 1);
+  write_exr(folder / "good.exr", rendered());
+  CHECK(
+      psnr_tool({folder / "good.exr", folder / "a.png"}).out.find("warning") == std::string::npos
+  );
+  // A reference counts, too.
+  CHECK_THAT(
+      psnr_tool({folder / "good.exr", folder / "bytes.exr"}).out, Catch::Contains("values from")
+  );
+}
+
 TEST_CASE("glint-ssim prints one variant or all") {
   const test::TempFolder folder;
   write_run(folder);
@@ -418,4 +444,35 @@ TEST_CASE("a normal map needs three channels") {
   write_exr(folder / "normal.exr", golden::true_normal_map(kWidth, kHeight), true);
   CHECK(normal_tool({folder / "grey.exr", folder / "normal.exr"}).code == 2);
   CHECK(normal_tool({folder / "normal.exr", folder / "grey.exr"}).code == 3);
+}
+
+TEST_CASE("output that cannot be written is an error of the environment") {
+  const test::TempFolder folder;
+  write_png(folder / "a.png", reference());
+  std::ofstream full("/dev/full");
+  std::ostringstream err;
+  const auto tool = make_psnr_tool();
+  CHECK(run_tool(*tool, {folder / "a.png", folder / "a.png"}, full, err) == 6);
+  CHECK_THAT(err.str(), Catch::Contains("standard output cannot be written"));
+  std::ofstream help("/dev/full");
+  CHECK(run_tool(*tool, {"--help"}, help, err) == 6);
+}
+
+TEST_CASE("numbers on the command line are finite") {
+  for (const char* number : {"nan", "-inf", "1e999"}) {
+    const Result result = depth_tool({"a", "b", "--max-depth", number});
+    CHECK(result.code == 1);
+    CHECK_THAT(result.err, Catch::Contains("--max-depth"));
+  }
+}
+
+TEST_CASE("names in CSV are no formulas, and messages show what a terminal would obey") {
+  const test::TempFolder folder;
+  for (const char* name : {"=1+1.png", "x.png"}) {
+    write_png(folder / "a" / name, reference());
+    write_png(folder / "b" / name, reference());
+  }
+  CHECK_THAT(psnr_tool({folder / "a", folder / "b", "--csv"}).out, Catch::Contains("\n'=1+1,"));
+  const Result missing = psnr_tool({folder / "\x1b[2J.png", folder / "b/x.png"});
+  CHECK_THAT(missing.err, Catch::Contains("\\x1b[2J.png"));
 }

@@ -32,6 +32,7 @@ TEST_CASE("Ctrl-C ends a run after what is finished, and an unfinished cell leav
   };
   const RunSummary summary = run_profile(options);
   CHECK(summary.interrupted);
+  CHECK(interrupted_exit() == 130);
   CHECK(summary.ran == 1);
   CHECK(summary.failed == 0);
   const auto records = read_records(folder.path() / "records.jsonl");

@@ -166,4 +166,7 @@ TEST_CASE("the protocol that a run was scored with says what is culled") {
   CHECK(right_edge() > 0.8f);  // stripes
   write_file(folder / "a/metrics.json", R"({"meshes": {"protocol": {"cull": "none"}}})");
   CHECK(right_edge() == Approx(color_of(0).at(0, 0, 2)).margin(kColorMargin));
+  // One that was cut off says nothing, and takes no figure with it.
+  write_file(folder / "a/metrics.json", R"({"meshes": {"proto)");
+  CHECK(right_edge() > 0.8f);
 }

@@ -3,10 +3,13 @@
 // missing or damaged, a failed cell, hostile names.
 #include "reports/page/page.h"
 
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 
+#include "glint/core/process.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"
@@ -371,4 +374,24 @@ TEST_CASE("ten thousand records give a small summary") {
   CHECK(scenes.size() == 100);
   const std::string data = page_summary(store.options, {}, records, scenes).dump();
   CHECK(data.size() < 10'000'000);
+}
+
+TEST_CASE("a full disk while meshes are written is an error, not a missing mesh") {
+  Store store;
+  store.add(record_of("room_1", "fake"));
+  write_run(store.options.folder, record_of("room_1", "fake"));
+  TriangleMesh fan;
+  for (int i = 0; i < 60'000; ++i)
+    fan.vertices.push_back({std::sqrt(static_cast<float>(i)), i % 2 ? 0.1f : 0.0f, 0});
+  for (int i = 0; i + 2 < 60'000; ++i) fan.faces.push_back({i, i + 1, i + 2});
+  write_mesh_ply(store.options.folder / "runs/room_1/fake/0/mesh.ply", fan);
+  ignore_file_size_signal();
+  rlimit old{};
+  ::getrlimit(RLIMIT_FSIZE, &old);
+  const rlimit limit{700'000, old.rlim_max};  // above what the page has besides
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  const auto write = [&] { store.write(); };
+  CHECK_THROWS_WITH(write(), Catch::Contains("mesh_0") && Catch::Contains("writing failed"));
+  ::setrlimit(RLIMIT_FSIZE, &old);
+  CHECK_NOTHROW(write());
 }

@@ -132,3 +132,26 @@ TEST_CASE("values that are not finite are left out, not written as null") {
   record.metrics["depth-absrel"] = std::numeric_limits<double>::quiet_NaN();
   CHECK_FALSE(record_to_json(record).at("metrics").contains("depth-absrel"));
 }
+
+TEST_CASE("records whose names lead out of the results are refused, deeply nested ones skipped") {
+  const test::TempFolder folder;
+  const fs::path file = folder / "records.jsonl";
+  for (const char* names :
+       {R"("scene": "../x", "method": "m")",
+        R"("scene": "x", "method": "m/../../y")",
+        R"("scene": "x", "method": "/y")",
+        R"("scene": "", "method": "m")"}) {
+    write_file(file, fmt::format("{{{}, \"metrics\": {{}}}}\n", names));
+    CHECK_THAT(
+        test::error_of(ExitCode::kBadPrediction, [&] { read_records(file); }),
+        Catch::Contains("records.jsonl:1: ")
+    );
+  }
+  const std::string deep(100000, '[');
+  write_file(
+      file,
+      "{\"scene\": \"x\", \"method\": \"a/b\", \"metrics\": {}}\n{\"scene\": \"y\", \"x\": " +
+          deep + "\n"
+  );
+  CHECK(read_records(file).size() == 1);
+}

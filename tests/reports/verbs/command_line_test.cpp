@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
 // glint-bench as a program: exit codes of wrong and right command lines.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 
+#include <cstdio>
 #include <cstdlib>
 #include <initializer_list>
+#include <iostream>
 #include <vector>
 
 #include "glint/core/device.h"
 #include "glint/cuda/backend.h"
 #include "reports/verbs/command_line.h"
+#include "tests/reports/run_words.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -211,4 +217,32 @@ TEST_CASE("an output folder that cannot be written exits with 6") {
   );
   const std::string store = folder.path().string();
   CHECK(run({"compare", store.c_str(), store.c_str(), "--markdown", "/proc/nowhere/x"}) == 6);
+}
+
+TEST_CASE("output that nobody takes is an error of the environment") {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"methods"}, {"methods", "--json"}, {"--help"}, {"--version"}}) {
+    std::fflush(stdout);
+    std::cout.flush();
+    const int kept = ::dup(1), full = ::open("/dev/full", O_WRONLY);
+    ::dup2(full, 1);
+    const int code = test::run(words);
+    ::dup2(kept, 1);
+    ::close(kept), ::close(full);
+    std::clearerr(stdout);
+    std::cout.clear();
+    INFO(words.back());
+    CHECK(code == 6);
+  }
+}
+
+TEST_CASE("numbers that are not finite are usage errors") {
+  for (const char* number : {"nan", "inf", "-1e999"}) {
+    int code = 0;
+    const std::string errors = test::captured(2, [&] {
+      code = test::run({"mesh", "--run", "x", "--max-memory", number});
+    });
+    CHECK(code == 1);
+    CHECK_THAT(errors, Catch::Contains("--max-memory"));
+  }
 }

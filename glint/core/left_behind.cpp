@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "glint/core/left_behind.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <optional>
+
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+constexpr std::string_view kMark = ".part";
+
+// Letters and digits of the machine's name, so that no dot of it ends a part of ours.
+std::string host_name() {
+  std::array<char, 65> name{};
+  ::gethostname(name.data(), name.size() - 1);
+  std::string host;
+  for (const char c : std::string_view(name.data()).substr(0, 32))
+    host += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  return host.empty() ? "unknown" : host;
+}
+
+struct Writer {
+  pid_t process = 0;
+  std::string host;
+};
+
+// Of ".NAME.PID-HOST.part" with or without an extension; nothing: not one of ours.
+std::optional<Writer> writer_of(const std::string& name) {
+  const std::size_t mark = name.rfind(kMark);
+  if (!name.starts_with(".") || mark == std::string::npos) return std::nullopt;
+  const std::string rest = name.substr(mark + kMark.size());
+  if (!rest.empty() && !rest.starts_with(".")) return std::nullopt;
+  const std::size_t dot = name.rfind('.', mark - 1);
+  if (dot == std::string::npos || dot == 0) return std::nullopt;
+  const std::string text = name.substr(dot + 1, mark - dot - 1);
+  Writer writer;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), writer.process);
+  if (end.ec != std::errc{} || end.ptr == text.data() + text.size() || *end.ptr != '-')
+    return std::nullopt;
+  writer.host = std::string(end.ptr + 1, text.data() + text.size());
+  return writer;
+}
+
+bool has_ended(const Writer& writer, const fs::directory_entry& entry) {
+  if (writer.host == host_name())
+    return writer.process != ::getpid() && ::kill(writer.process, 0) != 0 && errno == ESRCH;
+  std::error_code code;
+  const auto age = fs::file_time_type::clock::now() - entry.last_write_time(code);
+  return !code && age > std::chrono::hours(24);
+}
+
+template <class Iterator>
+void add_left_behind(Iterator it, std::vector<fs::path>& found) {
+  std::error_code code;
+  for (; it != Iterator(); it.increment(code)) {
+    const auto writer = writer_of(it->path().filename().string());
+    if (writer && has_ended(*writer, *it)) found.push_back(it->path());
+    if constexpr (requires { it.disable_recursion_pending(); })
+      if (writer) it.disable_recursion_pending();
+    if (code) return;
+  }
+}
+
+}  // namespace
+
+fs::path unfinished_path(const fs::path& path) {
+  constexpr std::size_t kLongest = 150;  // bytes of the name; file systems allow 255 in all
+  static const std::string host = host_name();
+  return path.parent_path() / fmt::format(
+                                  ".{}.{}-{}{}{}",
+                                  path.stem().string().substr(0, kLongest),
+                                  ::getpid(),
+                                  host,
+                                  kMark,
+                                  path.extension().string()
+                              );
+}
+
+std::vector<fs::path> list_left_behind(const fs::path& folder, bool recursive) {
+  std::vector<fs::path> found;
+  std::error_code code;
+  constexpr auto kOptions = fs::directory_options::skip_permission_denied;
+  if (recursive)
+    add_left_behind(fs::recursive_directory_iterator(folder, kOptions, code), found);
+  else
+    add_left_behind(fs::directory_iterator(folder, kOptions, code), found);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+void remove_left_behind(const fs::path& folder, bool recursive) {
+  std::error_code code;
+  for (const fs::path& path : list_left_behind(folder, recursive)) fs::remove_all(path, code);
+}
+
+}  // namespace glint

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Hidden files and folders that are filled and then renamed: their names say who writes them, so
+// that what a killed process left can be told from what another one is writing.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glint/core/files.h"
+
+namespace glint {
+
+// ".NAME.PID-HOST.part.EXT" beside `path`, for this process. The extension stays last: image
+// writers choose the format by it.
+fs::path unfinished_path(const fs::path& path);
+
+// Unfinished files and folders in `folder` (and below it, where `recursive`) whose process has
+// ended: of this machine when no process has the number any more, of others after a day.
+std::vector<fs::path> list_left_behind(const fs::path& folder, bool recursive = true);
+
+// Removes them; what cannot be removed stays without a word.
+void remove_left_behind(const fs::path& folder, bool recursive = true);
+
+}  // namespace glint

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// The header of an EXR file, looked at before OpenEXR allocates what it says: kinds of files that
+// hold no plain picture, and sizes that the file cannot fill.
+#include <algorithm>
+#include <cstring>
+
+#include "glint/core/error.h"
+#include "glint/scene/image_files_formats.h"
+
+namespace glint {
+namespace {
+
+constexpr std::uint32_t kMagic = 20000630;
+constexpr std::uint32_t kDeepFlag = 1u << 11, kPartsFlag = 1u << 12;
+constexpr std::int64_t kMostLines = 256;  // of a compressed block, which is unpacked at once
+
+// Little-endian values and texts from the front of the bytes.
+class HeaderSource {
+ public:
+  HeaderSource(const fs::path& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
+
+  template <class T>
+  T number() {
+    T value;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+  std::string_view text() {
+    const std::size_t length = bytes_.find('\0');
+    if (length == std::string_view::npos) fail("it ends inside the header");
+    const std::string_view text = take(length);
+    take(1);
+    return text;
+  }
+  std::string_view take(std::size_t count) {
+    if (count > bytes_.size())
+      fail(fmt::format("an attribute of {} bytes in front of {}", count, bytes_.size()));
+    const std::string_view taken = bytes_.substr(0, count);
+    bytes_.remove_prefix(count);
+    return taken;
+  }
+  bool ends_here() const { return !bytes_.empty() && bytes_.front() == '\0'; }
+  bool empty() const { return bytes_.empty(); }
+  [[noreturn]] void fail(const std::string& why) const {
+    detail::fail_incomplete(path_, "EXR", why);
+  }
+
+ private:
+  const fs::path& path_;
+  std::string_view bytes_;
+};
+
+// Channels of a list: name, then 16 bytes of type and sampling.
+std::int64_t count_channels(const fs::path& path, std::string_view list) {
+  HeaderSource source(path, list);
+  std::int64_t count = 0;
+  while (!source.empty() && !source.ends_here()) {
+    source.text();
+    source.take(16);
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+void detail::check_exr_header(const fs::path& path, std::string_view file) {
+  HeaderSource source(path, file);
+  if (file.size() < 8 || source.number<std::uint32_t>() != kMagic)
+    source.fail("the signature is missing");
+  const auto version = source.number<std::uint32_t>();
+  GLINT_CHECK(
+      (version & (kDeepFlag | kPartsFlag)) == 0,
+      kBadReference,
+      "{}: a {} EXR; save one flat picture (scan lines, one part)",
+      path.string(),
+      (version & kDeepFlag) != 0 ? "deep" : "multi-part"
+  );
+  ClaimedSize size;
+  while (!source.ends_here()) {
+    const std::string_view name = source.text(), type = source.text();
+    const auto bytes = source.number<std::uint32_t>();
+    HeaderSource value(path, source.take(bytes));
+    if (name == "channels" && type == "chlist") {
+      size.channels = count_channels(path, value.take(bytes));
+    } else if (name == "dataWindow" && type == "box2i") {
+      const std::int64_t left = value.number<std::int32_t>(), top = value.number<std::int32_t>();
+      const std::int64_t right = value.number<std::int32_t>();
+      size.width = std::max(size.width, right - left + 1);
+      size.height = std::max(size.height, value.number<std::int32_t>() - top + 1);
+    } else if (name == "tiles" && type == "tiledesc") {
+      const std::int64_t width = value.number<std::uint32_t>();
+      size.width = std::max(size.width, width);
+      size.height = std::max(size.height, std::int64_t{value.number<std::uint32_t>()});
+    }
+  }
+  if (size.channels == 0 || size.width <= 0) source.fail("the header has no channels or no size");
+  size.height = std::max(size.height, kMostLines);
+  check_claimed_size(path, size, file.size());
+}
+
+}  // namespace glint

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// What a run folder holds before a new run begins there. Only what this program wrote is ever moved
+// or removed; whatever else lies in the folder stays as it is.
+#pragma once
+
+#include "glint/core/files.h"
+
+namespace glint {
+
+// In config.json of every run.
+inline constexpr const char* kWrittenByField = "written_by";
+inline constexpr const char* kWrittenBy = "glint-bench";
+
+// Does config.json say that the folder is a run of ours? Those of earlier versions are known by
+// their fields.
+bool is_our_run(const fs::path& folder);
+
+// Errors (kUsage): the folder holds files, but no run of ours.
+void check_run_folder(const fs::path& folder);
+
+// Makes room for a new run. A finished run is set aside in FOLDER/previous_run until drop(); one
+// that never ended is removed.
+class EarlierRun {
+ public:
+  // `goes_on`: a run that did not end stays, since the new one takes it up. Errors:
+  // check_run_folder()'s; kEnvironment: files cannot be moved.
+  explicit EarlierRun(const fs::path& folder, bool goes_on = false);
+  // Without drop(): puts the finished run back if the new one has got nowhere (no log, no
+  // checkpoint, no scores), else says where it lies.
+  ~EarlierRun();
+  EarlierRun(const EarlierRun&) = delete;
+  EarlierRun& operator=(const EarlierRun&) = delete;
+
+  void drop();  // the new run has ended: the earlier one goes
+
+ private:
+  fs::path folder_;
+  bool dropped_ = false;
+};
+
+// Removes the maps of the views below `renders` and the folders that are empty then.
+void remove_renders(const fs::path& renders);
+
+// Saves into a hidden folder first, so that what lies there half-way is never taken for a whole
+// run, and moves the files into `folder`. Their names.
+std::vector<std::string> save_in_place(
+    const fs::path& folder, const std::function<void(const fs::path&)>& save
+);
+
+}  // namespace glint

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// Nothing that this program did not write is ever removed, and no run is lost to one that fails.
+#include <catch2/catch.hpp>
+
+#include "glint/scene/image_files.h"
+#include "tests/reports/run_words.h"
+#include "tests/support/small_room.h"
+
+using namespace glint;
+using test::run;
+
+namespace {
+
+struct Place : test::TempFolder {
+  fs::path mine = path() / "mine";
+
+  int train(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {
+        "train",
+        "--dataset",
+        test::small_room_folder(),
+        "--run",
+        mine,
+        "--iterations",
+        "3",
+        "--quiet",
+        "--out",
+        path() / "out",
+        "--data",
+        path() / "data"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+  int import_from(const fs::path& theirs) const {
+    return run(
+        {"eval",
+         "--predictions",
+         theirs,
+         "--dataset",
+         test::small_room_folder(),
+         "--method",
+         "theirs",
+         "--force",
+         "--quiet",
+         "--out",
+         path() / "out",
+         "--data",
+         path() / "data"}
+    );
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a folder with a config.json of someone else's is refused and left as it is") {
+  const Place place;
+  write_file(place.mine / "config.json", R"({"model_type": "bert"})");
+  write_file(place.mine / "thesis.tex", "five years");
+  CHECK(place.train({"--force"}) == 1);
+  CHECK(read_file(place.mine / "thesis.tex") == "five years");
+  CHECK(read_file(place.mine / "config.json") == R"({"model_type": "bert"})");
+  fs::remove(place.mine / "config.json");
+  CHECK(place.train({"--force"}) == 1);
+  CHECK(read_file(place.mine / "thesis.tex") == "five years");
+}
+
+TEST_CASE("training again takes the files of the run, and no others") {
+  const Place place;
+  REQUIRE(place.train() == 0);
+  REQUIRE(run({"render", "--run", place.mine, "--quiet"}) == 0);
+  const std::vector<fs::path> foreign = {
+      "thesis.tex", "mine.ply", "figures/a.png", "renders/notes.txt"};
+  for (const fs::path& file : foreign) write_file(place.mine / file, "mine");
+  REQUIRE(place.train({"--force"}) == 0);
+  for (const fs::path& file : foreign) CHECK(read_file(place.mine / file) == "mine");
+  CHECK(fs::exists(place.mine / "interface.ply"));
+  CHECK_FALSE(fs::exists(place.mine / "strip.png"));  // of the run before
+  CHECK_FALSE(fs::exists(place.mine / "previous_run"));
+  // A foreign file that changes later is no damage to the run, and rendering leaves it alone.
+  write_file(place.mine / "mine.ply", "another size");
+  CHECK(run({"render", "--run", place.mine, "--quiet"}) == 0);
+  CHECK(read_file(place.mine / "renders/notes.txt") == "mine");
+}
+
+TEST_CASE("a training that cannot begin leaves the finished run") {
+  const Place place;
+  REQUIRE(place.train() == 0);
+  const std::string model = read_file(place.mine / "interface.ply");
+  CHECK(place.train({"--force", "--set", "nosuch=1"}) == 1);
+  CHECK(run({"train", "--dataset", place / "gone", "--run", place.mine, "--force"}) == 3);
+  CHECK(read_file(place.mine / "interface.ply") == model);
+  CHECK(run({"render", "--run", place.mine, "--quiet"}) == 0);
+}
+
+TEST_CASE("an import that fails leaves the one before") {
+  const Place place;
+  const auto write_renders = [&](const fs::path& folder) {
+    for (const View& view : test::small_room().test)
+      write_png(folder / "rgb" / (view.name + ".png"), view.rgb);
+  };
+  write_renders(place / "good");
+  write_renders(place / "bad");
+  const std::string last = test::small_room().test.back().name + ".png";
+  write_file(place / "bad/rgb" / last, "no picture");
+  REQUIRE(place.import_from(place / "good") == 0);
+  const fs::path imported = place / "out/ci/runs/room_1/theirs/0";
+  const std::string scores = read_file(imported / "metrics.json");
+  CHECK(place.import_from(place / "bad") == 2);
+  CHECK(read_file(imported / "metrics.json") == scores);
+  CHECK_FALSE(fs::exists(imported / "previous_run"));
+  CHECK(run({"eval", "--run", imported, "--quiet", "--out", place / "out"}) == 0);
+}
