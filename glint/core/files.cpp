@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "glint/core/files.h"
 
+#include <fcntl.h>
 #include <fnmatch.h>
 
 #include <unistd.h>
@@ -16,6 +17,23 @@
 namespace glint {
 
 namespace {
+
+// A name that is on the disk has its content there, whatever happens to the machine. File systems
+// that cannot say so are believed.
+void sync_to_disk(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  const bool failed = ::fsync(file) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT);
+  const int why = errno;
+  ::close(file);
+  GLINT_CHECK(
+      !failed,
+      kEnvironment,
+      "{}: writing to the disk failed ({}); free some disk space or choose another --out",
+      path.string(),
+      std::strerror(why)
+  );
+}
 
 bool lacks_permission(const std::error_code& code) {
   return code == std::errc::permission_denied || code == std::errc::operation_not_permitted;
@@ -94,7 +112,9 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
   const fs::path temporary = unfinished_path(path);
   try {
     write(temporary);
+    sync_to_disk(temporary);
     fs::rename(temporary, path);
+    sync_to_disk(path.has_parent_path() ? path.parent_path() : ".");
   } catch (const fs::filesystem_error& error) {
     fs::remove(temporary, code);
     throw Error(ExitCode::kEnvironment, fmt::format("{}: {}", path.string(), error.what()));

@@ -13,7 +13,11 @@ namespace glint {
 
 class Method;
 
-inline constexpr const char* kCheckpointFile = "checkpoint.safetensors";
+// Of a run folder.
+inline constexpr const char* kCheckpointFile = "checkpoint/state.safetensors";
+// For people and scripts: how far a training was when it last wrote a checkpoint, or that it has
+// ended. JSON: "iterations", "of", "seconds", "ended".
+inline constexpr const char* kProgressFile = "checkpoint/progress.json";
 
 // What the trainer has beside the method's state.
 struct TrainingProgress {

@@ -104,6 +104,7 @@ class Training {
       progress.advance(1, progress_text());
     }
     method_.check_finite();
+    if (on_disk_) write_progress();
     return report();
   }
 
@@ -202,6 +203,7 @@ class Training {
     on_device(done_.iterations, [&] {
       try {
         resumable_ = write_checkpoint(checkpoint_, options_.identity, method_, done_);
+        if (resumable_) write_progress();
       } catch (const DeviceLost&) {
         throw;
       } catch (const Error& error) {
@@ -211,6 +213,14 @@ class Training {
     last_saving_seconds_ = seconds_since(start);
     done_.saving_seconds += last_saving_seconds_;
     last_checkpoint_ = Clock::now();
+  }
+  void write_progress() const {
+    const Json progress = {
+        {"iterations", done_.iterations},
+        {"of", options_.run.iterations},
+        {"seconds", done_.seconds},
+        {"ended", done_.iterations >= options_.run.iterations}};
+    write_file(options_.folder / kProgressFile, progress.dump() + "\n");
   }
   [[noreturn]] void stop() {
     if (on_disk_ && resumable_) save();

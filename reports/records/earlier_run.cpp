@@ -10,7 +10,6 @@
 #include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
 #include "glint/scene/maps.h"
-#include "glint/train/checkpoint.h"
 #include "reports/records/stage_files.h"
 
 namespace glint {
@@ -22,7 +21,6 @@ constexpr std::array kTopFiles = {
     "config.json",
     "env.json",
     "log.jsonl",
-    kCheckpointFile,
     "metrics.json",
     "mesh.json",
     "mesh.ply",
@@ -122,8 +120,7 @@ void check_done(const std::error_code& code, const fs::path& path) {
   );
 }
 
-// Checkpoints of earlier versions were folders.
-constexpr const char* kOldCheckpoint = "checkpoint";
+constexpr const char* kCheckpoint = "checkpoint";
 
 void remove_run(const fs::path& run) {
   const std::vector<fs::path> files = our_files(run);
@@ -133,7 +130,7 @@ void remove_run(const fs::path& run) {
     check_done(code, file);
   }
   for (const std::string& folder :
-       {std::string(kOldCheckpoint), std::string(kOldCheckpoint) + ".tmp", std::string(kSaving)}) {
+       {std::string(kCheckpoint), std::string(kCheckpoint) + ".tmp", std::string(kSaving)}) {
     fs::remove_all(run / folder, code);
     check_done(code, run / folder);
   }
@@ -157,7 +154,7 @@ void move_run(const fs::path& from, const fs::path& to) {
     fs::rename(file, target, code);
     check_done(code, file);
   }
-  fs::remove_all(from / kOldCheckpoint, code);  // of a finished run: its last state is in its files
+  fs::remove_all(from / kCheckpoint, code);  // of a finished run: its last state is in its files
   remove_empty_folders(files, from);
 }
 
@@ -228,7 +225,7 @@ EarlierRun::EarlierRun(const fs::path& folder, bool goes_on) : folder_(folder) {
 EarlierRun::~EarlierRun() try {
   const fs::path previous = folder_ / kPreviousRun;
   if (dropped_ || !is_our_run(previous)) return;
-  for (const char* sign : {"log.jsonl", kCheckpointFile, "env.json", "metrics.json"})
+  for (const char* sign : {"log.jsonl", kCheckpoint, "env.json", "metrics.json"})
     if (fs::exists(folder_ / sign)) {
       log::warn(fmt::format("the run that was there before is kept in {}", previous.string()));
       return;

@@ -15,7 +15,7 @@ train() {
     --checkpoint-seconds 0 --run "$1" >"$folder/out" 2>"$folder/err"
 }
 # What a run folder holds, but for times: files that were trained, and that nothing else was left.
-content() { (cd "$1" && find . -type f ! -name env.json ! -name log.jsonl ! -path './keys/*' -exec sha256sum {} + | sort -k 2); }
+content() { (cd "$1" && find . -type f ! -name env.json ! -name log.jsonl ! -name progress.json ! -path './keys/*' -exec sha256sum {} + | sort -k 2); }
 now_ms() { echo $((${EPOCHREALTIME/[.,]/} / 1000)); }
 
 "$bench" dataset make glassroom --quiet --width 64 --height 36 --views 8 --spp 2 --out "$folder/room" >"$folder/out"
@@ -41,7 +41,7 @@ while [ "$done_kills" -lt "$kills" ]; do
       wait "$pid" 2>/dev/null || true
       [ ! -f "$run/keys/train.json" ] || break  # it had ended
       done_kills=$((done_kills + 1))
-      [ ! -f "$run/checkpoint.safetensors" ] || resumed=$((resumed + 1))
+      [ ! -f "$run/checkpoint/state.safetensors" ] || resumed=$((resumed + 1))
       [ $((RANDOM % 2)) -eq 0 ] || break
     done
     [ -f "$run/keys/train.json" ] || (train "$run" "$method") || { cat "$folder/err" >&2; wrong=$((wrong + 1)); }

@@ -99,7 +99,7 @@ TEST_CASE("a run folder holds the files of the contract") {
         "log.jsonl",
         "interface.ply",
         "strip.png",
-        "checkpoint",
+        "checkpoint/progress.json",
         "renders/0002/rgb.exr",
         "renders/0002/rgb.png",
         "renders/0002/depth.exr",
@@ -109,6 +109,7 @@ TEST_CASE("a run folder holds the files of the contract") {
     INFO(file);
     CHECK(fs::exists(run / file));
   }
+  CHECK(!fs::exists(run / "checkpoint/state.safetensors"));  // its last state is in its files
   // Rendered as views of the dataset, not as mere cameras.
   CHECK(read_image(run / "renders/0002/transparency.exr", 1).at(3, 3) == Approx(0.5f));
   const Json metrics = Json::parse(read_file(run / "metrics.json"));
