@@ -8,6 +8,7 @@
 #include "glint/core/recorded_step.h"
 #include "glint/method.h"
 #include "glint/render/void_steps.h"
+#include "glint/train/neighbor_views.h"
 #include "glint/train/trainer.h"
 #include "tests/support/all_trained.h"
 #include "tests/support/gpu_backends.h"
@@ -23,9 +24,13 @@ namespace {
 // are the CPU's, which is faster than kernels on the host; one that is told everything makes room.
 constexpr int kPlanned = 24, kOnCpu = 17, kSilentFrom = 18, kSteady = 20, kEnd = 22;
 
+// Neighbours, so that losses between two views are among what is counted.
 Scene two_views_of_room() {
   Scene scene = small_room();
-  scene.train.resize(2);
+  NeighborConfig neighbors;
+  neighbors.max_distance = 100;
+  const std::size_t second = neighbor_views(scene.train, neighbors, 1).at(0).at(0);
+  scene.train = {scene.train[0], scene.train[second]};
   return scene;
 }
 // As if every view had been trained on before.
