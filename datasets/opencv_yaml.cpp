@@ -41,9 +41,8 @@ class YamlFile {
     GLINT_CHECK(
         yaml_depth(text) <= kDeepestYaml,
         kBadReference,
-        "{}: nested more than {} deep; expected matrices and a list of names: it is damaged, write "
-        "it "
-        "again",
+        "{}: nested more than {} deep; expected matrices and a list of names: it is damaged, "
+        "write it again",
         path_,
         kDeepestYaml
     );

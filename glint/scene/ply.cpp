@@ -213,9 +213,8 @@ void check_near(const PlyFile& file, const PlyElement& element, const std::vecto
       GLINT_CHECK(
           !std::isfinite(points[i][axis]) || std::abs(points[i][axis]) <= kFarthest,
           kBadReference,
-          "{}: {} {}: {} is {:g}; expected metres within {:g} of the origin: the file is damaged, "
-          "or "
-          "in another unit",
+          "{}: {} {}: {} is {:g}; expected metres within {:g} of the origin: the file is "
+          "damaged, or in another unit",
           file.path,
           element.name,
           i,
