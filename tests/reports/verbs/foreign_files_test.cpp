@@ -161,3 +161,20 @@ TEST_CASE("a run that stops after its first steps leaves the one before beside i
   REQUIRE(place.train({"--force"}) == 0);  // the one that ends takes its place
   CHECK_FALSE(fs::exists(place.mine / "previous_run"));
 }
+
+TEST_CASE("making room goes on where it was cut off") {
+  const Place place;
+  REQUIRE(place.train() == 0);
+  const std::string model = read_file(place.mine / "interface.ply");
+  const fs::path previous = place.mine / "previous_run";
+  // As a kill leaves it: the mark is in both places, some files have gone over.
+  write_file(previous / "config.json", read_file(place.mine / "config.json"));
+  fs::rename(place.mine / "interface.ply", previous / "interface.ply");
+  {
+    const EarlierRun earlier(place.mine);
+    CHECK(read_file(previous / "interface.ply") == model);
+    CHECK(fs::exists(previous / "keys/train.json"));
+  }
+  CHECK(read_file(place.mine / "interface.ply") == model);  // nothing came of the new one
+  CHECK(run({"render", "--run", place.mine, "--quiet"}) == 0);
+}
