@@ -63,9 +63,6 @@ void check_values(
          where,
          "holds negative depth; expected metres in front of the camera, or 0"}
     );
-  if (kind == MapKind::kColor)
-    if (const std::string problem = color_range_problem(map); !problem.empty())
-      findings.push_back({"color-values", where, problem});
   if (kind != MapKind::kNormal) return;
   // Anti-aliased edges leave a few.
   const std::size_t count = count_not_unit(map);
@@ -319,6 +316,9 @@ std::vector<Finding> check_view_files(const ViewSource& view) {
   std::vector<Finding> findings;
   const Image image = read_or_report(view.image, 3, findings);
   check_camera(view, image.size(), findings);
+  if (check_map("image", view.image, image, image.size(), findings))
+    if (const std::string problem = color_range_problem(image); !problem.empty())
+      findings.push_back({"color-values", view.image.string(), problem});
   view.priors.for_each([&](const MapRow& row, const fs::path& path) {
     // Depth comes in one channel or spread over three.
     const int channels = row.kind == MapKind::kDepth ? 0 : row.channels();

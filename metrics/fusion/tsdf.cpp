@@ -138,9 +138,15 @@ void add_blocks(
     }
 }
 
+// Of the voxels, and of the mesh that is taken out while they are still there: Open3D's triangles
+// with their share of vertices and of the table of edges, two for each voxel of a surface through a
+// block.
 double megabytes(std::size_t num_blocks, std::size_t bytes_per_voxel) {
   constexpr double kVoxels = kBlockVoxels * kBlockVoxels * kBlockVoxels;
-  return static_cast<double>(num_blocks * bytes_per_voxel) * kVoxels / 1e6;
+  constexpr double kTriangleBytes = 90;  // measured
+  constexpr double kMeshBytes = 2 * kBlockVoxels * kBlockVoxels * kTriangleBytes;
+  const double block = static_cast<double>(bytes_per_voxel) * kVoxels + kMeshBytes;
+  return static_cast<double>(num_blocks) * block / 1e6;
 }
 
 double allowed_megabytes(const TsdfOptions& options) {

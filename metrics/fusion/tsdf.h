@@ -33,7 +33,7 @@ struct TsdfOptions {
     v("bounds_min", bounds_min, "corner of the box that counts, metres; equal corners: no box");
     v("bounds_max", bounds_max, "its opposite corner");
     v("min_cluster", min_cluster, "triangles of the smallest connected piece that is kept");
-    v("max_memory_mb", max_memory_mb, "of the voxels; 0: half of the machine's memory");
+    v("max_memory_mb", max_memory_mb, "of voxels and mesh; 0: half of the machine's memory");
   }
 };
 
@@ -54,7 +54,7 @@ using FusionSource = std::function<FusionView(std::size_t)>;
 
 struct TsdfReport {
   std::size_t num_views = 0, num_depths = 0;  // depths: pixels that counted
-  double memory_mb = 0;                       // of the voxels, 10^6 bytes
+  double memory_mb = 0;                       // of voxels and mesh, 10^6 bytes
   std::size_t fused_triangles = 0;            // before pieces were dropped
   std::size_t triangles = 0, clusters = 0, dropped_clusters = 0;
 

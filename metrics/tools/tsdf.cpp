@@ -132,7 +132,7 @@ void print_report(const TsdfArguments& a, const TsdfReport& report, std::ostream
   if (a.csv) return print_csv(a.out, config_to_json(report), out);
   out << fmt::format(
       "{}: {} triangles from {} views, voxel {} m, truncation {} voxels, {} of {} pieces dropped, "
-      "{:.0f} MB of voxels\n",
+      "{:.0f} MB of memory\n",
       a.out,
       report.triangles,
       report.num_views,

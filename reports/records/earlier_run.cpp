@@ -77,7 +77,16 @@ bool stays_inside(const fs::path& name) {
   return name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
 }
 
-// What this program wrote into the folder of a run, files only.
+// What tells whether it is a run, a finished one, and which files are its own goes last: wherever
+// the work on a folder is cut off, the next one goes on.
+int rank_of(const fs::path& file, const fs::path& run) {
+  const std::string name = file.lexically_relative(run).generic_string();
+  if (name == "config.json") return 3;
+  if (name == "env.json" || name == "metrics.json") return 2;
+  return name.starts_with("keys/") ? 1 : 0;
+}
+
+// What this program wrote into the folder of a run, files only, config.json last.
 std::vector<fs::path> our_files(const fs::path& run) {
   std::vector<fs::path> ours;
   for (const char* name : kTopFiles) ours.push_back(run / name);
@@ -94,6 +103,9 @@ std::vector<fs::path> our_files(const fs::path& run) {
   });
   std::sort(ours.begin(), ours.end());
   ours.erase(std::unique(ours.begin(), ours.end()), ours.end());
+  std::stable_sort(ours.begin(), ours.end(), [&](const fs::path& a, const fs::path& b) {
+    return rank_of(a, run) < rank_of(b, run);
+  });
   return ours;
 }
 
@@ -125,27 +137,23 @@ constexpr const char* kCheckpoint = "checkpoint";
 void remove_run(const fs::path& run) {
   const std::vector<fs::path> files = our_files(run);
   std::error_code code;
-  for (const fs::path& file : files) {
+  const auto remove_file = [&](const fs::path& file) {
     fs::remove(file, code);
     check_done(code, file);
-  }
+  };
+  for (const fs::path& file : files)
+    if (rank_of(file, run) < 3) remove_file(file);
   for (const std::string& folder :
        {std::string(kCheckpoint), std::string(kCheckpoint) + ".tmp", std::string(kSaving)}) {
     fs::remove_all(run / folder, code);
     check_done(code, run / folder);
   }
   remove_empty_folders(files, run);
+  remove_file(run / "config.json");  // until now the folder is a run's
 }
 
-// What says whether it is a run, and a finished one, comes first and goes last: wherever a move is
-// cut off, the next one goes on.
 void move_run(const fs::path& from, const fs::path& to) {
-  std::vector<fs::path> files = our_files(from);
-  const auto is_sign = [](const fs::path& file) {
-    const std::string name = file.filename().string();
-    return name == "config.json" || name == "env.json" || name == "metrics.json";
-  };
-  std::stable_partition(files.begin(), files.end(), [&](const fs::path& f) { return !is_sign(f); });
+  const std::vector<fs::path> files = our_files(from);
   write_file(to / "config.json", read_file(from / "config.json"));
   std::error_code code;
   for (const fs::path& file : files) {

@@ -244,8 +244,9 @@ void print_json(const Json& json) {
 }
 
 void print_text(std::string_view text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  GLINT_CHECK(std::fflush(stdout) == 0, kEnvironment, "{}", kNoOutput);
+  // What is larger than the buffer is written at once: then there is nothing left to flush.
+  const bool taken = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  GLINT_CHECK(std::fflush(stdout) == 0 && taken, kEnvironment, "{}", kNoOutput);
 }
 
 bool color_terminal() { return ::isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }

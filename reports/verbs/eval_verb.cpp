@@ -220,28 +220,33 @@ RunSpec spec_of(
   return spec;
 }
 
+// Of a program that made renders. Errors (kUsage): none, one of ours, no name for a folder.
+void check_method_name(const std::string& method) {
+  GLINT_CHECK(
+      !method.empty() && !Registry<MethodSpec>::all().contains(method),
+      kUsage,
+      "--method '{}': name the method that made these renders, not one of ours; such as --method "
+      "pgsr-official",
+      method
+  );
+  for (const fs::path& part : fs::path(method + "/").parent_path())
+    GLINT_CHECK(
+        why_no_folder_name(part.string()).empty(),
+        kUsage,
+        "--method '{}': '{}' {}; results lie in a folder of that name",
+        method,
+        part.string(),
+        why_no_folder_name(part.string())
+    );
+}
+
 int eval_predictions(const CommonOptions& common, const EvalArguments& arguments) {
   GLINT_CHECK(
       !arguments.predictions.empty() && !arguments.dataset.empty(),
       kUsage,
       "give --run FOLDER, or --predictions FOLDER --dataset FOLDER --method NAME"
   );
-  GLINT_CHECK(
-      !arguments.method.empty() && !Registry<MethodSpec>::all().contains(arguments.method),
-      kUsage,
-      "--method '{}': name the method that made these renders, not one of ours; such as --method "
-      "pgsr-official",
-      arguments.method
-  );
-  for (const fs::path& part : fs::path(arguments.method + "/").parent_path())
-    GLINT_CHECK(
-        why_no_folder_name(part.string()).empty(),
-        kUsage,
-        "--method '{}': '{}' {}; results lie in a folder of that name",
-        arguments.method,
-        part.string(),
-        why_no_folder_name(part.string())
-    );
+  check_method_name(arguments.method);
   LoadOptions load;
   load.max_pixels = arguments.max_pixels;
   const Scene scene = load_scene(arguments.dataset, load);

@@ -452,6 +452,7 @@ TEST_CASE("float images of another range are found") {
   write_npy(folder / "a.npy", Image(8, 6, 3, 255.0f));
   SceneIndex index;
   index.views = {{.name = "a", .where = "file: a", .image = folder / "a.npy", .is_train = true}};
-  index.views[0].camera.fx = index.views[0].camera.fy = 8;
+  Camera& camera = index.views[0].camera;
+  camera.fx = camera.fy = 8, camera.cx = 4, camera.cy = 3;
   CHECK_THAT(list(check_indexed(index)), Contains("[color-values]") && Contains("by 255"));
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "glint/core/error.h"
+#include "glint/core/machine.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf_volume.h"
@@ -207,4 +208,22 @@ TEST_CASE("Options that would take all memory are refused at once") {
       error_with([](TsdfOptions& o) { o.max_memory_mb = std::nan(""); }),
       Catch::Contains("max_memory_mb is nan")
   );
+}
+
+TEST_CASE("Fusion takes the memory that it announces, within a fifth") {
+  SKIP_WITHOUT_OPEN3D();
+  const FusionSource source = source_of({{{0, 0, 0}, 0.5}});
+  fuse_depth(source, kViews, coarse());  // the module is loaded, and its memory counted
+  TsdfOptions options;
+  options.voxel = 0.004;
+  options.min_cluster = 0;
+  reset_peak_memory();
+  const double before = peak_memory_mb();
+  TsdfReport report;
+  fuse_depth(source, kViews, options, &report);
+  const double taken = peak_memory_mb() - before;
+  INFO(report.memory_mb << " MB announced, " << taken << " MB taken");
+  CHECK(report.memory_mb > 200);
+  CHECK(taken < 1.2 * report.memory_mb);
+  CHECK(taken > 0.8 * report.memory_mb);
 }

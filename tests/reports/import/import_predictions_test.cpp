@@ -156,3 +156,14 @@ TEST_CASE("Renders of another size and damaged files are refused by name") {
   write_png(first, test::small_room().test[0].rgb);
   CHECK_THROWS_WITH(c.import(with_mesh), Catch::Contains("no such mesh"));
 }
+
+TEST_CASE("Float renders of another range are told in the record's notes") {
+  Case c;
+  fs::remove_all(c.folder.path() / "theirs/rgb");
+  for (const View& view : test::small_room().test) {
+    Image bytes = view.rgb;
+    for (float& value : bytes.values()) value = 1 + 254 * value;
+    write_exr(c.folder.path() / "theirs/rgb" / (view.name + ".exr"), bytes);
+  }
+  CHECK_THAT(fmt::format("{}", fmt::join(c.import({}), "; ")), Catch::Contains("divide bytes by"));
+}

@@ -11,6 +11,7 @@
 
 #include "glint/core/process.h"
 #include "glint/core/progress.h"
+#include "glint/core/rng.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"
 #include "reports/page/page_scenes.h"
@@ -380,11 +381,13 @@ TEST_CASE("a full disk while meshes are written is an error, not a missing mesh"
   Store store;
   store.add(record_of("room_1", "fake"));
   write_run(store.options.folder, record_of("room_1", "fake"));
-  TriangleMesh fan;
+  Rng rng(1);  // noise does not compress
+  TriangleMesh noise;
   for (int i = 0; i < 60'000; ++i)
-    fan.vertices.push_back({std::sqrt(static_cast<float>(i)), i % 2 ? 0.1f : 0.0f, 0});
-  for (int i = 0; i + 2 < 60'000; ++i) fan.faces.push_back({i, i + 1, i + 2});
-  write_mesh_ply(store.options.folder / "runs/room_1/fake/0/mesh.ply", fan);
+    noise.vertices.push_back({rng.uniform(0, 1), rng.uniform(0, 1), rng.uniform(0, 1)});
+  const auto any = [&] { return static_cast<std::int32_t>(rng.below(60'000)); };
+  for (int i = 0; i < 100'000; ++i) noise.faces.push_back({any(), any(), any()});
+  write_mesh_ply(store.options.folder / "runs/room_1/fake/0/mesh.ply", noise);
   ignore_file_size_signal();
   rlimit old{};
   ::getrlimit(RLIMIT_FSIZE, &old);

@@ -2,7 +2,10 @@
 // Nothing that this program did not write is ever removed, and no run is lost to one that fails.
 #include <catch2/catch.hpp>
 
+#include <chrono>
+
 #include "glint/scene/image_files.h"
+#include "reports/records/earlier_run.h"
 #include "tests/reports/run_words.h"
 #include "tests/support/small_room.h"
 
@@ -109,4 +112,69 @@ TEST_CASE("an import that fails leaves the one before") {
   CHECK(read_file(imported / "metrics.json") == scores);
   CHECK_FALSE(fs::exists(imported / "previous_run"));
   CHECK(run({"eval", "--run", imported, "--quiet", "--out", place / "out"}) == 0);
+}
+
+TEST_CASE("a method's name that leads out of the results is a usage error") {
+  const Place place;
+  for (const char* name : {"../../../x", "/x", "a/../b", "x\n"})
+    CHECK(
+        run(
+            {"eval",
+             "--predictions",
+             place / "good",
+             "--dataset",
+             test::small_room_folder(),
+             "--method",
+             name,
+             "--quiet",
+             "--out",
+             place / "out",
+             "--data",
+             place / "data"}
+        ) == 1
+    );
+  CHECK_FALSE(fs::exists(place / "out"));
+}
+
+TEST_CASE("what a killed process left half-written goes with the next stage") {
+  const Place place;
+  REQUIRE(place.train() == 0);
+  const fs::path half = place.mine / "renders/0000/.rgb.1-elsewhere.part.exr";
+  write_file(half, "half");
+  fs::last_write_time(half, fs::file_time_type::clock::now() - std::chrono::hours(25));
+  REQUIRE(run({"render", "--run", place.mine, "--quiet"}) == 0);
+  CHECK_FALSE(fs::exists(half));
+}
+
+TEST_CASE("a run that stops after its first steps leaves the one before beside it") {
+  const Place place;
+  REQUIRE(place.train() == 0);
+  const std::string model = read_file(place.mine / "interface.ply");
+  {
+    const EarlierRun earlier(place.mine);
+    CHECK_FALSE(fs::exists(place.mine / "interface.ply"));
+    write_file(place.mine / "config.json", R"({"written_by": "glint-bench"})");
+    write_file(place.mine / "log.jsonl", "{}\n");
+  }
+  CHECK(read_file(place.mine / "previous_run/interface.ply") == model);
+  CHECK(read_file(place.mine / "log.jsonl") == "{}\n");
+  REQUIRE(place.train({"--force"}) == 0);  // the one that ends takes its place
+  CHECK_FALSE(fs::exists(place.mine / "previous_run"));
+}
+
+TEST_CASE("making room goes on where it was cut off") {
+  const Place place;
+  REQUIRE(place.train() == 0);
+  const std::string model = read_file(place.mine / "interface.ply");
+  const fs::path previous = place.mine / "previous_run";
+  // As a kill leaves it: the mark is in both places, some files have gone over.
+  write_file(previous / "config.json", read_file(place.mine / "config.json"));
+  fs::rename(place.mine / "interface.ply", previous / "interface.ply");
+  {
+    const EarlierRun earlier(place.mine);
+    CHECK(read_file(previous / "interface.ply") == model);
+    CHECK(fs::exists(previous / "keys/train.json"));
+  }
+  CHECK(read_file(place.mine / "interface.ply") == model);  // nothing came of the new one
+  CHECK(run({"render", "--run", place.mine, "--quiet"}) == 0);
 }
