@@ -11,7 +11,8 @@ struct Interrupted : std::exception {
   const char* what() const noexcept override { return "interrupted"; }
 };
 
-void install_interrupt_handler();  // SIGINT and SIGTERM
+// SIGINT, SIGTERM, and SIGUSR1, which clusters send before they take a machine back.
+void install_interrupt_handler();
 bool is_interrupted();
 // 128 + the signal that was seen, the shells' convention: 130 after Ctrl-C, 143 after SIGTERM.
 int interrupted_exit();

@@ -130,6 +130,7 @@ class Training {
     method_.initialize(scene_, options_.run);
     for (const std::string& warning : method_.warnings()) log::warn(warning);
     if (on_disk_ && is_checkpoint_of(checkpoint_, options_.identity)) resume();
+    first_ = done_.iterations;
     last_checkpoint_ = Clock::now();
   }
 
@@ -223,7 +224,8 @@ class Training {
     write_file(options_.folder / kProgressFile, progress.dump() + "\n");
   }
   [[noreturn]] void stop() {
-    if (on_disk_ && resumable_) save();
+    const bool anything = done_.iterations > first_;
+    if (on_disk_ && resumable_ && anything) save();
     throw Interrupted();
   }
 
@@ -259,6 +261,7 @@ class Training {
   fs::path checkpoint_, log_;
   bool on_disk_, resumable_ = true;
   TrainingProgress done_;
+  int first_ = 0;                // iteration of this process
   StepStats last_;               // that the host was told
   Json events_ = Json::array();  // since the last line of the log
   Clock::time_point last_checkpoint_;
