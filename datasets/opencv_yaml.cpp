@@ -15,9 +15,10 @@ constexpr double kMaxSide = 1 << 20;  // pixels; more is no image size
 // OpenCV's parser calls itself for each level, and files of cameras have four.
 constexpr int kDeepestYaml = 50;
 
-// An upper bound: a level is a bracket, or stands further to the right, or behind a dash.
+// An upper bound: a level is a bracket, or stands further to the right, or behind a dash or a
+// colon.
 int yaml_depth(std::string_view text) {
-  int deepest = 0, brackets = 0, columns = 0;
+  int deepest = 0, brackets = 0, columns = 0, colons = 0;
   bool in_margin = true;
   for (const char c : text) {
     if (c == '\n')
@@ -26,9 +27,10 @@ int yaml_depth(std::string_view text) {
       ++columns;
     else
       in_margin = false;
+    colons = c == '\n' || c == ',' ? 0 : colons + (c == ':');
     if (c == '[' || c == '{') ++brackets;
     if ((c == ']' || c == '}') && brackets > 0) --brackets;
-    deepest = std::max(deepest, brackets + columns / 2);
+    deepest = std::max(deepest, brackets + columns / 2 + colons);
   }
   return deepest;
 }

@@ -17,7 +17,23 @@ std::vector<std::string> embedded_names(std::string_view folder) {
   return names;
 }
 
+namespace {
+
+// The parser limits the nesting of values, but not of keys: a.a.a.a...
+bool has_long_key(std::string_view text) {
+  constexpr int kMostDots = 100;
+  int dots = 0;
+  for (const char c : text) {
+    if (std::string_view("=,[]{}#\n").find(c) != std::string_view::npos) dots = 0;
+    if (c == '.' && ++dots > kMostDots) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 Json json_from_toml(std::string_view text, std::string_view where) {
+  GLINT_CHECK(!has_long_key(text), kUsage, "{}: a key of more than 100 parts", where);
   try {
     std::ostringstream json;
     json << toml::json_formatter(toml::parse(text));

@@ -339,6 +339,16 @@ TEST_CASE("coloured depth priors carry 24 bits") {
   );
 }
 
+namespace {
+
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+}  // namespace
+
 TEST_CASE("YAML of another kind, or nested deeply, is the file's error") {
   const TempFolder folder;
   write_easyvolcap(folder.path(), box_room_views(3, {16, 12}));
@@ -346,7 +356,8 @@ TEST_CASE("YAML of another kind, or nested deeply, is the file's error") {
        {std::string("%YAML:1.0\n---\n- 1\n- 2\n"),
         "%YAML:1.0\n---\nnames: " + std::string(100000, '[') + "\n",
         "%YAML:1.0\n---\n" + std::string(100000, '-') + "\n",
-        "%YAML:1.0\n---\nnames: " + std::string(100000, '{') + "\n"}) {
+        "%YAML:1.0\n---\nnames: " + std::string(100000, '{') + "\n",
+        "%YAML:1.0\n---\nnames: " + repeated("a: ", 200000) + "\n"}) {
     write_file(folder / "intri.yml", text);
     CHECK_THAT(bad_reference([&] { load_scene(folder.path(), {}); }), Contains("intri.yml"));
   }

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <limits>
 
+#include "reports/records/embedded.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -154,4 +155,13 @@ TEST_CASE("records whose names lead out of the results are refused, deeply neste
           deep + "\n"
   );
   CHECK(read_records(file).size() == 1);
+}
+
+TEST_CASE("TOML of any depth is a usage error, not the end of the stack") {
+  std::string key = "x";
+  for (int i = 0; i < 200'000; ++i) key += ".x";
+  for (const std::string& text :
+       {key + " = 1\n", "x = " + std::string(200'000, '['), "[" + key + "]\n"})
+    test::error_of(ExitCode::kUsage, [&] { json_from_toml(text, "p.toml"); });
+  CHECK(json_from_toml("a.b = [0.1, 0.2]", "p.toml")["a"]["b"].size() == 2);
 }
