@@ -10,27 +10,27 @@
 namespace glint {
 
 void ExposureLoss::visit_state(TrainingState& state) {
-  std::vector<double> numbers;  // [views][6]
-  std::vector<std::uint32_t> steps;
+  numbers_.clear();
+  steps_.clear();
   for (const ViewExposure& e : std::as_const(exposures_)) {
     for (const double number :
          {e.log_gain, e.offset, e.first[0], e.first[1], e.second[0], e.second[1]})
-      numbers.push_back(number);
-    steps.push_back(static_cast<std::uint32_t>(e.steps));
+      numbers_.push_back(number);
+    steps_.push_back(static_cast<std::uint32_t>(e.steps));
   }
-  state("numbers", numbers);
-  state("steps", steps);
+  state("numbers", numbers_);
+  state("steps", steps_);
   if (!state.reading()) return;
   GLINT_CHECK(
-      steps.size() == exposures_.size() && numbers.size() == 6 * steps.size(),
+      steps_.size() == exposures_.size() && numbers_.size() == 6 * steps_.size(),
       kBadReference,
       "exposures of {} views, expected {}",
-      steps.size(),
+      steps_.size(),
       exposures_.size()
   );
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    const double* n = &numbers[6 * i];
-    exposures_[i] = {n[0], n[1], {n[2], n[3]}, {n[4], n[5]}, static_cast<int>(steps[i])};
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const double* n = &numbers_[6 * i];
+    exposures_[i] = {n[0], n[1], {n[2], n[3]}, {n[4], n[5]}, static_cast<int>(steps_[i])};
   }
 }
 

@@ -55,6 +55,9 @@ class ExposureLoss {
   Array<AppliedExposure> applied_;
   Array<ExposureGradient> sums_;
   Image exposed_, dL_dexposed_;
+  // The exposures as a checkpoint has them.
+  std::vector<double> numbers_;  // [views][6]
+  std::vector<std::uint32_t> steps_;
 };
 
 }  // namespace glint

@@ -21,8 +21,9 @@ class TrainingState {
   virtual bool reading() const = 0;
 
   // A number; an array, which gets the file's length when it is read; or a part of several, whose
-  // visit_state(TrainingState&) names each. Names within a part differ. Errors when it is read
-  // (kBadReference): the file has no such thing, or another type of it.
+  // visit_state(TrainingState&) names each. Names within a part differ. Arrays are borrowed until
+  // all is written: they must outlive the visit. Errors when it is read (kBadReference): the file
+  // has no such thing, or another type of it.
   template <class T>
   void operator()(const std::string& name, T& value) {
     if constexpr (std::is_arithmetic_v<T>) {

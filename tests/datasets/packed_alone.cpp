@@ -12,7 +12,9 @@ int main() {
   const fs::path file = fs::temp_directory_path() / "glint_packed_alone.safetensors";
   try {
     Scene scene;
+    scene.name = "alone";
     scene.train.resize(1);
+    scene.train[0].name = "0";
     scene.train[0].camera = look_at({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {4, 3}, 60);
     scene.train[0].rgb = Image(4, 3, 3, 0.25f);
     write_packed_scene(file, scene);
