@@ -5,11 +5,11 @@
 #pragma once
 
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <cstddef>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <vector>
@@ -54,20 +54,30 @@ class Arena {
   bool has(const void* p) const { return base_ != nullptr && p >= base_ && p < base_ + used_; }
 
  private:
-  static constexpr std::size_t kAlignment = 256;                  // as cudaMalloc's
+  static constexpr std::size_t kAlignment = 256;  // as cudaMalloc's
+  // What is opened and closed at once: that of many small pages takes longer than kernels do.
+  static constexpr std::size_t kHugePage = std::size_t{1} << 21;
   static constexpr std::size_t kReserved = std::size_t{1} << 35;  // bytes of address space
 
   char* base() {
     if (base_ != nullptr) return base_;
-    void* place =
-        mmap(nullptr, kReserved, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    void* place = mmap(
+        nullptr,
+        kReserved + kHugePage,
+        PROT_NONE,
+        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE,
+        -1,
+        0
+    );
     if (place == MAP_FAILED) throw std::runtime_error("no address space for the memory of tests");
-    return base_ = static_cast<char*>(place);
+    std::size_t room = kReserved + kHugePage;
+    base_ = static_cast<char*>(std::align(kHugePage, kReserved, place, room));
+    madvise(base_, kReserved, MADV_HUGEPAGE);
+    return base_;
   }
   void grow(std::size_t used) {
     used_ = used;
-    const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-    const std::size_t wanted = (used + page - 1) / page * page, before = mapped_;
+    const std::size_t wanted = (used + kHugePage - 1) / kHugePage * kHugePage, before = mapped_;
     if (wanted <= before) return;
     mapped_ = wanted;
     protect(before, wanted);
