@@ -16,14 +16,6 @@ namespace {
 
 constexpr int kSteps = 40;
 
-std::string bytes_of(const Method& method) {
-  const TempFolder folder;
-  method.save(folder.path().string());
-  std::string bytes;
-  for (const fs::path& file : list_files(folder.path())) bytes += read_file(file);
-  return bytes;
-}
-
 Scene few_views() {
   Scene scene = small_room();
   scene.train.resize(5);
@@ -44,7 +36,7 @@ std::string train_through(
       REQUIRE(write_checkpoint(folder / std::to_string(i), "run", *method, {.iterations = i}));
     method->step(i);
   }
-  return bytes_of(*method);
+  return saved_bytes(*method);
 }
 std::string train_from(const Trained& trained, const Scene& scene, const fs::path& checkpoint) {
   const auto method = create_method(trained.id, trained.options);
@@ -52,7 +44,7 @@ std::string train_from(const Trained& trained, const Scene& scene, const fs::pat
   TrainingProgress done;
   read_checkpoint(checkpoint, *method, done);
   for (int i = done.iterations; i < kSteps; ++i) method->step(i);
-  return bytes_of(*method);
+  return saved_bytes(*method);
 }
 
 }  // namespace

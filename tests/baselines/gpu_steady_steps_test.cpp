@@ -86,14 +86,6 @@ Costs train_silently(Method& method, const Scene& scene, int silent_from, bool r
   return costs;
 }
 
-std::string bytes_of(const Method& method) {
-  const TempFolder folder;
-  method.save(folder.path().string());
-  std::string bytes;
-  for (const fs::path& file : list_files(folder.path())) bytes += read_file(file);
-  return bytes;
-}
-
 // The launches of a step.
 std::uint64_t check_steady(const Trained& trained) {
   INFO(trained.name);
@@ -165,8 +157,8 @@ TEST_CASE(
     train_silently(*recorded, scene, kSilentFrom, true);
     CHECK(host_recorder().kept > kept);
     CHECK(take_void_steps() == 0);
-    CHECK((bytes_of(*told) == bytes_of(*silent)));
-    CHECK((bytes_of(*told) == bytes_of(*recorded)));
+    CHECK((saved_bytes(*told) == saved_bytes(*silent)));
+    CHECK((saved_bytes(*told) == saved_bytes(*recorded)));
   }
   use_cpu();
 }
@@ -183,7 +175,7 @@ TEST_CASE("Images that fill more than half of a device come for a step and leave
     TrainOptions options;
     options.run.iterations = 12;
     train(*method, scene, options);
-    return std::pair{bytes_of(*method), device_counters.uploads - before};
+    return std::pair{saved_bytes(*method), device_counters.uploads - before};
   };
   const auto large = train_with(std::size_t{1} << 34), small = train_with(1000);
   CHECK(large.first == small.first);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Every method, and options of theirs that change what a step does.
+// Every method, options of theirs that change what a step does, and what comes of a training.
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "glint/core/files.h"
 #include "glint/method.h"
+#include "tests/support/temp_folder.h"
 
 namespace glint::test {
 
@@ -27,6 +29,15 @@ inline std::vector<Trained> all_trained() {
   for (const char* id : {"pgsr", "tsgs"})
     all.emplace_back(std::string(id) + ", exposure", id, kExposure);
   return all;
+}
+
+// What a method saves.
+inline std::string saved_bytes(const Method& method) {
+  const TempFolder folder;
+  method.save(folder.path().string());
+  std::string bytes;
+  for (const fs::path& file : list_files(folder.path())) bytes += read_file(file);
+  return bytes;
 }
 
 }  // namespace glint::test
