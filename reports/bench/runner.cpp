@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/runner.h"
 
+#include "glint/core/file_lock.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
@@ -21,19 +22,34 @@ class Runner {
     remove_left_behind(options_.out, false);
     remove_left_behind(options_.out / "tables");
     const auto plan = make_plan(options_.profile, options_.filter, options_.assignments);
-    records_ = read_records(records_file_);
-    for (std::size_t i = 0; i < plan.size(); ++i) try {
-        throw_if_interrupted();
-        log::info(fmt::format("[{}/{}] {}", i + 1, plan.size(), plan[i].cell.text()));
-        run_one(plan[i]);
-      } catch (const Interrupted&) {
-        summary_.interrupted = true;
-        break;
-      }
+    try {
+      std::vector<const PlanCell*> taken;
+      for (std::size_t i = 0; i < plan.size(); ++i)
+        if (!try_one(fmt::format("[{}/{}] ", i + 1, plan.size()), plan[i]))
+          taken.push_back(&plan[i]);
+      for (const PlanCell* cell : taken)
+        if (!try_one("again: ", *cell)) ++summary_.elsewhere;
+    } catch (const Interrupted&) {
+      summary_.interrupted = true;
+    }
     return summary_;
   }
 
  private:
+  // False: another process is at it.
+  bool try_one(const std::string& place, const PlanCell& cell) {
+    throw_if_interrupted();
+    log::info(place + cell.cell.text());
+    const auto lock = FileLock::take(FileLock::file_beside(run_folder(options_.out, cell.cell)));
+    if (const auto* holder = std::get_if<std::string>(&lock)) {
+      log::info("  left to " + *holder);
+      return false;
+    }
+    records_ = read_records(records_file_);  // others write, too
+    run_one(cell);
+    return true;
+  }
+
   void run_one(const PlanCell& cell) {
     CellStages stages;
     try {

@@ -21,11 +21,14 @@ struct RunnerOptions {
 
 struct RunSummary {
   int ran = 0, reused = 0, failed = 0;
+  int elsewhere = 0;  // another process was at them until the end
   bool interrupted = false;
 };
 
 // Only the stages of a cell run whose keys have changed (cell_stages.h); cells of which all are
-// done are reused. Errors: kUsage from the plan, kEnvironment when records cannot be written.
+// done are reused. Several processes may run one profile: each takes the cells that no other one is
+// at, and comes back to those in the end. Errors: kUsage from the plan, kEnvironment when records
+// cannot be written.
 RunSummary run_profile(const RunnerOptions& options);
 
 }  // namespace glint

@@ -14,7 +14,8 @@ namespace {
 
 int exit_code_of(const RunSummary& summary) {
   if (summary.interrupted) return interrupted_exit();
-  return static_cast<int>(summary.failed > 0 ? ExitCode::kPartial : ExitCode::kSuccess);
+  const bool partial = summary.failed > 0 || summary.elsewhere > 0;
+  return static_cast<int>(partial ? ExitCode::kPartial : ExitCode::kSuccess);
 }
 
 void print_summary_json(
@@ -29,6 +30,7 @@ void print_summary_json(
       {"ran", summary.ran},
       {"reused", summary.reused},
       {"failed", summary.failed},
+      {"elsewhere", summary.elsewhere},
       {"interrupted", summary.interrupted}};
   json["tables"] = Json::array();
   for (const Table& table : tables) json["tables"].push_back(table_json(table));
@@ -56,10 +58,11 @@ int run_all(const CommonOptions& common, bool force) {
   else
     print_tables(tables);
   log::info(fmt::format(
-      "{} run, {} reused, {} failed{}; tables in {}, page {}",
+      "{} run, {} reused, {} failed{}{}; tables in {}, page {}",
       summary.ran,
       summary.reused,
       summary.failed,
+      summary.elsewhere > 0 ? fmt::format(", {} left to other processes", summary.elsewhere) : "",
       summary.interrupted ? ", interrupted (the same command goes on)" : "",
       (options.out / "tables").string(),
       page.string()

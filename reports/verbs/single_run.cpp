@@ -22,6 +22,18 @@ Scene load_dataset(const fs::path& folder, double max_pixels) {
   return with_exit_code(ExitCode::kBadReference, [&] { return load_scene(folder, options); });
 }
 
+FileLock lock_of(const fs::path& run) {
+  auto lock = FileLock::take(FileLock::file_beside(run));
+  if (const auto* holder = std::get_if<std::string>(&lock))
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format(
+            "{}: {} is at work there; wait for it, or choose another --run", run.string(), *holder
+        )
+    );
+  return std::get<FileLock>(std::move(lock));
+}
+
 // `identity`: of a training that may go on there.
 void check_new_run(const fs::path& folder, bool force, const std::string& identity) {
   const bool goes_on = is_checkpoint_of(folder / kCheckpointFile, identity);
@@ -61,6 +73,7 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
                                           {spec.scene, spec.method, spec.options.seed}
                                       )
                                     : fs::path(options.run);
+  single.lock.emplace(lock_of(spec.folder));
   spec.checkpoint_seconds = common.checkpoint_seconds;
   spec.anew = options.force;
   check_new_run(spec.folder, options.force, stage_key(spec.train_document));
@@ -71,6 +84,7 @@ SingleRun open_single_run(const std::string& run_folder, const std::string& data
   SingleRun single;
   RunSpec& spec = single.spec;
   spec = read_run_spec(run_folder);
+  single.lock.emplace(lock_of(run_folder));
   if (!dataset.empty()) spec.dataset_folder = fs::absolute(dataset);
   std::error_code code;
   GLINT_CHECK(

@@ -2,6 +2,7 @@
 // One run apart from any profile: train, render and eval on a folder of the user's.
 #pragma once
 
+#include "glint/core/file_lock.h"
 #include "reports/bench/stages.h"
 #include "reports/verbs/verb.h"
 
@@ -15,11 +16,13 @@ struct SingleRunOptions {
   bool force = false;  // train again where a run is
 };
 
-// Errors (kUsage): no --dataset, unknown method or field, a run in the folder without `force`;
+// Errors (kUsage): no --dataset, unknown method or field, a run in the folder without `force`,
+// another process at work there;
 // kBadReference: the dataset.
 struct SingleRun {
   RunSpec spec;
   Scene scene;
+  std::optional<FileLock> lock;  // nobody else writes into the folder
 };
 SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& options);
 // The run of a folder that `train` or `all` filled, with its dataset loaded again; from `dataset`

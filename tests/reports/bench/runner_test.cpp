@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glint/core/file_lock.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "reports/bench/cell_stages.h"
@@ -86,6 +87,42 @@ TEST_CASE("every cell of a profile is trained, rendered, scored and recorded") {
   CHECK(std::count(absent.begin(), absent.end(), "transparency-iou") == 1);
   CHECK(std::count(absent.begin(), absent.end(), "psnr") == 0);
   CHECK(records[0].environment.at("device") == "cpu");
+}
+
+TEST_CASE("a cell that another process is at is left to it, and done when it is free") {
+  const test::TempFolder folder;
+  const RunnerOptions options = fake_run(folder.path());
+  {
+    const auto lock =
+        FileLock::take(FileLock::file_beside(folder.path() / "runs/room_1/fake/other/0"));
+    REQUIRE(std::holds_alternative<FileLock>(lock));
+    const RunSummary summary = run_profile(options);
+    CHECK(summary.ran == 3);
+    CHECK(summary.elsewhere == 1);
+    CHECK(read_records(folder.path() / "records.jsonl").size() == 3);
+  }
+  const RunSummary summary = run_profile(options);
+  CHECK(summary.ran == 1);
+  CHECK(summary.reused == 3);
+  CHECK(summary.elsewhere == 0);
+}
+
+TEST_CASE("what another process finished meanwhile is reused") {
+  const test::TempFolder folder;
+  RunnerOptions options = fake_run(folder.path());
+  options.filter.only = {"room_1/fake/*"};
+  bool first = true;
+  options.load = [&](const SceneSource& source) {
+    if (std::exchange(first, false)) {  // the other one, while this one loads its first scene
+      RunnerOptions other = fake_run(folder.path());
+      other.filter.only = {"room_1/fake/other/0"};
+      CHECK(run_profile(other).ran == 1);
+    }
+    return LoadedScene{fake_scene(source.scene), "nowhere"};
+  };
+  const RunSummary summary = run_profile(options);
+  CHECK(summary.ran == 1);
+  CHECK(summary.reused == 1);
 }
 
 TEST_CASE("a run folder holds the files of the contract") {

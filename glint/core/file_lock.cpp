@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "glint/core/file_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+std::string this_process() {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  std::array<char, 32> time{};
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  std::strftime(time.data(), time.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return fmt::format("process {} on {} since {}", ::getpid(), host.data(), time.data());
+}
+
+std::string content_of(int descriptor) {
+  std::array<char, 512> text{};
+  const ssize_t bytes = ::pread(descriptor, text.data(), text.size(), 0);
+  return bytes > 0 ? std::string(text.data(), static_cast<std::size_t>(bytes)) : "another process";
+}
+
+// Whoever had it removes it when done: a lock on a file without a name guards nothing.
+bool still_has_its_name(const fs::path& file, int descriptor) {
+  struct stat by_name {
+  }, opened{};
+  return ::stat(file.c_str(), &by_name) == 0 && ::fstat(descriptor, &opened) == 0 &&
+         by_name.st_ino == opened.st_ino && by_name.st_dev == opened.st_dev;
+}
+
+int open_file(const fs::path& file) {
+  std::error_code code;
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), code);
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  GLINT_CHECK(
+      descriptor >= 0, kEnvironment, "{}: cannot be made ({})", file.string(), std::strerror(errno)
+  );
+  return descriptor;
+}
+
+}  // namespace
+
+fs::path FileLock::file_beside(const fs::path& folder) {
+  const fs::path plain = fs::absolute(folder / "").lexically_normal().parent_path();
+  return plain.parent_path() / fmt::format(".{}.lock", plain.filename().string());
+}
+
+std::variant<FileLock, std::string> FileLock::take(const fs::path& file) {
+  while (true) {
+    const int descriptor = open_file(file);
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      std::string holder = content_of(descriptor);
+      ::close(descriptor);
+      return holder;
+    }
+    FileLock lock(file, descriptor);
+    if (!still_has_its_name(file, descriptor)) {
+      lock.file_.clear();  // another one's by now
+      continue;
+    }
+    const std::string text = this_process();
+    [[maybe_unused]] const int cut = ::ftruncate(descriptor, 0);
+    [[maybe_unused]] const ssize_t written = ::pwrite(descriptor, text.data(), text.size(), 0);
+    return lock;
+  }
+}
+
+FileLock::FileLock(FileLock&& other) noexcept
+    : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+FileLock::~FileLock() {
+  if (descriptor_ < 0) return;
+  std::error_code code;
+  if (!file_.empty()) fs::remove(file_, code);
+  ::close(descriptor_);
+}
+
+}  // namespace glint

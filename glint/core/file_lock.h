@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// One process at a time: a file beside what it guards, locked by the system, which lets go of it
+// when the process ends, however it ends. Other machines see it where their file system takes part.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "glint/core/files.h"
+
+namespace glint {
+
+class FileLock {
+ public:
+  // The lock, or who has it: "process 12 on node3 since 2026-01-31T12:00:00Z". Creates the parent
+  // folder. Errors (kEnvironment): the file cannot be made. A file system without locks is no
+  // obstacle: then nothing is guarded.
+  static std::variant<FileLock, std::string> take(const fs::path& file);
+  // Of a folder: ".NAME.lock" beside it.
+  static fs::path file_beside(const fs::path& folder);
+
+  FileLock(FileLock&& other) noexcept;
+  FileLock& operator=(FileLock&&) = delete;
+  ~FileLock();  // removes the file
+
+ private:
+  FileLock(fs::path file, int descriptor) : file_(std::move(file)), descriptor_(descriptor) {}
+  fs::path file_;
+  int descriptor_;
+};
+
+}  // namespace glint
