@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "glint/core/file_lock.h"
 #include "glint/scene/image_files.h"
 #include "reports/records/earlier_run.h"
 #include "tests/reports/run_words.h"
@@ -177,4 +178,16 @@ TEST_CASE("making room goes on where it was cut off") {
   }
   CHECK(read_file(place.mine / "interface.ply") == model);  // nothing came of the new one
   CHECK(run({"render", "--run", place.mine, "--quiet"}) == 0);
+}
+
+TEST_CASE("a run folder in which another process is at work is left alone") {
+  const Place place;
+  REQUIRE(place.train() == 0);
+  const std::string model = read_file(place.mine / "interface.ply");
+  const auto lock = FileLock::take(FileLock::file_beside(place.mine));
+  REQUIRE(std::holds_alternative<FileLock>(lock));
+  CHECK(place.train({"--force"}) == 1);
+  for (const char* verb : {"render", "mesh", "eval"})
+    CHECK(run({verb, "--run", place.mine, "--quiet"}) == 1);
+  CHECK(read_file(place.mine / "interface.ply") == model);
 }
