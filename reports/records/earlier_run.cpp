@@ -15,7 +15,6 @@
 namespace glint {
 namespace {
 
-constexpr const char* kPreviousRun = "previous_run";
 constexpr const char* kSaving = ".saving";
 constexpr std::array kTopFiles = {
     "config.json",
@@ -86,8 +85,9 @@ int rank_of(const fs::path& file, const fs::path& run) {
   return name.starts_with("keys/") ? 1 : 0;
 }
 
-// What this program wrote into the folder of a run, files only, config.json last.
-std::vector<fs::path> our_files(const fs::path& run) {
+}  // namespace
+
+std::vector<fs::path> files_of_run(const fs::path& run) {
   std::vector<fs::path> ours;
   for (const char* name : kTopFiles) ours.push_back(run / name);
   if (const auto trained = read_stage(run, Stage::kTrain))
@@ -108,6 +108,8 @@ std::vector<fs::path> our_files(const fs::path& run) {
   });
   return ours;
 }
+
+namespace {
 
 // The folders between the files and the run, if they have become empty.
 void remove_empty_folders(const std::vector<fs::path>& files, const fs::path& run) {
@@ -134,8 +136,10 @@ void check_done(const std::error_code& code, const fs::path& path) {
 
 constexpr const char* kCheckpoint = "checkpoint";
 
+}  // namespace
+
 void remove_run(const fs::path& run) {
-  const std::vector<fs::path> files = our_files(run);
+  const std::vector<fs::path> files = files_of_run(run);
   std::error_code code;
   const auto remove_file = [&](const fs::path& file) {
     fs::remove(file, code);
@@ -150,10 +154,13 @@ void remove_run(const fs::path& run) {
   }
   remove_empty_folders(files, run);
   remove_file(run / "config.json");  // until now the folder is a run's
+  fs::remove(run, code);             // fails where something is left
 }
 
+namespace {
+
 void move_run(const fs::path& from, const fs::path& to) {
-  const std::vector<fs::path> files = our_files(from);
+  const std::vector<fs::path> files = files_of_run(from);
   write_file(to / "config.json", read_file(from / "config.json"));
   std::error_code code;
   for (const fs::path& file : files) {

@@ -11,12 +11,20 @@ namespace glint {
 inline constexpr const char* kWrittenByField = "written_by";
 inline constexpr const char* kWrittenBy = "glint-bench";
 
+// In a run folder: the finished run whose place a new one is taking.
+inline constexpr const char* kPreviousRun = "previous_run";
+
 // Does config.json say that the folder is a run of ours? Those of earlier versions are known by
 // their fields.
 bool is_our_run(const fs::path& folder);
 
 // Errors (kUsage): the folder holds files, but no run of ours.
 void check_run_folder(const fs::path& folder);
+
+// What this program wrote into the folder of a run, files only, config.json last.
+std::vector<fs::path> files_of_run(const fs::path& run);
+// Removes them, and the folder if nothing else is there. Errors (kEnvironment): they cannot be.
+void remove_run(const fs::path& run);
 
 // Makes room for a new run. A finished run is set aside in FOLDER/previous_run until drop(); one
 // that never ended is removed.
