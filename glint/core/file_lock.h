@@ -3,8 +3,8 @@
 // when the process ends, however it ends. Other machines see it where their file system takes part.
 #pragma once
 
-#include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "glint/core/files.h"

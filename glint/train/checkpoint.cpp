@@ -92,6 +92,7 @@ void TrainingProgress::visit_state(TrainingState& state) {
   state("seconds", seconds);
   state("saving_seconds", saving_seconds);
   state("peak_memory_mb", peak_memory_mb);
+  state("events", events);
 }
 
 bool write_checkpoint(

@@ -24,6 +24,7 @@ struct TrainingProgress {
   int iterations = 0;  // done
   double seconds = 0, saving_seconds = 0;
   double peak_memory_mb = 0;
+  std::string events = "[]";  // JSON: since the last line of the log
 
   void visit_state(TrainingState& state);
 };

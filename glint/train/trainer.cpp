@@ -137,6 +137,8 @@ class Training {
   void resume() {
     try {
       read_checkpoint(checkpoint_, method_, done_);
+      events_ = Json::parse(done_.events, nullptr, false);
+      if (!events_.is_array()) events_ = Json::array();
       log::info(fmt::format("{}: goes on at iteration {}", options_.title, done_.iterations));
     } catch (const Error& error) {
       log::warn(fmt::format("{}; starting anew", error.what()));
@@ -201,6 +203,7 @@ class Training {
     const auto start = Clock::now();
     method_.check_finite();
     done_.peak_memory_mb = std::max(done_.peak_memory_mb, peak_memory_mb());
+    done_.events = events_.dump();
     on_device(done_.iterations, [&] {
       try {
         resumable_ = write_checkpoint(checkpoint_, options_.identity, method_, done_);

@@ -36,6 +36,15 @@ class Runner {
   }
 
  private:
+  // Others write, too.
+  void read_new_records() {
+    std::error_code code;
+    const std::uintmax_t bytes = fs::file_size(records_file_, code);
+    if (!code && bytes == records_bytes_) return;
+    records_ = read_records(records_file_);
+    records_bytes_ = code ? 0 : bytes;
+  }
+
   // False: another process is at it.
   bool try_one(const std::string& place, const PlanCell& cell) {
     throw_if_interrupted();
@@ -45,7 +54,7 @@ class Runner {
       log::info("  left to " + *holder);
       return false;
     }
-    records_ = read_records(records_file_);  // others write, too
+    read_new_records();
     run_one(cell);
     return true;
   }
@@ -113,6 +122,7 @@ class Runner {
   const RunnerOptions& options_;
   fs::path records_file_;
   std::vector<Record> records_;
+  std::uintmax_t records_bytes_ = 0;  // of the file when they were read
   LoadedScene loaded_;
   std::string loaded_name_;
   RunSummary summary_;

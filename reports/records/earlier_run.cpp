@@ -10,6 +10,7 @@
 #include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
 #include "glint/scene/maps.h"
+#include "glint/train/checkpoint.h"
 #include "reports/records/stage_files.h"
 
 namespace glint {
@@ -207,6 +208,11 @@ bool is_our_run(const fs::path& folder) {
   return std::all_of(kFields.begin(), kFields.end(), [&](const char* field) {
     return json.contains(field);
   });
+}
+
+bool holds_work(const fs::path& folder) {
+  return fs::exists(folder / "config.json") &&
+         (is_finished(folder) || fs::exists(folder / kCheckpointFile));
 }
 
 void check_run_folder(const fs::path& folder) {

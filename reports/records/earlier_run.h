@@ -18,6 +18,9 @@ inline constexpr const char* kPreviousRun = "previous_run";
 // their fields.
 bool is_our_run(const fs::path& folder);
 
+// A run that has ended, or a checkpoint that one could go on from: more than a minute's work.
+bool holds_work(const fs::path& folder);
+
 // Errors (kUsage): the folder holds files, but no run of ours.
 void check_run_folder(const fs::path& folder);
 

@@ -38,7 +38,7 @@ FileLock lock_of(const fs::path& run) {
 void check_new_run(const fs::path& folder, bool force, const std::string& identity) {
   const bool goes_on = is_checkpoint_of(folder / kCheckpointFile, identity);
   GLINT_CHECK(
-      force || goes_on || !fs::exists(folder / "config.json"),
+      force || goes_on || !holds_work(folder),
       kUsage,
       "{}: holds a run already; --force trains it again, --run names another folder",
       folder.string()

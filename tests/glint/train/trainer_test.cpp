@@ -262,3 +262,20 @@ TEST_CASE("Without room for a checkpoint training goes on and the last good one 
   CHECK(second.steps == count_to(6));
   CHECK(steps_in(options.folder) == count_to(3));
 }
+
+TEST_CASE("Events between a line of the log and a checkpoint stand in the next line") {
+  set_quiet(true);
+  const test::TempFolder temporary;
+  TrainOptions options;
+  options.run.iterations = 10;
+  options.folder = temporary.path();
+  options.log_interval = 10;
+  options.checkpoint_seconds = 0;
+  Losing first(6, -1);  // the event is that of step 3
+  CHECK_THROWS_AS(train(first, one_view(), options), DeviceLost);
+  Exploding second(-1);
+  train(second, one_view(), options);
+  const Json line = Json::parse(read_file(options.folder / "log.jsonl"));
+  REQUIRE(line.at("events").size() == 1);
+  CHECK(line.at("events")[0].at("iteration") == 3);
+}

@@ -16,6 +16,8 @@ train() {
 }
 # What a run folder holds, but for times: files that were trained, and that nothing else was left.
 content() { (cd "$1" && find . -type f ! -name env.json ! -name log.jsonl ! -name progress.json ! -path './keys/*' -exec sha256sum {} + | sort -k 2); }
+# A checkpoint goes last.
+has_ended() { [ -f "$1/keys/train.json" ] && [ ! -f "$1/checkpoint/state.safetensors" ]; }
 now_ms() { echo $((${EPOCHREALTIME/[.,]/} / 1000)); }
 
 "$bench" dataset make glassroom --quiet --width 64 --height 36 --views 8 --spp 2 --out "$folder/room" >"$folder/out"
@@ -39,12 +41,12 @@ while [ "$done_kills" -lt "$kills" ]; do
       sleep "$(awk -v ms="$((RANDOM % took[$method]))" 'BEGIN { print ms / 1000 }')"
       kill -9 "$pid" 2>/dev/null || true
       wait "$pid" 2>/dev/null || true
-      [ ! -f "$run/keys/train.json" ] || break  # it had ended
+      ! has_ended "$run" || break
       done_kills=$((done_kills + 1))
       [ ! -f "$run/checkpoint/state.safetensors" ] || resumed=$((resumed + 1))
       [ $((RANDOM % 2)) -eq 0 ] || break
     done
-    [ -f "$run/keys/train.json" ] || (train "$run" "$method") || { cat "$folder/err" >&2; wrong=$((wrong + 1)); }
+    has_ended "$run" || (train "$run" "$method") || { cat "$folder/err" >&2; wrong=$((wrong + 1)); }
     if [ "$(content "$run")" != "${expected[$method]}" ]; then
       echo "$method: other files than without a kill:" >&2
       diff <(content "$run") <(echo "${expected[$method]}") >&2 || true

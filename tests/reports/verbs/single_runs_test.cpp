@@ -57,6 +57,18 @@ TEST_CASE("a single run lands in the records of OUT/single when it is scored") {
   CHECK(fs::exists(folder / "out/single/tables/summary.md"));
 }
 
+TEST_CASE("a training that was cut off before its first checkpoint needs no --force") {
+  const test::TempFolder folder;
+  const std::string mine = folder / "mine";
+  const std::vector<std::string> train = {
+      "train", "--dataset", room(), "--run", mine, "--iterations", "3", "--data", folder / "data"};
+  REQUIRE(run(train) == 0);
+  for (const char* ends : {"env.json", "interface.ply"}) fs::remove(fs::path(mine) / ends);
+  fs::remove_all(fs::path(mine) / "keys");
+  CHECK(run(train) == 0);
+  CHECK(fs::exists(fs::path(mine) / "env.json"));
+}
+
 TEST_CASE("a run of a profile is scored without touching the profile's records") {
   const test::TempFolder folder;
   const fs::path profile = folder / "out/ci";
