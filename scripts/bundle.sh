@@ -78,6 +78,7 @@ glibc=$(objdump -T $bundle/bin/g* $bundle/lib/*.so* | grep -o 'GLIBC_2\.[0-9]*' 
 cat >$bundle/environment.sh <<'ENVIRONMENT'
 # To be sourced: the bundle's libraries, with its C++ runtime where that runs here.
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+[ -d "$here/bin" ] || tar -xzf "$here/programs.tar.gz" -C "$here"
 export LD_LIBRARY_PATH=$here/lib:$here/lib/cxx${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 "$here/bin/glint-bench" --version >/dev/null 2>&1 || LD_LIBRARY_PATH=${LD_LIBRARY_PATH/":$here/lib/cxx"/}
 ENVIRONMENT
@@ -109,6 +110,9 @@ else
 fi
 $bundle/glint-bench dataset info $bundle/scene.safetensors >&2
 gzip $bundle/scene.safetensors  # floats of normals and depth: half of it
+
+tar -czf $bundle/programs.tar.gz -C $bundle bin lib  # less than half; environment.sh unpacks them
+rm -r $bundle/bin $bundle/lib
 
 cat >$bundle/BUNDLE.md <<ABOUT
 Commit $(git describe --always --dirty), CUDA architectures $arch, needs ${glibc/_/ } or newer.

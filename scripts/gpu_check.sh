@@ -30,7 +30,8 @@ out=${OUT:-$PWD/gpu_out}
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 cd "$(dirname "$0")" || exit 6
-[ -x bin/glint-bench ] || { echo "gpu_check: $PWD/bin/glint-bench is missing; run scripts/bundle.sh first" >&2; exit 6; }
+[ -x bin/glint-bench ] || [ -f programs.tar.gz ] ||
+  { echo "gpu_check: neither bin/glint-bench nor programs.tar.gz in $PWD; run scripts/bundle.sh first" >&2; exit 6; }
 # shellcheck source=/dev/null
 source ./environment.sh
 PATH=$PWD/bin:$PATH:/usr/local/cuda/bin
