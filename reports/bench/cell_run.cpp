@@ -2,7 +2,6 @@
 #include "reports/bench/cell_run.h"
 
 #include <chrono>
-#include <new>
 
 #include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
@@ -14,6 +13,7 @@
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stages.h"
 #include "reports/records/environment.h"
+#include "reports/records/failure_kinds.h"
 
 namespace glint {
 
@@ -75,7 +75,12 @@ Record record_of(const PlanCell& cell, const RunnerOptions& options) {
 }
 
 Failure failure_of(const std::exception& error, const std::string& stage, const fs::path& run) {
-  return {stage, failure_kind(error, stage), error.what(), log_tail(run)};
+  return {
+      stage,
+      std::string(failure_kind(error, stage)),
+      error.what(),
+      log_tail(run),
+      run.empty() ? -1 : last_iteration(run)};
 }
 
 // Makes the meshes. A run whose depth gives none has its other numbers all the same; empty: made.
@@ -211,28 +216,13 @@ Record run_cell(
 Record record_without_data(
     const PlanCell& cell, const RunnerOptions& options, const std::exception& error
 ) {
-  Record record = record_of(cell, options);
-  record.failure = failure_of(error, "data", {});
-  return record;
+  return failed_record(cell, options, failure_of(error, "data", {}));
 }
 
-std::string failure_kind(const std::exception& error, const std::string& stage) {
-  if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const OutOfMemory*>(&error))
-    return "out-of-memory";
-  const auto* ours = dynamic_cast<const Error*>(&error);
-  if (!ours) return "unknown";
-  switch (ours->code()) {
-    case ExitCode::kBadPrediction:
-      return stage == "train" ? "not-finite" : "bad-input";
-    case ExitCode::kBadReference:
-      return "bad-input";
-    case ExitCode::kUsage:
-      return "usage";
-    case ExitCode::kEnvironment:
-      return "environment";
-    default:
-      return "unknown";
-  }
+Record failed_record(const PlanCell& cell, const RunnerOptions& options, Failure failure) {
+  Record record = record_of(cell, options);
+  record.failure = std::move(failure);
+  return record;
 }
 
 }  // namespace glint

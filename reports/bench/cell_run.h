@@ -22,8 +22,7 @@ Record record_without_data(
     const PlanCell& cell, const RunnerOptions& options, const std::exception& error
 );
 
-// Of a failure in `stage`: "bad-input", "usage", "environment", "not-finite" (training diverged),
-// "out-of-memory", "unknown".
-std::string failure_kind(const std::exception& error, const std::string& stage);
+// Of a cell that failed in some other way: its process did not come so far as to say so.
+Record failed_record(const PlanCell& cell, const RunnerOptions& options, Failure failure);
 
 }  // namespace glint

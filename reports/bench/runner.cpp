@@ -36,6 +36,10 @@ class Runner {
   }
 
  private:
+  bool has_failed_enough() const {
+    return options_.max_failures > 0 && summary_.failed >= options_.max_failures;
+  }
+
   // Others write, too.
   void read_new_records() {
     std::error_code code;
@@ -48,7 +52,11 @@ class Runner {
   // False: another process is at it.
   bool try_one(const std::string& place, const PlanCell& cell) {
     throw_if_interrupted();
-    log::info(place + cell.cell.text());
+    if (has_failed_enough()) {
+      ++summary_.not_begun;
+      return true;
+    }
+    if (!options_.announced) log::info(place + cell.cell.text());
     const auto lock = FileLock::take(FileLock::file_beside(run_folder(options_.out, cell.cell)));
     if (const auto* holder = std::get_if<std::string>(&lock)) {
       log::info("  left to " + *holder);
@@ -114,9 +122,10 @@ class Runner {
       return;
     }
     ++summary_.failed;
-    log::warn(fmt::format(
-        "{} failed in {}: {}", record.cell.text(), record.failure->stage, record.failure->message
-    ));
+    if (!options_.announced)
+      log::warn(fmt::format(
+          "{} failed in {}: {}", record.cell.text(), record.failure->stage, record.failure->message
+      ));
   }
 
   const RunnerOptions& options_;

@@ -27,10 +27,12 @@ struct CellKey {
 
 struct Failure {
   std::string stage;  // of stage_name(): "data", "train", "render", "mesh", "score"
-  std::string
-      kind;  // "bad-input", "usage", "environment", "not-finite", "out-of-memory", "unknown"
+  std::string kind;   // of failure_kinds(): "not-finite", "crash", ...
   std::string message;
-  std::vector<std::string> log_tail;  // last lines of log.jsonl
+  std::vector<std::string> log_tail;          // last lines of log.jsonl
+  int iteration = -1;                         // that the training had reached; -1: none is known
+  int attempts = 1;                           // that failed one after the other
+  std::vector<std::string> output_tail = {};  // last lines that its process wrote, if it crashed
 };
 
 struct Record {
@@ -64,8 +66,9 @@ void append_record(const fs::path& file, const Record& record);
 
 // All cells of a file, the last record of each winning, in the order of the first appearance. Lines
 // torn by a crash while appending are reported and skipped; no file means no records.
-// Errors (kBadPrediction): a line that is JSON but no record, a newer schema.
-std::vector<Record> read_records(const fs::path& file);
+// `from_byte`: only what was appended since the file had that size. Errors (kBadPrediction): a line
+// that is JSON but no record, a newer schema.
+std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte = 0);
 
 const Record* find_record(const std::vector<Record>& records, const CellKey& cell);
 
