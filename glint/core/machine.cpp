@@ -68,6 +68,13 @@ std::uint64_t available_memory_bytes() {
   return std::min(kib * 1024, room_in_group());
 }
 
+std::uint64_t resident_memory_bytes() {
+  std::istringstream field(proc_field("/proc/self/status", "VmRSS"));  // "123456 kB"
+  std::uint64_t kib = 0;
+  field >> kib;
+  return kib * 1024;
+}
+
 std::uint64_t out_of_memory_kills() {
   std::uint64_t kills = 0;
   std::istringstream(proc_word("/proc/vmstat", "oom_kill")) >> kills;

@@ -25,6 +25,8 @@ std::uint64_t free_disk_bytes(const fs::path& folder);
 // that it runs in, whichever is less.
 std::uint64_t available_memory_bytes();
 
+std::uint64_t resident_memory_bytes();  // of this process, now
+
 // How often the kernel has ended a process for want of memory since the machine started.
 std::uint64_t out_of_memory_kills();
 

@@ -7,14 +7,15 @@
 
 namespace glint {
 
-// `earlier`: the cell's last record, or null. What fails becomes part of the record. Errors:
-// Interrupted passes through, an unfinished cell leaves no record.
+// `records`: of cells that have ended before, the cell's own last one among them. What fails
+// becomes part of the record. Errors: Interrupted passes through, an unfinished cell leaves no
+// record.
 Record run_cell(
     const PlanCell& cell,
     const RunnerOptions& options,
     const LoadedScene& loaded,
     const CellStages& stages,
-    const Record* earlier
+    const std::vector<Record>& records
 );
 
 // Of a cell whose data cannot be had.

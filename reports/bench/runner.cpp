@@ -82,7 +82,7 @@ class Runner {
       return finish(record_without_data(cell, options_, error));
     }
     log::info("  " + stages.why());
-    finish(run_cell(cell, options_, loaded_, stages, find_record(records_, cell.cell)));
+    finish(run_cell(cell, options_, loaded_, stages, records_));
   }
 
   CellStages stages_of(const PlanCell& cell) const {

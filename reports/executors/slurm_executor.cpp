@@ -34,7 +34,7 @@ while :; do
   [ "$code" -gt 128 ] && kill -0 "$child" 2>/dev/null || break
 done
 # After SIGTERM it is for Slurm to know: it may have been cancelled.
-[ "$code" -ne 138 ] || scontrol requeue "$SLURM_JOB_ID"
+[ "$code" -ne 138 ] || scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
 exit "$code"
 )";
 
@@ -169,7 +169,10 @@ class Submission {
         "--open-mode=append",
         fmt::format("--job-name=glint-{}-{}", options_.profile.name, stage),
         fmt::format("--chdir={}", fs::current_path().string()),
-        fmt::format("--output={}", (folder_ / (stage + "-%A_%a.log")).string())};
+        fmt::format(
+            "--output={}",
+            (folder_ / (stage + (stage == "tables" ? "-%j.log" : "-%A_%a.log"))).string()
+        )};
     if (!after.empty())
       append(words, {"--kill-on-invalid-dep=yes", "--dependency=afterany" + after});
     if (stage == "cells") append(words, cell_options());

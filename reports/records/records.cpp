@@ -29,6 +29,7 @@ void visit_fields(R& record, V&& v) {
   v("score_key", record.score_key);
   v("dataset_hash", record.dataset_hash);
   v("num_surfels", record.num_surfels);
+  v("estimated_memory_mb", record.estimated_memory_mb);
   v("warnings", record.warnings);
   v("notes", record.notes);
   v("not_measured", record.not_measured);

@@ -45,7 +45,7 @@ Words words_of_cell(
     bool force,
     int threads
 ) {
-  Words words = {kThisProgram, "run", "--executor", "inline", "--announced"};
+  Words words = {kThisProgram, "run", "--executor", "inline"};
   for (const Words& more :
        {profile_words(common),
         run_words(common),

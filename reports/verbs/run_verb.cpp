@@ -14,7 +14,7 @@ struct ChosenCells {
   std::vector<std::string> cells;
   std::string tasks;
   std::size_t task = 0;
-  bool data_only = false, announced = false;
+  bool data_only = false;
 };
 
 // Makes what is not there yet.
@@ -29,13 +29,14 @@ int run_chosen(const CommonOptions& common, const CellRunOptions& how, const Cho
   RunnerOptions options = runner_options(common, how);
   options.filter.cells = chosen.cells;
   if (!chosen.tasks.empty()) options.filter.cells = {cell_of_task(chosen.tasks, chosen.task)};
-  options.announced = chosen.announced;
+  // Whoever asks for one cell in this process knows which.
+  options.announced = how.executor == "inline" && options.filter.cells.size() == 1;
   if (chosen.data_only) {
     make_data(options);
     return 0;
   }
   const RunSummary summary = run_cells(common, how, options);
-  if (!chosen.announced) log::info(summary_text(summary));
+  if (!options.announced) log::info(summary_text(summary));
   if (common.json) print_json(summary_json(summary));
   return exit_code_of(summary);
 }
@@ -54,7 +55,6 @@ void add_run_verb(CommandLine& line) {
   verb->add_option("--tasks", chosen->tasks, "file of cells, one a line (`plan --tasks`)");
   verb->add_option("--task", chosen->task, "which line of --tasks; the first is 0");
   verb->add_flag("--data-only", chosen->data_only, "make the data of the cells, no more");
-  verb->add_flag("--announced", chosen->announced)->group("");
 }
 
 }  // namespace
