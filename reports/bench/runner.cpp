@@ -6,6 +6,7 @@
 #include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
 #include "reports/bench/cell_run.h"
+#include "reports/records/merge_runs.h"
 #include "reports/records/run_folder.h"
 
 namespace glint {
@@ -118,6 +119,9 @@ class Runner {
   void finish(const Record& record) {
     append_record(records_file_, record);
     if (record.ok()) {
+      write_file(
+          run_folder(options_.out, record.cell) / kRecordFile, record_to_json(record).dump() + "\n"
+      );
       ++summary_.ran;
       return;
     }
