@@ -74,10 +74,14 @@ std::shared_ptr<const LpipsWeights> lpips_weights_at(const fs::path& place, std:
   if (folder && network.empty()) network = "alex";
   const fs::path file = folder ? place / fmt::format("lpips_{}_v0.1.npz", network) : place;
   if (!fs::exists(file, code)) return nullptr;
-  auto weights = with_exit_code(ExitCode::kEnvironment, [&] {
-    return std::make_shared<const LpipsWeights>(load_lpips_weights(file));
-  });
-  return network.empty() || weights->network == network ? weights : nullptr;
+  try {
+    auto weights = std::make_shared<const LpipsWeights>(load_lpips_weights(file));
+    return network.empty() || weights->network == network ? weights : nullptr;
+  } catch (const OutOfMemory&) {
+    throw;
+  } catch (const Error& error) {
+    throw MissingWeights(error.what());
+  }
 }
 
 }  // namespace glint

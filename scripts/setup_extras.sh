@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# What two tests need that are skipped without: Chromium, Node.js and playwright-core (the report
-# page in a browser), TeX Live (all tables in one PDF). Idempotent; root (or passwordless sudo) for
+# What three tests need that are skipped without: Chromium, Node.js and playwright-core (the report
+# page in a browser), TeX Live (all tables in one PDF), Slurm (a profile on a cluster of one node).
+# Idempotent; root (or passwordless sudo) for
 # the Debian packages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -9,6 +10,7 @@ packages=()
 command -v chromium >/dev/null || packages+=(chromium fonts-dejavu-core)
 command -v node >/dev/null || packages+=(nodejs)
 command -v npm >/dev/null || packages+=(npm)
+[ -x /usr/sbin/slurmctld ] || packages+=(slurm-wlm)
 # Has booktabs, colortbl and xcolor; lmodern: letters that stay sharp, otherwise they are pixels.
 for package in texlive-latex-recommended lmodern; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || packages+=("$package")

@@ -5,7 +5,9 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cctype>
+#include <iterator>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,11 @@ std::vector<std::string> below_reports(const std::vector<std::string>& folders) 
   std::vector<std::string> paths{"glint/", "metrics/", "baselines/", "datasets/"};
   for (const std::string& folder : folders) paths.push_back("reports/" + folder + "/");
   return paths;
+}
+
+std::vector<std::string> split(const std::string& words) {
+  std::istringstream in(words);
+  return {std::istream_iterator<std::string>(in), {}};
 }
 
 const std::vector<Layer>& layers() {
@@ -70,6 +77,7 @@ const std::vector<Layer>& layers() {
       {"reports/tables/", below_reports({"records", "tables"})},
       {"reports/pictures/", below_reports({"records", "pictures"})},
       {"reports/bench/", below_reports({"records", "pictures", "bench"})},
+      {"reports/executors/", below_reports({"records", "bench", "executors"})},
       {"reports/page/", below_reports({"records", "tables", "pictures", "page"})},
       {"reports/figures/",
        below_reports({"records", "tables", "pictures", "bench", "page", "figures"})},
@@ -78,16 +86,7 @@ const std::vector<Layer>& layers() {
       {"reports/selftest/", below_reports({"records", "bench", "import", "selftest"})},
       {"reports/verbs/",
        below_reports(
-           {"records",
-            "tables",
-            "pictures",
-            "bench",
-            "page",
-            "figures",
-            "import",
-            "perf",
-            "selftest",
-            "verbs"}
+           split("records tables pictures bench executors page figures import perf selftest verbs")
        )},
       {"tests/", {"glint/", "metrics/", "baselines/", "datasets/", "reports/", "tests/"}}};
   return all;

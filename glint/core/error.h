@@ -29,8 +29,15 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
+// Errors of the machine that are recorded under names of their own.
 struct OutOfMemory : Error {
   explicit OutOfMemory(const std::string& message) : Error(ExitCode::kEnvironment, message) {}
+};
+struct DiskFull : Error {
+  explicit DiskFull(const std::string& message) : Error(ExitCode::kEnvironment, message) {}
+};
+struct MissingWeights : Error {  // of a network: not there, or damaged
+  explicit MissingWeights(const std::string& message) : Error(ExitCode::kEnvironment, message) {}
 };
 
 // The same failure with another exit code: loaders do not know whether a file is a prediction or a

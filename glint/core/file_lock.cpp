@@ -12,19 +12,18 @@
 #include <ctime>
 
 #include "glint/core/error.h"
+#include "glint/core/machine.h"
 
 namespace glint {
 namespace {
 
 std::string this_process() {
-  std::array<char, 256> host{};
-  ::gethostname(host.data(), host.size() - 1);
   std::array<char, 32> time{};
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
   ::gmtime_r(&now, &utc);
   std::strftime(time.data(), time.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return fmt::format("process {} on {} since {}", ::getpid(), host.data(), time.data());
+  return fmt::format("process {} on {} since {}", ::getpid(), host_name(), time.data());
 }
 
 std::string content_of(int descriptor) {

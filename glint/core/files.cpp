@@ -36,6 +36,17 @@ void sync_to_disk(const fs::path& path) {
   );
 }
 
+// Writers of images do not say why they failed; the disk does. A quota or a limit on the size of
+// files is told by errno alone, where that still stands.
+bool is_full(const fs::path& folder) {
+  constexpr std::uintmax_t kLeast = 64
+                                    << 10;  // bytes: a file that failed wanted more than one block
+  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) return true;
+  std::error_code code;
+  const fs::space_info space = fs::space(folder, code);
+  return !code && space.available < kLeast;
+}
+
 bool lacks_permission(const std::error_code& code) {
   return code == std::errc::permission_denied || code == std::errc::operation_not_permitted;
 }
@@ -111,14 +122,25 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
       !code, kEnvironment, "{}: cannot create its folder ({})", path.string(), code.message()
   );
   const fs::path temporary = unfinished_path(path);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const auto give_up = [&](const std::string& why) {
+    const bool full = is_full(folder);  // while what there was room for still lies there
+    fs::remove(temporary, code);
+    if (full) throw DiskFull(why);
+  };
+  errno = 0;
   try {
     write(temporary);
     sync_to_disk(temporary);
     fs::rename(temporary, path);
-    sync_to_disk(path.has_parent_path() ? path.parent_path() : ".");
+    sync_to_disk(folder);
   } catch (const fs::filesystem_error& error) {
-    fs::remove(temporary, code);
-    throw Error(ExitCode::kEnvironment, fmt::format("{}: {}", path.string(), error.what()));
+    const std::string why = fmt::format("{}: {}", path.string(), error.what());
+    give_up(why);
+    throw Error(ExitCode::kEnvironment, why);
+  } catch (const Error& error) {
+    give_up(error.what());
+    throw;
   } catch (...) {
     fs::remove(temporary, code);
     throw;

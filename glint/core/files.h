@@ -35,7 +35,8 @@ auto read_within_memory(const fs::path& path, F&& read) {
 }
 
 // Calls `write(temporary)`, then renames to `path`; on any exception removes the temporary and
-// throws on. Creates the parent folder. Errors (kEnvironment): cannot create, write, or rename.
+// throws on. Creates the parent folder. Errors (kEnvironment): cannot create, write, or rename;
+// DiskFull where there was no room.
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write);
 void write_file(const fs::path& path, std::string_view content);
 

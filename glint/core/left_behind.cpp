@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cerrno>
 #include <charconv>
@@ -13,6 +12,7 @@
 #include <optional>
 
 #include "glint/core/error.h"
+#include "glint/core/machine.h"
 
 namespace glint {
 namespace {
@@ -20,11 +20,9 @@ namespace {
 constexpr std::string_view kMark = ".part";
 
 // Letters and digits of the machine's name, so that no dot of it ends a part of ours.
-std::string host_name() {
-  std::array<char, 65> name{};
-  ::gethostname(name.data(), name.size() - 1);
+std::string host_mark() {
   std::string host;
-  for (const char c : std::string_view(name.data()).substr(0, 32))
+  for (const char c : host_name().substr(0, 32))
     host += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   return host.empty() ? "unknown" : host;
 }
@@ -52,7 +50,7 @@ std::optional<Writer> writer_of(const std::string& name) {
 }
 
 bool has_ended(const Writer& writer, const fs::directory_entry& entry) {
-  if (writer.host == host_name())
+  if (writer.host == host_mark())
     return writer.process != ::getpid() && ::kill(writer.process, 0) != 0 && errno == ESRCH;
   std::error_code code;
   const auto age = fs::file_time_type::clock::now() - entry.last_write_time(code);
@@ -75,7 +73,7 @@ void add_left_behind(Iterator it, std::vector<fs::path>& found) {
 
 fs::path unfinished_path(const fs::path& path) {
   constexpr std::size_t kLongest = 150;  // bytes of the name; file systems allow 255 in all
-  static const std::string host = host_name();
+  static const std::string host = host_mark();
   return path.parent_path() / fmt::format(
                                   ".{}.{}-{}{}{}",
                                   path.stem().string().substr(0, kLongest),

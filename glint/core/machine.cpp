@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <thread>
 
@@ -24,7 +26,66 @@ std::string proc_field(const char* file, std::string_view key) {
   return "";
 }
 
+// The text behind "key " at the start of a line; empty when absent.
+std::string proc_word(const char* file, std::string_view key) {
+  std::ifstream in(file);
+  std::string word, value;
+  while (in >> word && std::getline(in, value))
+    if (word == key) return value;
+  return "";
+}
+
+// The first number of a file: of "max", which stands for no limit, and of no file, the largest.
+std::uint64_t number_in(const fs::path& file) {
+  std::uint64_t value = 0;
+  std::ifstream in(file);
+  return in >> value ? value : std::numeric_limits<std::uint64_t>::max();
+}
+
+// Of the control group (version 2) that this process is in: its limit less what it takes, page
+// cache aside, which gives way.
+std::uint64_t room_in_group() {
+  std::ifstream in("/proc/self/cgroup");
+  std::string line;
+  while (std::getline(in, line) && !line.starts_with("0::")) {
+  }
+  if (line.size() < 4) return std::numeric_limits<std::uint64_t>::max();
+  const fs::path group = fs::path("/sys/fs/cgroup") / line.substr(4);
+  const std::uint64_t limit = number_in(group / "memory.max");
+  if (limit == std::numeric_limits<std::uint64_t>::max()) return limit;
+  std::uint64_t cached = 0;
+  std::istringstream(proc_word((group / "memory.stat").c_str(), "inactive_file")) >> cached;
+  const std::uint64_t used = number_in(group / "memory.current");
+  return used > limit + cached ? 0 : limit + cached - used;
+}
+
 }  // namespace
+
+std::uint64_t available_memory_bytes() {
+  std::istringstream field(proc_field("/proc/meminfo", "MemAvailable"));  // "123456 kB"
+  std::uint64_t kib = 0;
+  field >> kib;
+  return std::min(kib * 1024, room_in_group());
+}
+
+std::uint64_t resident_memory_bytes() {
+  std::istringstream field(proc_field("/proc/self/status", "VmRSS"));  // "123456 kB"
+  std::uint64_t kib = 0;
+  field >> kib;
+  return kib * 1024;
+}
+
+std::uint64_t out_of_memory_kills() {
+  std::uint64_t kills = 0;
+  std::istringstream(proc_word("/proc/vmstat", "oom_kill")) >> kills;
+  return kills;
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  ::gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
 
 Machine this_machine() {
   Machine machine;

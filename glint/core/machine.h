@@ -21,6 +21,17 @@ Machine this_machine();
 // Free bytes of the disk that holds `folder` (or its nearest existing parent); 0: unknown.
 std::uint64_t free_disk_bytes(const fs::path& folder);
 
+// Bytes that this process may still take without paging: of the machine, or of the control group
+// that it runs in, whichever is less.
+std::uint64_t available_memory_bytes();
+
+std::uint64_t resident_memory_bytes();  // of this process, now
+
+// How often the kernel has ended a process for want of memory since the machine started.
+std::uint64_t out_of_memory_kills();
+
+std::string host_name();
+
 // Highest resident memory of this process since the last reset, in megabytes (10^6 bytes).
 void reset_peak_memory();
 double peak_memory_mb();

@@ -5,14 +5,24 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 
 #include "glint/core/printable.h"
 
 namespace glint {
 
 namespace {
+
 bool quiet = false;
+
+bool reaches_terminal() {
+  const std::string setting = kDrawnProgress;
+  const std::size_t equals = setting.find('=');
+  const char* value = std::getenv(setting.substr(0, equals).c_str());
+  return ::isatty(STDERR_FILENO) != 0 || (value != nullptr && setting.substr(equals + 1) == value);
 }
+
+}  // namespace
 
 void set_quiet(bool value) { quiet = value; }
 bool is_quiet() { return quiet; }
@@ -36,7 +46,7 @@ Progress::Progress(std::string title, std::size_t total)
       total_(total),
       start_(std::chrono::steady_clock::now()),
       last_draw_(start_),
-      terminal_(::isatty(STDERR_FILENO) != 0) {}
+      terminal_(reaches_terminal()) {}
 
 Progress::~Progress() { draw(last_note_, true); }
 

@@ -11,6 +11,10 @@
 
 namespace glint {
 
+// A setting of the environment for programs whose standard error reaches a terminal by way of this
+// one.
+inline constexpr const char* kDrawnProgress = "GLINT_PROGRESS=drawn";
+
 void set_quiet(bool quiet);  // silences progress and log::info; warnings stay
 bool is_quiet();
 

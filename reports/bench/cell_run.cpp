@@ -2,18 +2,21 @@
 #include "reports/bench/cell_run.h"
 
 #include <chrono>
-#include <new>
+#include <limits>
 
 #include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
+#include "glint/core/machine.h"
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf_volume.h"
 #include "metrics/metric.h"
 #include "reports/bench/evaluate.h"
+#include "reports/bench/memory_estimate.h"
 #include "reports/bench/mesh_stage.h"
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stages.h"
 #include "reports/records/environment.h"
+#include "reports/records/failure_kinds.h"
 
 namespace glint {
 
@@ -75,7 +78,12 @@ Record record_of(const PlanCell& cell, const RunnerOptions& options) {
 }
 
 Failure failure_of(const std::exception& error, const std::string& stage, const fs::path& run) {
-  return {stage, failure_kind(error, stage), error.what(), log_tail(run)};
+  return {
+      stage,
+      std::string(failure_kind(error, stage)),
+      error.what(),
+      log_tail(run),
+      run.empty() ? -1 : last_iteration(run)};
 }
 
 // Makes the meshes. A run whose depth gives none has its other numbers all the same; empty: made.
@@ -113,9 +121,12 @@ class CellRun {
     record_.score_key = stages[Stage::kScore].key();
   }
 
-  Record run(const Record* earlier) {
+  Record run(const std::vector<Record>& records) {
+    const Record* earlier = find_record(records, record_.cell);
     if (earlier && earlier->ok()) keep_timings(*earlier);
     try {
+      enter(Stage::kTrain);
+      if (!stages_[Stage::kTrain].done) check_memory(records);
       run_stages();
     } catch (const Interrupted&) {
       throw;
@@ -137,8 +148,15 @@ class CellRun {
           record_.timings[name] = *found;
   }
 
+  void check_memory(const std::vector<Record>& records) {
+    const Json config = create_method(spec_.method, spec_.config)->config();
+    const auto max_surfels = config.value("max_surfels", std::numeric_limits<std::size_t>::max());
+    const MemoryEstimate estimate = estimate_memory(spec_.method, scene_, max_surfels, records);
+    record_.estimated_memory_mb = estimate.bytes / 1e6;
+    check_fits(estimate, available_memory_bytes() + resident_memory_bytes());
+  }
+
   void run_stages() {
-    enter(Stage::kTrain);
     method_ = stages_[Stage::kTrain].done ? load_trained(spec_) : train_stage(spec_, scene_);
     run(Stage::kRender, [&] {
       render_stage(spec_, scene_, *method_);
@@ -203,36 +221,21 @@ Record run_cell(
     const RunnerOptions& options,
     const LoadedScene& loaded,
     const CellStages& stages,
-    const Record* earlier
+    const std::vector<Record>& records
 ) {
-  return CellRun(cell, options, loaded, stages).run(earlier);
+  return CellRun(cell, options, loaded, stages).run(records);
 }
 
 Record record_without_data(
     const PlanCell& cell, const RunnerOptions& options, const std::exception& error
 ) {
-  Record record = record_of(cell, options);
-  record.failure = failure_of(error, "data", {});
-  return record;
+  return failed_record(cell, options, failure_of(error, "data", {}));
 }
 
-std::string failure_kind(const std::exception& error, const std::string& stage) {
-  if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const OutOfMemory*>(&error))
-    return "out-of-memory";
-  const auto* ours = dynamic_cast<const Error*>(&error);
-  if (!ours) return "unknown";
-  switch (ours->code()) {
-    case ExitCode::kBadPrediction:
-      return stage == "train" ? "not-finite" : "bad-input";
-    case ExitCode::kBadReference:
-      return "bad-input";
-    case ExitCode::kUsage:
-      return "usage";
-    case ExitCode::kEnvironment:
-      return "environment";
-    default:
-      return "unknown";
-  }
+Record failed_record(const PlanCell& cell, const RunnerOptions& options, Failure failure) {
+  Record record = record_of(cell, options);
+  record.failure = std::move(failure);
+  return record;
 }
 
 }  // namespace glint

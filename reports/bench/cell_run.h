@@ -7,14 +7,15 @@
 
 namespace glint {
 
-// `earlier`: the cell's last record, or null. What fails becomes part of the record. Errors:
-// Interrupted passes through, an unfinished cell leaves no record.
+// `records`: of cells that have ended before, the cell's own last one among them. What fails
+// becomes part of the record. Errors: Interrupted passes through, an unfinished cell leaves no
+// record.
 Record run_cell(
     const PlanCell& cell,
     const RunnerOptions& options,
     const LoadedScene& loaded,
     const CellStages& stages,
-    const Record* earlier
+    const std::vector<Record>& records
 );
 
 // Of a cell whose data cannot be had.
@@ -22,8 +23,7 @@ Record record_without_data(
     const PlanCell& cell, const RunnerOptions& options, const std::exception& error
 );
 
-// Of a failure in `stage`: "bad-input", "usage", "environment", "not-finite" (training diverged),
-// "out-of-memory", "unknown".
-std::string failure_kind(const std::exception& error, const std::string& stage);
+// Of a cell that failed in some other way: its process did not come so far as to say so.
+Record failed_record(const PlanCell& cell, const RunnerOptions& options, Failure failure);
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 #include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
 #include "reports/bench/cell_run.h"
+#include "reports/records/merge_runs.h"
 #include "reports/records/run_folder.h"
 
 namespace glint {
@@ -36,6 +37,10 @@ class Runner {
   }
 
  private:
+  bool has_failed_enough() const {
+    return options_.max_failures > 0 && summary_.failed >= options_.max_failures;
+  }
+
   // Others write, too.
   void read_new_records() {
     std::error_code code;
@@ -48,7 +53,11 @@ class Runner {
   // False: another process is at it.
   bool try_one(const std::string& place, const PlanCell& cell) {
     throw_if_interrupted();
-    log::info(place + cell.cell.text());
+    if (has_failed_enough()) {
+      ++summary_.not_begun;
+      return true;
+    }
+    if (!options_.announced) log::info(place + cell.cell.text());
     const auto lock = FileLock::take(FileLock::file_beside(run_folder(options_.out, cell.cell)));
     if (const auto* holder = std::get_if<std::string>(&lock)) {
       log::info("  left to " + *holder);
@@ -74,7 +83,7 @@ class Runner {
       return finish(record_without_data(cell, options_, error));
     }
     log::info("  " + stages.why());
-    finish(run_cell(cell, options_, loaded_, stages, find_record(records_, cell.cell)));
+    finish(run_cell(cell, options_, loaded_, stages, records_));
   }
 
   CellStages stages_of(const PlanCell& cell) const {
@@ -110,13 +119,17 @@ class Runner {
   void finish(const Record& record) {
     append_record(records_file_, record);
     if (record.ok()) {
+      write_file(
+          run_folder(options_.out, record.cell) / kRecordFile, record_to_json(record).dump() + "\n"
+      );
       ++summary_.ran;
       return;
     }
     ++summary_.failed;
-    log::warn(fmt::format(
-        "{} failed in {}: {}", record.cell.text(), record.failure->stage, record.failure->message
-    ));
+    if (!options_.announced)
+      log::warn(fmt::format(
+          "{} failed in {}: {}", record.cell.text(), record.failure->stage, record.failure->message
+      ));
   }
 
   const RunnerOptions& options_;

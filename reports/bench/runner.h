@@ -15,6 +15,8 @@ struct RunnerOptions {
   fs::path out;                          // the profile's folder: records.jsonl, runs/, tables/
   bool force = false;                    // run finished cells again, training included
   double checkpoint_seconds = 300;       // between checkpoints of a training
+  int max_failures = 0;                  // no cell begins after so many have failed; 0: any
+  bool announced = false;                // somebody else has named the cell: no line about that
   SceneIdentifier identify;
   SceneLoader load;
 };
@@ -22,6 +24,8 @@ struct RunnerOptions {
 struct RunSummary {
   int ran = 0, reused = 0, failed = 0;
   int elsewhere = 0;  // another process was at them until the end
+  int not_begun = 0;  // left because of an interrupt, or of too many failures
+  int submitted = 0;  // handed to a cluster, which runs them later
   bool interrupted = false;
 };
 

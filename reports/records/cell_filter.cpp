@@ -65,6 +65,8 @@ bool any_glob_matches(const std::vector<std::string>& globs, const std::string& 
 bool filter_accepts(const CellFilter& filter, const CellKey& cell) {
   return (filter.methods.empty() || any_glob_matches(filter.methods, cell.method)) &&
          (filter.only.empty() || matches_cell(filter.only, cell)) &&
+         (filter.cells.empty() ||
+          std::find(filter.cells.begin(), filter.cells.end(), cell.text()) != filter.cells.end()) &&
          !matches_cell(filter.skip, cell);
 }
 

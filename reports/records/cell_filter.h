@@ -12,8 +12,9 @@ namespace glint {
 struct CellFilter {
   std::vector<std::string> only = {}, skip = {};  // globs; empty `only`: all
   std::vector<std::string> methods = {};          // globs of methods; empty: all
+  std::vector<std::string> cells = {};            // "scene/method/seed" as they are; empty: all
 
-  bool empty() const { return only.empty() && skip.empty() && methods.empty(); }
+  bool empty() const { return only.empty() && skip.empty() && methods.empty() && cells.empty(); }
 };
 
 bool any_glob_matches(const std::vector<std::string>& globs, const std::string& text);

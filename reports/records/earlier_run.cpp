@@ -25,6 +25,7 @@ constexpr std::array kTopFiles = {
     "mesh.json",
     "mesh.ply",
     "mesh_transmission.ply",
+    "record.json",
     "strip.png"};
 constexpr std::array kRenderFolders = {"renders", "renders_train"};
 

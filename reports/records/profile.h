@@ -48,6 +48,7 @@ struct Profile {
   std::vector<std::string> methods;  // ids
   std::vector<std::uint64_t> seeds{0};
   int timing_frames = 50, timing_warmup = 5;
+  int gpus = 0;                        // that a cell asks a cluster for
   Json defaults = Json::object();      // SceneSource fields shared by all scenes
   Json scenes = Json::array();         // names, or objects with SceneSource fields
   Json overrides = Json::object();     // method id -> config fields
@@ -62,6 +63,7 @@ struct Profile {
     v("seeds", seeds, "seeds of training");
     v("timing_frames", timing_frames, "frames timed for FPS");
     v("timing_warmup", timing_warmup, "frames before the clock starts");
+    v("gpus", gpus, "that a cell asks a cluster for");
     v("defaults", defaults, "scene fields shared by all scenes");
     v("scenes", scenes, "names, or tables of scene fields");
     v("overrides", overrides, "config fields by method");

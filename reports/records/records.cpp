@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "glint/core/progress.h"
@@ -27,6 +29,7 @@ void visit_fields(R& record, V&& v) {
   v("score_key", record.score_key);
   v("dataset_hash", record.dataset_hash);
   v("num_surfels", record.num_surfels);
+  v("estimated_memory_mb", record.estimated_memory_mb);
   v("warnings", record.warnings);
   v("notes", record.notes);
   v("not_measured", record.not_measured);
@@ -41,6 +44,9 @@ void visit_failure(F& failure, V&& v) {
   v("kind", failure.kind);
   v("message", failure.message);
   v("log_tail", failure.log_tail);
+  v("iteration", failure.iteration);
+  v("attempts", failure.attempts);
+  v("output_tail", failure.output_tail);
 }
 
 auto reader_of(const Json& json) {
@@ -80,6 +86,13 @@ void check_names(const CellKey& cell, std::string_view where) {
   };
   check("scene", cell.scene);
   check("method", cell.method);
+}
+
+std::string end_of_file(const fs::path& file, std::uintmax_t from_byte) {
+  if (from_byte == 0) return read_file(file);
+  std::ifstream in(file, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(from_byte));
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 // The last record of a cell wins and keeps the cell's place.
@@ -145,12 +158,12 @@ void append_record(const fs::path& file, const Record& record) {
   append_line(file, record_to_json(record).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-std::vector<Record> read_records(const fs::path& file) {
+std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte) {
   if (!fs::exists(file)) return {};
   RecordList records;
-  const std::string content =
-      with_exit_code(ExitCode::kBadPrediction, [&] { return read_file(file); });
-  std::istringstream lines(content);
+  std::istringstream lines(with_exit_code(ExitCode::kBadPrediction, [&] {
+    return end_of_file(file, from_byte);
+  }));
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     const std::string where = fmt::format("{}:{}", file.string(), ++number);

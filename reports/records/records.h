@@ -27,10 +27,12 @@ struct CellKey {
 
 struct Failure {
   std::string stage;  // of stage_name(): "data", "train", "render", "mesh", "score"
-  std::string
-      kind;  // "bad-input", "usage", "environment", "not-finite", "out-of-memory", "unknown"
+  std::string kind;   // of failure_kinds(): "not-finite", "crash", ...
   std::string message;
-  std::vector<std::string> log_tail;  // last lines of log.jsonl
+  std::vector<std::string> log_tail;          // last lines of log.jsonl
+  int iteration = -1;                         // that the training had reached; -1: none is known
+  int attempts = 1;                           // that failed one after the other
+  std::vector<std::string> output_tail = {};  // last lines that its process wrote, if it crashed
 };
 
 struct Record {
@@ -47,6 +49,7 @@ struct Record {
   std::string train_key, score_key;
   std::string dataset_hash;  // as the loader knows the data
   std::size_t num_surfels = 0;
+  double estimated_memory_mb = 0;     // before its training; metrics have what it really took
   std::vector<std::string> warnings;  // of the method: losses off, missing priors
   std::vector<std::string> notes;     // of the method, for readers of tables: which masks it got
   Json timings = Json::object();      // stage -> seconds
@@ -64,8 +67,9 @@ void append_record(const fs::path& file, const Record& record);
 
 // All cells of a file, the last record of each winning, in the order of the first appearance. Lines
 // torn by a crash while appending are reported and skipped; no file means no records.
-// Errors (kBadPrediction): a line that is JSON but no record, a newer schema.
-std::vector<Record> read_records(const fs::path& file);
+// `from_byte`: only what was appended since the file had that size. Errors (kBadPrediction): a line
+// that is JSON but no record, a newer schema.
+std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte = 0);
 
 const Record* find_record(const std::vector<Record>& records, const CellKey& cell);
 

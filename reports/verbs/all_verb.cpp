@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
-#include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
-#include "reports/bench/runner.h"
 #include "reports/figures/figures.h"
 #include "reports/verbs/report_verb.h"
 #include "reports/verbs/result_tables.h"
+#include "reports/verbs/run_options.h"
 
 namespace glint {
 
 namespace {
-
-int exit_code_of(const RunSummary& summary) {
-  if (summary.interrupted) return interrupted_exit();
-  const bool partial = summary.failed > 0 || summary.elsewhere > 0;
-  return static_cast<int>(partial ? ExitCode::kPartial : ExitCode::kSuccess);
-}
 
 void print_summary_json(
     const RunSummary& summary,
@@ -24,61 +17,58 @@ void print_summary_json(
     const fs::path& page,
     const std::vector<Table>& tables
 ) {
-  Json json = {
-      {"folder", folder.string()},
-      {"page", page.string()},
-      {"ran", summary.ran},
-      {"reused", summary.reused},
-      {"failed", summary.failed},
-      {"elsewhere", summary.elsewhere},
-      {"interrupted", summary.interrupted}};
+  Json json = summary_json(summary);
+  json["folder"] = folder.string();
+  json["page"] = page.string();
   json["tables"] = Json::array();
   for (const Table& table : tables) json["tables"].push_back(table_json(table));
   print_json(json);
 }
 
-int run_all(const CommonOptions& common, bool force) {
-  install_interrupt_handler();
-  RunnerOptions options;
-  options.profile = common.resolved_profile();
-  options.filter = common.filter();
-  options.assignments = common.set;
-  options.out = common.own_folder(options.profile);
-  options.force = force;
-  options.checkpoint_seconds = common.checkpoint_seconds;
-  options.identify = common.scene_identifier();
-  options.load = common.scene_loader();
-  const RunSummary summary = run_profile(options);
-  const auto tables = result_tables(options.out);
-  write_tables(options.out, tables);
-  if (write_figures.here()) write_figures({options.out, load_run_data});
-  const fs::path page = write_report(common, options.out, tables);
+// A cluster has the cells; its last job makes the tables.
+int handed_over(const CommonOptions& common, const fs::path& folder, const RunSummary& summary) {
+  Json json = summary_json(summary);
+  json["folder"] = folder.string();
+  if (common.json) print_json(json);
+  log::info(fmt::format(
+      "{} cells submitted, {} done before; `status` shows how far they are, tables will be in {}",
+      summary.submitted,
+      summary.reused,
+      (folder / "tables").string()
+  ));
+  return 0;
+}
+
+int run_all(const CommonOptions& common, const CellRunOptions& how) {
+  const RunSummary summary = run_cells(common, how, runner_options(common, how));
+  const fs::path folder = common.own_folder(common.resolved_profile());
+  if (summary.submitted > 0) return handed_over(common, folder, summary);
+  const auto tables = result_tables(folder);
+  write_tables(folder, tables);
+  if (write_figures.here()) write_figures({folder, load_run_data});
+  const fs::path page = write_report(common, folder, tables);
   if (common.json)
-    print_summary_json(summary, options.out, page, tables);
+    print_summary_json(summary, folder, page, tables);
   else
     print_tables(tables);
   log::info(fmt::format(
-      "{} run, {} reused, {} failed{}{}; tables in {}, page {}",
-      summary.ran,
-      summary.reused,
-      summary.failed,
-      summary.elsewhere > 0 ? fmt::format(", {} left to other processes", summary.elsewhere) : "",
-      summary.interrupted ? ", interrupted (the same command goes on)" : "",
-      (options.out / "tables").string(),
+      "{}; tables in {}, page {}",
+      summary_text(summary),
+      (folder / "tables").string(),
       page.string()
   ));
   return exit_code_of(summary);
 }
 
 void add_all_verb(CommandLine& line) {
-  auto force = std::make_shared<bool>(false);
+  auto how = std::make_shared<CellRunOptions>();
   CLI::App* verb = line.add_verb(
       line.app,
       "all",
       "run every cell of a profile, print the tables and write the report",
-      [&line, force] { return run_all(line.common, *force); }
+      [&line, how] { return run_all(line.common, *how); }
   );
-  verb->add_flag("--force", *force, "run finished cells again, training included");
+  add_cell_run_options(*verb, *how);
 }
 
 }  // namespace

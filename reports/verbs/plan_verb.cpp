@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <tuple>
 
@@ -152,9 +153,19 @@ Json plan_json(const std::vector<PlanRow>& rows) {
   return {{"cells", json}};
 }
 
-int run_plan(const CommonOptions& common) {
+// For engines that start `run --cell` or `run --tasks`.
+int print_tasks(const std::vector<PlannedCell>& cells) {
+  std::string text;
+  for (const PlannedCell& cell : cells)
+    if (!cell.stages.done()) text += cell.cell.cell.text() + "\n";
+  print_text(text);
+  return 0;
+}
+
+int run_plan(const CommonOptions& common, bool tasks) {
   const Profile profile = common.resolved_profile();
   const auto records = read_records(common.records_file(profile));
+  if (tasks) return print_tasks(planned_cells(common, profile, records));
   const auto rows = plan_rows(planned_cells(common, profile, records), records, profile);
   if (common.json)
     print_json(plan_json(rows));
@@ -164,13 +175,15 @@ int run_plan(const CommonOptions& common) {
 }
 
 void add_plan_verb(CommandLine& line) {
-  line.add_verb(
+  auto tasks = std::make_shared<bool>(false);
+  CLI::App* verb = line.add_verb(
       line.app,
       "plan",
       "list the cells that `all` would run: which stages are done, and why the others are not",
-      [&line] { return run_plan(line.common); },
+      [&line, tasks] { return run_plan(line.common, *tasks); },
       kPlanOptions
   );
+  verb->add_flag("--tasks", *tasks, "only the names of the cells that are not done, one a line");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <map>
 
 #include "glint/core/progress.h"
+#include "reports/executors/slurm_jobs.h"
 #include "reports/records/run_folder.h"
 #include "reports/verbs/planned_cells.h"
 
@@ -12,6 +13,7 @@ namespace {
 struct StatusRow {
   CellKey cell;
   std::string state;   // PlannedCell's; "started" and "trained" for cells without a record
+  std::string job;     // what a cluster says of its last job: "RUNNING 1234_7 on node3, 12:30"
   std::string detail;  // PSNR of a finished cell, failure, last logged step, what has changed
 };
 
@@ -28,12 +30,16 @@ std::string last_step(const fs::path& run) {
 }
 
 StatusRow status_of(const PlannedCell& planned, const fs::path& folder) {
-  StatusRow row{planned.cell.cell, planned.state(), planned.stages.why()};
+  StatusRow row{planned.cell.cell, planned.state(), "", planned.stages.why()};
   if (row.state == "done" && planned.record->metrics.count("psnr"))
     row.detail = fmt::format("PSNR {:.2f}", planned.record->metrics.at("psnr"));
   if (row.state == "failed")
-    row.detail =
-        fmt::format("{}: {}", planned.record->failure->stage, planned.record->failure->message);
+    row.detail = fmt::format(
+        "{} ({}): {}",
+        planned.record->failure->stage,
+        planned.record->failure->kind,
+        planned.record->failure->message
+    );
   const fs::path run = run_folder(folder, row.cell);
   if (row.state == "pending" && fs::exists(run / "config.json")) {
     row.state = fs::exists(run / "env.json") ? "trained" : "started";
@@ -50,6 +56,7 @@ Json status_json(const std::vector<StatusRow>& rows) {
          {"method", row.cell.method},
          {"seed", row.cell.seed},
          {"state", row.state},
+         {"job", row.job},
          {"detail", row.detail}}
     );
   return json;
@@ -59,7 +66,7 @@ std::string status_text(const std::vector<StatusRow>& rows) {
   std::vector<std::vector<std::string>> lines;
   std::map<std::string, int> counts;
   for (const StatusRow& row : rows) {
-    lines.push_back({row.cell.text(), row.state, row.detail});
+    lines.push_back({row.cell.text(), row.state, row.detail, row.job});
     ++counts[row.state];
   }
   std::string text = aligned_rows(lines), summary;
@@ -72,9 +79,13 @@ int run_status(const CommonOptions& common) {
   const Profile profile = common.resolved_profile();
   const fs::path folder = common.own_folder(profile);
   const auto records = read_records(folder / "records.jsonl");
+  const auto states = slurm_states(folder);
   std::vector<StatusRow> rows;
-  for (const PlannedCell& planned : planned_cells(common, profile, records))
+  for (const PlannedCell& planned : planned_cells(common, profile, records)) {
     rows.push_back(status_of(planned, folder));
+    if (const auto state = states.find(rows.back().cell.text()); state != states.end())
+      rows.back().job = state->second.text();
+  }
   if (common.json)
     print_json(status_json(rows));
   else

@@ -2,9 +2,14 @@
 // A scene and methods that take no time, for tests of what runs them.
 #pragma once
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
 #include <limits>
+#include <new>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "glint/core/device_lost.h"
@@ -15,7 +20,8 @@ namespace glint {
 
 struct FakeConfig {
   float grey = 0.5f;  // of every rendered pixel
-  std::string fails;  // "", "initialize", "step", "loss", "render", "device"
+  // "", "initialize", "step", "loss", "render", "device", or one of what ends a process (end_by)
+  std::string fails;
   template <class V>
   void visit(V&& v) {
     v("grey", grey, "colour");
@@ -36,6 +42,8 @@ class FakeMethod final : public Method {
   StepStats step(int iteration) override {
     fail_at("step");
     if (config_.fails == "device") throw DeviceLost("fake device lost");
+    if (iteration == 5) end_by(config_.fails);
+    if (config_.fails == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(10));
     StepStats stats;
     stats.iteration = iteration;
     stats.loss = config_.fails == "loss" ? std::numeric_limits<double>::quiet_NaN() : 0.1;
@@ -74,6 +82,20 @@ class FakeMethod final : public Method {
   void fail_at(const std::string& place) const {
     if (config_.fails == place) throw std::runtime_error("fake failure in " + place);
   }
+  static void end_by(const std::string& how) {
+    if (how == "memory") throw std::bad_alloc();
+    if (how == "full") throw DiskFull("fake disk full");
+    if (how == "weights") throw MissingWeights("fake weights");
+    if (how == "kill") std::raise(SIGKILL);
+    if (how == "term") std::raise(SIGTERM);
+    if (how == "abort") std::abort();
+    // Of the process that runs the first try.
+    static const char* out = std::getenv("GLINT_TEST_OUT");
+    if (how != "abort once" || out == nullptr || fs::exists(fs::path(out) / "once")) return;
+    write_file(fs::path(out) / "once", "");
+    std::abort();
+  }
+
   FakeConfig config_;
 };
 

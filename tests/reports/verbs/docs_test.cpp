@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "reports/records/failure_kinds.h"
 #include "reports/records/profile.h"
 #include "reports/verbs/verb.h"
 
@@ -75,4 +76,17 @@ TEST_CASE("docs/JSON.md has every verb that prints JSON, and no other") {
   CHECK(verbs.contains("plan"));
   CHECK(verbs.contains("dataset info"));
   CHECK(first_cells(doc("JSON.md")) == verbs);
+}
+
+TEST_CASE("docs/RUNNING.md has every kind of failure with its tries, and no other") {
+  const std::string failures = section(doc("RUNNING.md"), "## Failures");
+  std::set<std::string> kinds;
+  for (const FailureKind& kind : failure_kinds()) {
+    kinds.insert(std::string(kind.id));
+    std::istringstream lines(failures);
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with(fmt::format("| `{}`", kind.id)))
+        CHECK_THAT(line, Catch::Contains(fmt::format("| {}", kind.retries)));
+  }
+  CHECK(first_cells(failures) == kinds);
 }

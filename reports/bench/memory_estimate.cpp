@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "reports/bench/memory_estimate.h"
+
+#include <algorithm>
+
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+// The program, its libraries and what they keep.
+constexpr double kProgramBytes = 60e6;
+// A value, its gradient and its two moments, of 58 values a surfel with SH degree 3, and the lists
+// and trees over them.
+constexpr double kBytesPerSurfel = 4 * 58 * sizeof(float) + 250;
+constexpr double kSets = 3;               // interface, transmission, reflection
+constexpr double kPixelsPerSurfel = 1.5;  // what rooms train to
+// Maps that a step keeps for its way back, losses and pictures of features.
+constexpr double kBytesPerPixel = 1500;
+
+double pixels_of(const Scene& scene) {
+  double most = 0;
+  for (const auto* views : {&scene.train, &scene.test})
+    for (const View& view : *views)
+      most = std::max(most, double(view.camera.width) * view.camera.height);
+  return most;
+}
+
+std::string resolution_of(const Scene& scene) {
+  if (scene.test.empty()) return "";
+  const Camera& camera = scene.test.front().camera;
+  return fmt::format("{}x{}", camera.width, camera.height);
+}
+
+double bytes_of(const Image& image) {
+  return double(image.num_pixels()) * image.channels() * sizeof(float);
+}
+
+double bytes_of(const MapSet& maps) {
+  double bytes = 0;
+  maps.for_each([&](const MapRow&, const Image& map) { bytes += bytes_of(map); });
+  return bytes;
+}
+
+std::string gib(double bytes) { return fmt::format("{:.2f} GiB", bytes / (1 << 30)); }
+
+}  // namespace
+
+double image_bytes(const Scene& scene) {
+  double bytes = 0;
+  for (const auto* views : {&scene.train, &scene.test})
+    for (const View& view : *views)
+      bytes += bytes_of(view.rgb) + bytes_of(view.priors) + bytes_of(view.truth);
+  return bytes;
+}
+
+MemoryEstimate estimate_memory(
+    const std::string& method,
+    const Scene& scene,
+    std::size_t max_surfels,
+    const std::vector<Record>& records
+) {
+  double most = 0;
+  for (const Record& record : records)
+    if (const auto peak = record.metrics.find("peak-memory");
+        record.ok() && record.cell.method == method && peak != record.metrics.end() &&
+        record.resolution == resolution_of(scene))
+      most = std::max(most, peak->second * 1e6);
+  if (most > 0) return {most, "what such cells took before"};
+  const double pixels = pixels_of(scene);
+  const double surfels = std::min(
+      double(max_surfels),
+      std::max(double(scene.points.positions.size()), pixels / kPixelsPerSurfel)
+  );
+  const double bytes = kProgramBytes + image_bytes(scene) + kBytesPerPixel * pixels +
+                       kSets * kBytesPerSurfel * surfels;
+  return {bytes, "its images and surfels"};
+}
+
+void check_fits(const MemoryEstimate& estimate, std::uint64_t available) {
+  if (estimate.bytes <= static_cast<double>(available)) return;
+  throw OutOfMemory(fmt::format(
+      "needs about {} (by {}), {} are free; fewer --jobs, a smaller max_pixels of the scene or "
+      "max_surfels of the method",
+      gib(estimate.bytes),
+      estimate.from,
+      gib(static_cast<double>(available))
+  ));
+}
+
+}  // namespace glint

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "reports/executors/child_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <utility>
+
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+// Pointers to words, as exec() takes them.
+std::vector<char*> pointers_to(const std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+// A setting stands in for one of the same name.
+std::vector<std::string> environment_with(const std::vector<std::string>& settings) {
+  std::vector<std::string> all = settings;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string text = *entry, name = text.substr(0, text.find('=') + 1);
+    bool replaced = false;
+    for (const std::string& setting : settings) replaced = replaced || setting.starts_with(name);
+    if (!replaced) all.push_back(text);
+  }
+  return all;
+}
+
+struct Pipe {
+  int read = -1, write = -1;
+  Pipe() {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) == 0) read = ends[0], write = ends[1];
+  }
+};
+
+// Between fork() and exec() only calls that are safe in a signal handler are allowed.
+[[noreturn]] void become(
+    char* const* words, char* const* environment, int output, int failure, pid_t parent
+) {
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (::getppid() != parent) ::_exit(127);  // it has ended already
+  const int score = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (score >= 0) {
+    [[maybe_unused]] const auto written = ::write(score, "500", 3);
+    ::close(score);
+  }
+  ::dup2(output, STDOUT_FILENO);
+  ::dup2(output, STDERR_FILENO);
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  if (nothing >= 0) ::dup2(nothing, STDIN_FILENO);
+  environ = const_cast<char**>(environment);
+  ::execvp(words[0], words);
+  const int why = errno;
+  [[maybe_unused]] const auto written = ::write(failure, &why, sizeof why);
+  ::_exit(127);
+}
+
+// errno of an exec() that failed, 0 of one that did not: then the pipe has closed by itself.
+int wait_for_exec(int failure) {
+  int why = 0;
+  while (::read(failure, &why, sizeof why) < 0 && errno == EINTR) {
+  }
+  ::close(failure);
+  return why;
+}
+
+ProcessEnd end_of(int status) {
+  if (WIFSIGNALED(status)) return {0, WTERMSIG(status)};
+  return {WEXITSTATUS(status), 0};
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const Words& words, const Words& settings) {
+  const std::vector<std::string> environment = environment_with(settings);
+  const auto word_pointers = pointers_to(words), environment_pointers = pointers_to(environment);
+  const Pipe output, failure;
+  const pid_t parent = ::getpid();
+  id_ = output.write < 0 || failure.write < 0 ? -1 : ::fork();
+  const int no_process = errno;
+  if (id_ == 0)
+    become(word_pointers.data(), environment_pointers.data(), output.write, failure.write, parent);
+  ::close(output.write);
+  ::close(failure.write);
+  output_ = output.read;
+  const int why = id_ < 0 ? no_process : wait_for_exec(failure.read);
+  if (why == 0) {
+    ::fcntl(output_, F_SETFL, O_NONBLOCK);
+    return;
+  }
+  if (id_ > 0) ::waitpid(id_, nullptr, 0);
+  ::close(output_);
+  id_ = output_ = -1;
+  throw Error(
+      ExitCode::kEnvironment,
+      fmt::format("{}: cannot be started ({})", words.at(0), std::strerror(why))
+  );
+}
+
+ChildProcess::ChildProcess(ChildProcess&& other) noexcept
+    : id_(std::exchange(other.id_, -1)),
+      output_(std::exchange(other.output_, -1)),
+      end_(std::move(other.end_)) {}
+
+ChildProcess::~ChildProcess() {
+  if (output_ >= 0) ::close(output_);
+  if (id_ < 0 || end_) return;
+  ::kill(-id_, SIGKILL);
+  ::waitpid(id_, nullptr, 0);
+}
+
+std::string ChildProcess::read() {
+  std::array<char, 4096> block{};
+  std::string text;
+  while (output_ >= 0) {
+    const ssize_t bytes = ::read(output_, block.data(), block.size());
+    if (bytes > 0) {
+      text.append(block.data(), static_cast<std::size_t>(bytes));
+      continue;
+    }
+    const bool later = bytes < 0 && (errno == EAGAIN || errno == EINTR);
+    if (!later) ::close(std::exchange(output_, -1));
+    break;
+  }
+  return text;
+}
+
+// To the whole group: what the child started goes with it.
+void ChildProcess::send(int signal) const {
+  if (id_ > 0 && !end_) ::kill(-id_, signal);
+}
+
+std::optional<ProcessEnd> ChildProcess::end() {
+  if (end_ || id_ < 0) return end_;
+  int status = 0;
+  const pid_t ended = ::waitpid(id_, &status, WNOHANG);
+  if (ended == id_) end_ = end_of(status);
+  if (ended < 0 && errno == ECHILD) end_ = ProcessEnd{};
+  return end_;
+}
+
+std::optional<CommandResult> run_command(const ChildProcess::Words& words) {
+  try {
+    ChildProcess child(words);
+    CommandResult result;
+    while (child.output() >= 0) {
+      pollfd waiting{child.output(), POLLIN, 0};
+      ::poll(&waiting, 1, -1);
+      result.output += child.read();
+    }
+    while (!child.end()) ::usleep(1000);
+    result.end = *child.end();
+    return result;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+std::string signal_name(int signal) {
+  const char* name = ::sigabbrev_np(signal);
+  return name != nullptr ? fmt::format("SIG{}", name) : fmt::format("signal {}", signal);
+}
+
+}  // namespace glint

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "reports/verbs/run_options.h"
+
+#include <cstdlib>
+
+#include "glint/core/interrupt.h"
+#include "glint/core/parallel.h"
+
+namespace glint {
+namespace {
+
+// This program, even where it has been replaced or moved meanwhile.
+constexpr const char* kThisProgram = "/proc/self/exe";
+
+using Words = std::vector<std::string>;
+
+// Which profile, where its results and data lie, and how its cells are trained.
+Words profile_words(const CommonOptions& common) {
+  Words words = {"--profile", common.profile, "--out", common.out};
+  if (common.quiet) words.emplace_back("--quiet");
+  return words;
+}
+
+Words run_words(const CommonOptions& common) {
+  Words words = {
+      "--data",
+      common.data,
+      "--device",
+      common.device,
+      "--checkpoint-seconds",
+      fmt::format("{}", common.checkpoint_seconds)};
+  const auto add = [&](const char* option, const std::string& value) {
+    words.insert(words.end(), {option, value});
+  };
+  if (common.iterations > 0) add("--iterations", std::to_string(common.iterations));
+  for (const std::string& assignment : common.set) add("--set", assignment);
+  return words;
+}
+
+// One cell in this process's place.
+Words words_of_cell(
+    const CommonOptions& common,
+    const CellRunOptions& how,
+    const CellKey& cell,
+    bool force,
+    int threads
+) {
+  Words words = {kThisProgram, "run", "--executor", "inline"};
+  for (const Words& more :
+       {profile_words(common),
+        run_words(common),
+        Words{"--cell", cell.text(), "--methods", cell.method},
+        Words{"--seed", std::to_string(cell.seed), "--threads", std::to_string(threads)}})
+    words.insert(words.end(), more.begin(), more.end());
+  if (force) words.emplace_back("--force");
+  if (!common.quiet && how.jobs > 1) words.emplace_back("--quiet");
+  return words;
+}
+
+// What an engine elsewhere has to be told beside the profile, so that it plans the same cells.
+Words words_of_choice(const CommonOptions& common, const CellRunOptions& how) {
+  Words words = run_words(common);
+  for (const std::string& method : common.methods) words.insert(words.end(), {"--methods", method});
+  if (common.seed) words.insert(words.end(), {"--seed", std::to_string(*common.seed)});
+  if (common.threads > 0) words.insert(words.end(), {"--threads", std::to_string(common.threads)});
+  if (!how.time_limit.empty()) words.insert(words.end(), {"--time-limit", how.time_limit});
+  if (how.force) words.emplace_back("--force");
+  return words;
+}
+
+ExecutorOptions executor_options(const CommonOptions& common, const CellRunOptions& how) {
+  ExecutorOptions options;
+  options.jobs = how.jobs;
+  options.time_limit = parse_duration("--time-limit", how.time_limit);
+  options.max_failures = how.max_failures;
+  options.threads = num_threads();
+  options.command = [common, how](const CellKey& cell, bool force, int threads) {
+    return words_of_cell(common, how, cell, force, threads);
+  };
+  options.profile_words = profile_words(common);
+  options.run_words = words_of_choice(common, how);
+  options.sbatch = how.sbatch;
+  options.on_gpu = common.device == "cuda";
+  return options;
+}
+
+}  // namespace
+
+RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& how) {
+  RunnerOptions options;
+  options.profile = common.resolved_profile();
+  options.filter = common.filter();
+  options.assignments = common.set;
+  options.out = common.own_folder(options.profile);
+  options.force = how.force;
+  options.checkpoint_seconds = common.checkpoint_seconds;
+  options.identify = common.scene_identifier();
+  options.load = common.scene_loader();
+  return options;
+}
+
+void add_cell_run_options(CLI::App& verb, CellRunOptions& options) {
+  verb.add_flag("--force", options.force, "run finished cells again, training included");
+  std::string executors = "how cells are run:";
+  for (const auto& [id, executor] : Registry<Executor>::all())
+    executors += fmt::format(" {} ({});", id, executor.title);
+  executors.pop_back();
+  verb.add_option("--executor", options.executor, executors)->capture_default_str();
+  verb.add_option("--jobs", options.jobs, "cells at a time; they share --threads")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  const char* time_limit = "of a cell: 90s, 30m, 4h; its checkpoint stays";
+  verb.add_option("--time-limit", options.time_limit, time_limit);
+  const char* failures = "no cell begins after so many have failed; 0: any number";
+  verb.add_option("--max-failures", options.max_failures, failures)->check(CLI::NonNegativeNumber);
+  verb.add_option("--sbatch", options.sbatch, "option for sbatch, as --sbatch=--partition=gpu");
+}
+
+RunSummary run_cells(
+    const CommonOptions& common, const CellRunOptions& how, const RunnerOptions& options
+) {
+  install_interrupt_handler();
+  return find_executor(how.executor).run(options, executor_options(common, how));
+}
+
+int exit_code_of(const RunSummary& summary) {
+  if (summary.interrupted) return interrupted_exit();
+  const bool partial = summary.failed > 0 || summary.elsewhere > 0 || summary.not_begun > 0;
+  return static_cast<int>(partial ? ExitCode::kPartial : ExitCode::kSuccess);
+}
+
+Json summary_json(const RunSummary& summary) {
+  return {
+      {"ran", summary.ran},
+      {"reused", summary.reused},
+      {"failed", summary.failed},
+      {"elsewhere", summary.elsewhere},
+      {"not_begun", summary.not_begun},
+      {"submitted", summary.submitted},
+      {"interrupted", summary.interrupted}};
+}
+
+std::string summary_text(const RunSummary& summary) {
+  std::string text =
+      fmt::format("{} run, {} reused, {} failed", summary.ran, summary.reused, summary.failed);
+  if (summary.not_begun > 0) text += fmt::format(", {} not begun", summary.not_begun);
+  if (summary.elsewhere > 0) text += fmt::format(", {} left to other processes", summary.elsewhere);
+  if (summary.interrupted) text += ", interrupted (the same command goes on)";
+  return text;
+}
+
+double parse_duration(const std::string& option, const std::string& text) {
+  if (text.empty()) return 0;
+  static const std::map<std::string, double> kUnits = {
+      {"", 1}, {"s", 1}, {"m", 60}, {"h", 3600}, {"d", 86400}};
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  const auto unit = kUnits.find(end);
+  GLINT_CHECK(
+      end != text.c_str() && unit != kUnits.end() && number > 0 && number < 1e7,
+      kUsage,
+      "{} {}: expected a time as 90s, 30m, 4h or 2d",
+      option,
+      text
+  );
+  return number * unit->second;
+}
+
+}  // namespace glint

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Options of the verbs that run cells.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reports/executors/executor.h"
+#include "reports/verbs/verb.h"
+
+namespace glint {
+
+struct CellRunOptions {
+  bool force = false;
+  std::string executor = "local";
+  int jobs = 1;
+  std::string time_limit;  // "90s", "30m", "4h"; empty: none
+  int max_failures = 0;
+  std::vector<std::string> sbatch;
+};
+
+// `options` must live as long as `verb`.
+void add_cell_run_options(CLI::App& verb, CellRunOptions& options);
+
+RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& how);
+
+// Runs the cells that `options` chooses, by the executor that is asked for. Errors:
+// run_profile()'s; kUsage: no such executor, no time.
+RunSummary run_cells(
+    const CommonOptions& common, const CellRunOptions& how, const RunnerOptions& options
+);
+
+// 0; 5: some failed, were not begun or are another process's; 128 + signal: interrupted.
+int exit_code_of(const RunSummary& summary);
+
+Json summary_json(const RunSummary& summary);
+// "2 run, 1 reused, 0 failed".
+std::string summary_text(const RunSummary& summary);
+
+// Seconds of "90", "90s", "30m", "4h", "2d". Errors (kUsage): something else.
+double parse_duration(const std::string& option, const std::string& text);
+
+}  // namespace glint

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "reports/bench/memory_estimate.h"
+
+#include <catch2/catch.hpp>
+
+#include "glint/core/machine.h"
+#include "reports/bench/runner.h"
+#include "tests/reports/fake_method.h"
+#include "tests/support/temp_folder.h"
+
+using namespace glint;
+
+TEST_CASE("the images of a scene count as they lie in memory") {
+  // Four views of 16x12 with an image of three and a map of one channel.
+  CHECK(image_bytes(fake_scene("room_1")) == 4 * 16 * 12 * (3 + 1) * 4);
+}
+
+TEST_CASE("what cells of a method took goes before what images and surfels say") {
+  const Scene scene = fake_scene("room_1");
+  const MemoryEstimate unknown = estimate_memory("fake", scene, 1000, {});
+  CHECK(unknown.from == "its images and surfels");
+  Record record;
+  record.cell = {"room_9", "fake", 3};
+  record.resolution = "16x12";
+  record.metrics["peak-memory"] = 2000;
+  CHECK(estimate_memory("fake", scene, 1000, {record}).bytes == 2e9);
+  CHECK(estimate_memory("other", scene, 1000, {record}).bytes == unknown.bytes);
+  record.resolution = "32x24";
+  CHECK(estimate_memory("fake", scene, 1000, {record}).bytes == unknown.bytes);
+}
+
+TEST_CASE("more surfels and larger images take more, up to the limit of the method") {
+  Scene scene = fake_scene("room_1");
+  const double few = estimate_memory("fake", scene, 1000000, {}).bytes;
+  scene.points.positions.resize(100000);
+  const double many = estimate_memory("fake", scene, 1000000, {}).bytes;
+  CHECK(many > few + 3 * 100000 * 4 * 58 * 4);
+  CHECK(estimate_memory("fake", scene, 10, {}).bytes < few);
+}
+
+TEST_CASE("a cell that does not fit says so before its training") {
+  CHECK_NOTHROW(check_fits({1e9, "x"}, 1000000000));
+  CHECK_THROWS_WITH(
+      check_fits({3e9, "its images and surfels"}, 1 << 30),
+      Catch::Contains("needs about 2.79 GiB (by its images and surfels), 1.00 GiB are free")
+  );
+  const test::TempFolder folder;
+  register_fake_methods();
+  RunnerOptions options;
+  options.profile.name = "fake";
+  options.profile.iterations = 3;
+  options.profile.methods = {"fake"};
+  options.profile.scenes = {{{"scene", "room_1"}, {"folder", "nowhere"}}};
+  options.out = folder.path();
+  options.identify = fake_identity;
+  options.load = [](const SceneSource& source) {
+    return LoadedScene{fake_scene(source.scene), "nowhere"};
+  };
+  Record before;  // of another seed: a cell that took more than there is
+  before.cell = {"room_1", "fake", 7};
+  before.resolution = "16x12";
+  before.metrics["peak-memory"] = 1e9;
+  append_record(folder.path() / "records.jsonl", before);
+  const int trainings = FakeMethod::trainings;
+  CHECK(run_profile(options).failed == 1);
+  CHECK(FakeMethod::trainings == trainings);
+  const auto records = read_records(folder.path() / "records.jsonl");
+  const Record* record = find_record(records, {"room_1", "fake", 0});
+  REQUIRE(record);
+  CHECK(record->failure->kind == "out-of-memory");
+  CHECK(record->estimated_memory_mb == 1e9);
+}
+
+TEST_CASE("this machine has memory that may be taken") {
+  CHECK(available_memory_bytes() > 1000000);
+  CHECK(available_memory_bytes() <= this_machine().memory_bytes);
+  CHECK(resident_memory_bytes() > 1000000);
+}

@@ -1,0 +1,115 @@
+#!/usr/bin/env bash
+# A profile on a real Slurm of one node, started here and stopped in the end: slurm_test.sh GLINT_BENCH
+# One worker is killed with -9 in the middle, one task is told that its time is over and goes back into the
+# queue; trained files and scores are those of a run without a cluster. 77: no Slurm here, or not root.
+set -euo pipefail
+bench=$(readlink -f "$1")
+for program in slurmctld slurmd munged sbatch; do
+  PATH=$PATH:/usr/sbin command -v $program >/dev/null || { echo "no $program: skipped"; exit 77; }
+done
+PATH=$PATH:/usr/sbin
+[ "$(id -u)" -eq 0 ] || { echo "not root: skipped"; exit 77; }
+
+folder=$(mktemp -d /tmp/glint_slurm.XXXXXX)
+daemons=()
+finish() {
+  for id in "${daemons[@]}"; do kill -9 "$id" 2>/dev/null || true; done
+  [ -z "${KEEP:-}" ] && rm -rf "$folder" || echo "kept: $folder"
+}
+trap finish EXIT
+fail() {
+  echo "FAILED: $*" >&2
+  tail -n 30 "$folder"/*.log "$folder"/slurm/smoke/slurm/*.log >&2 2>/dev/null || true
+  exit 1
+}
+
+node=$(hostname -s)
+mkdir "$folder/state" "$folder/spool" "$folder/munge"
+chmod 755 "$folder"
+dd if=/dev/urandom of="$folder/munge/key" bs=1024 count=1 status=none
+chmod 400 "$folder/munge/key"
+cat >"$folder/slurm.conf" <<CONF
+ClusterName=glint
+SlurmctldHost=$node(127.0.0.1)
+SlurmUser=root
+SlurmdUser=root
+AuthInfo=socket=$folder/munge/socket,cred_expire=2
+SlurmctldPort=16817
+SlurmdPort=16818
+StateSaveLocation=$folder/state
+SlurmdSpoolDir=$folder/spool
+SlurmctldPidFile=$folder/slurmctld.pid
+SlurmdPidFile=$folder/slurmd.pid
+SlurmctldLogFile=$folder/slurmctld.log
+SlurmdLogFile=$folder/slurmd.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+JobAcctGatherType=jobacct_gather/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+SwitchType=switch/none
+MpiDefault=none
+ReturnToService=2
+MaxArraySize=3
+NodeName=$node NodeAddr=127.0.0.1 CPUs=2 RealMemory=2000
+PartitionName=all Nodes=$node Default=YES State=UP MaxTime=INFINITE
+CONF
+export SLURM_CONF=$folder/slurm.conf
+munged --force --key-file="$folder/munge/key" --socket="$folder/munge/socket" --pid-file="$folder/munge/pid" \
+  --log-file="$folder/munged.log" --seed-file="$folder/munge/seed" || fail munged
+slurmctld -c && slurmd || fail "the daemons do not start"
+for _ in $(seq 100); do sinfo -h -o %T 2>/dev/null | grep -q idle && break; sleep 0.1; done
+daemons=("$(cat "$folder/slurmd.pid")" "$(cat "$folder/slurmctld.pid")" "$(cat "$folder/munge/pid")")
+sinfo -h -o %T | grep -q idle || fail "the node is not idle"
+
+common=(--profile smoke --methods "2dgs,envgs,glint,pgsr" --iterations 250 --device cpu --data "$folder/data"
+  --checkpoint-seconds 0.5 --quiet)
+echo "== without a cluster"
+"$bench" all "${common[@]}" --out "$folder/local" >"$folder/local.out"
+rm -rf "$folder/data"  # so that there is a job which makes it
+
+echo "== submitted"
+"$bench" all "${common[@]}" --out "$folder/slurm" --executor slurm --sbatch=--comment=glint 2>&1 | tee "$folder/submitted.txt"
+jobs=$folder/slurm/smoke/slurm/jobs.jsonl
+cat "$jobs"
+[ "$(grep -c '"stage":"cells"' "$jobs")" -eq 2 ] || fail "four cells with MaxArraySize 3 are not two arrays"
+
+worker_of() { pgrep -f -- "run --executor inline .*--out $folder/slurm .*--cell room_1/$1/0 " | head -n 1; }
+wait_for() {  # METHOD: until it has a checkpoint; its worker
+  for _ in $(seq 600); do
+    if [ -f "$folder/slurm/smoke/runs/room_1/$1/0/checkpoint/state.safetensors" ] && [ -n "$(worker_of "$1")" ]; then
+      worker_of "$1"
+      return
+    fi
+    sleep 0.1
+  done
+}
+echo "== a worker is killed"
+killed=$(wait_for envgs)
+[ -n "$killed" ] && kill -9 "$killed" || fail "no worker of envgs to kill"
+"$bench" status "${common[@]:0:4}" --out "$folder/slurm" --data "$folder/data" | tee "$folder/status.txt"
+echo "== a task is told that its time is over"
+[ -n "$(wait_for glint)" ] || fail "no worker of glint"
+for task in $(squeue -h -r -t RUNNING -o %A); do
+  scontrol show job "$task" | grep -q "StdOut=.*cells" && scancel --batch --signal=USR1 "$task"
+done
+
+# Slurm keeps what was requeued back for two minutes; not here.
+for _ in $(seq 1800); do
+  [ -n "$(squeue -h)" ] || break
+  for task in $(squeue -h -r -t PENDING -o '%i %r' | awk '$2 == "BeginTime" { print $1 }'); do
+    scontrol update JobId="$task" StartTime=now || true
+  done
+  sleep 0.1
+done
+[ -z "$(squeue -h)" ] || fail "jobs are left: $(squeue)"
+echo "== results"
+grep "Requeuing" "$folder/slurmctld.log" || fail "no task went back into the queue"
+content() { (cd "$1/smoke/runs" && find . -name '*.ply' -not -name 'mesh*' -exec sha256sum {} + | sort -k 2); }
+[ -n "$(content "$folder/local")" ] || fail "the local run left nothing"
+diff <(content "$folder/local") <(content "$folder/slurm") || fail "other surfels than without a cluster"
+for run in local slurm; do [ -f "$folder/$run/smoke/tables/summary.md" ] && [ -f "$folder/$run/smoke/report/index.html" ] || fail "no tables of $run"; done
+"$bench" status "${common[@]:0:8}" --out "$folder/slurm" --data "$folder/data" | tee "$folder/status.txt"
+[ "$(grep -c ' done ' "$folder/status.txt")" -eq 4 ] || fail "not all cells are done"
+"$bench" compare "$folder/local/smoke" "$folder/slurm/smoke" --tolerance 0 --quiet >"$folder/compare.txt" || { cat "$folder/compare.txt"; fail "other scores than without a cluster"; }
+echo "four cells on Slurm: the same surfels and scores as without"
