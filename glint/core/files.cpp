@@ -36,12 +36,14 @@ void sync_to_disk(const fs::path& path) {
   );
 }
 
+bool means_full(int why) { return why == ENOSPC || why == EDQUOT || why == EFBIG; }
+
 // Writers of images do not say why they failed; the disk does. A quota or a limit on the size of
 // files is told by errno alone, where that still stands.
 bool is_full(const fs::path& folder) {
   constexpr std::uintmax_t kLeast = 64
                                     << 10;  // bytes: a file that failed wanted more than one block
-  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) return true;
+  if (means_full(errno)) return true;
   std::error_code code;
   const fs::space_info space = fs::space(folder, code);
   return !code && space.available < kLeast;
@@ -179,29 +181,40 @@ TemporaryFolder::~TemporaryFolder() {
   fs::remove_all(path_, code);
 }
 
-// In one piece, and one process at a time: two that append to one file mix no lines.
+namespace {
+
+// In one piece; where there is no room for all of it, none of it stays. errno, or 0.
+int append_piece(int file, std::string_view line) {
+  const off_t end = ::lseek(file, 0, SEEK_END);
+  char last = '\n';
+  if (end > 0 && ::pread(file, &last, 1, end - 1) != 1) last = '\n';
+  const std::string text = fmt::format("{}{}\n", last == '\n' ? "" : "\n", line);
+  errno = 0;
+  if (::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size())) return 0;
+  const int why = errno == 0 ? ENOSPC : errno;
+  if (end >= 0) [[maybe_unused]]
+    const int cut = ::ftruncate(file, end);
+  return why;
+}
+
+}  // namespace
+
+// One process at a time: two that append to one file mix no lines.
 void append_line(const fs::path& path, std::string_view line) {
   std::error_code code;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), code);
   const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  bool good = file >= 0;
-  if (good) {
+  int why = file < 0 ? errno : 0;
+  if (file >= 0) {
     ::flock(file, LOCK_EX);  // file systems without locks do without
-    const off_t end = ::lseek(file, 0, SEEK_END);
-    char last = '\n';
-    if (end > 0 && ::pread(file, &last, 1, end - 1) != 1) last = '\n';
-    const std::string text = fmt::format("{}{}\n", last == '\n' ? "" : "\n", line);
-    good = ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    why = append_piece(file, line);
+    ::close(file);
   }
-  const int why = good ? 0 : errno;
-  if (file >= 0) ::close(file);
-  GLINT_CHECK(
-      good,
-      kEnvironment,
-      "{}: appending failed ({})",
-      path.string(),
-      why == 0 ? "no space left" : std::strerror(why)
-  );
+  const auto message = [&] {
+    return fmt::format("{}: appending failed ({})", path.string(), std::strerror(why));
+  };
+  if (means_full(why)) throw DiskFull(message());
+  GLINT_CHECK(why == 0, kEnvironment, "{}", message());
 }
 
 bool natural_less(std::string_view a, std::string_view b) {

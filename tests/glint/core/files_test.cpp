@@ -202,3 +202,18 @@ TEST_CASE("a limit on the size of files is an error of the writer, not a signal"
   ignore_file_size_signal();
   CHECK(std::signal(SIGXFSZ, before) == SIG_IGN);
 }
+
+TEST_CASE("a line that there is no room for leaves nothing of it, and says so as a full disk does"
+) {
+  const test::TempFolder folder;
+  const fs::path file = folder / "records.jsonl";
+  append_line(file, "first");
+  {
+    const FileSizeLimit limit(10);
+    CHECK_THROWS_AS(append_line(file, "a line that is too long"), DiskFull);
+    CHECK_THROWS_AS(write_file(folder / "other", "more than ten bytes"), DiskFull);
+  }
+  CHECK(read_file(file) == "first\n");
+  append_line(file, "second");
+  CHECK(read_file(file) == "first\nsecond\n");
+}

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # A profile on a real Slurm of one node, started here and stopped in the end: slurm_test.sh GLINT_BENCH
 # One worker is killed with -9 in the middle, one task is told that its time is over and goes back into the
-# queue; trained files and scores are those of a run without a cluster. 77: no Slurm here, or not root.
+# queue; trained files and scores are those of a run without a cluster. With slurmdbd and mariadbd jobs are
+# accounted, and `status` asks sacct, else squeue. 77: no Slurm here, or not root.
 set -euo pipefail
 bench=$(readlink -f "$1")
 for program in slurmctld slurmd munged sbatch; do
@@ -55,11 +56,52 @@ NodeName=$node NodeAddr=127.0.0.1 CPUs=2 RealMemory=2000
 PartitionName=all Nodes=$node Default=YES State=UP MaxTime=INFINITE
 CONF
 export SLURM_CONF=$folder/slurm.conf
+accounted=
+if command -v slurmdbd >/dev/null && command -v mariadbd >/dev/null; then
+  accounted=yes
+  cat >>"$folder/slurm.conf" <<CONF
+AccountingStorageType=accounting_storage/slurmdbd
+AccountingStorageHost=localhost
+AccountingStoragePort=16819
+AccountingStoragePass=$folder/munge/socket
+CONF
+  cat >"$folder/slurmdbd.conf" <<CONF
+DbdHost=localhost
+DbdPort=16819
+SlurmUser=root
+AuthInfo=socket=$folder/munge/socket
+StorageType=accounting_storage/mysql
+StorageHost=127.0.0.1
+StoragePort=16820
+StorageUser=root
+StorageLoc=slurm
+LogFile=$folder/slurmdbd.log
+PidFile=$folder/slurmdbd.pid
+CONF
+  chmod 600 "$folder/slurmdbd.conf"
+fi
+
+# A database of its own, and Slurm's door to it; both end with this script.
+start_accounting() {
+  local mysql=$folder/mysql
+  mariadb-install-db --no-defaults --user=root --datadir="$mysql" --auth-root-authentication-method=normal \
+    >"$folder/mysql_install.log" 2>&1
+  mariadbd --no-defaults --user=root --datadir="$mysql" --bind-address=127.0.0.1 --port=16820 \
+    --socket="$folder/mysql.socket" --innodb-buffer-pool-size=64M >"$folder/mysql.log" 2>&1 &
+  daemons+=($!)
+  for _ in $(seq 200); do mariadb-admin --no-defaults --socket="$folder/mysql.socket" ping >/dev/null 2>&1 && break; sleep 0.1; done
+  SLURM_CONF=$folder/slurm.conf slurmdbd
+  for _ in $(seq 200); do sacctmgr -i -n list cluster >/dev/null 2>&1 && break; sleep 0.1; done
+  daemons+=("$(cat "$folder/slurmdbd.pid")")
+  sacctmgr -i add cluster glint >"$folder/sacctmgr.log" 2>&1 || true
+}
 munged --force --key-file="$folder/munge/key" --socket="$folder/munge/socket" --pid-file="$folder/munge/pid" \
   --log-file="$folder/munged.log" --seed-file="$folder/munge/seed" || fail munged
+daemons+=("$(cat "$folder/munge/pid")")
+[ -z "$accounted" ] || start_accounting || fail "no accounting"
 slurmctld -c && slurmd || fail "the daemons do not start"
 for _ in $(seq 100); do sinfo -h -o %T 2>/dev/null | grep -q idle && break; sleep 0.1; done
-daemons=("$(cat "$folder/slurmd.pid")" "$(cat "$folder/slurmctld.pid")" "$(cat "$folder/munge/pid")")
+daemons+=("$(cat "$folder/slurmd.pid")" "$(cat "$folder/slurmctld.pid")")
 sinfo -h -o %T | grep -q idle || fail "the node is not idle"
 
 common=(--profile smoke --methods "2dgs,envgs,glint,pgsr" --iterations 250 --device cpu --data "$folder/data"
@@ -91,7 +133,7 @@ killed=$(wait_for envgs)
 echo "== a task is told that its time is over"
 [ -n "$(wait_for glint)" ] || fail "no worker of glint"
 for task in $(squeue -h -r -t RUNNING -o %A); do
-  scontrol show job "$task" | grep -q "StdOut=.*cells" && scancel --batch --signal=USR1 "$task"
+  scontrol show job "$task" | grep -q "StdOut=.*cells" && { scancel --batch --signal=USR1 "$task" || true; }
 done
 
 # Slurm keeps what was requeued back for two minutes; not here.
@@ -112,4 +154,5 @@ for run in local slurm; do [ -f "$folder/$run/smoke/tables/summary.md" ] && [ -f
 "$bench" status "${common[@]:0:8}" --out "$folder/slurm" --data "$folder/data" | tee "$folder/status.txt"
 [ "$(grep -c ' done ' "$folder/status.txt")" -eq 4 ] || fail "not all cells are done"
 "$bench" compare "$folder/local/smoke" "$folder/slurm/smoke" --tolerance 0 --quiet >"$folder/compare.txt" || { cat "$folder/compare.txt"; fail "other scores than without a cluster"; }
+[ -z "$accounted" ] || sacct -X -P -o JobID,JobName,State,ExitCode,Elapsed,NodeList | tee "$folder/sacct.txt"
 echo "four cells on Slurm: the same surfels and scores as without"
