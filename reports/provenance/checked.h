@@ -7,20 +7,20 @@
 
 namespace glint {
 
-enum class Verdict {
+enum class CheckState {
   kOk,
   kNote,  // worth knowing, and no failure
   kBad,
 };
 
-inline std::string_view verdict_word(Verdict verdict) {
-  if (verdict == Verdict::kOk) return "ok";
-  return verdict == Verdict::kNote ? "note" : "BAD";
+inline std::string_view state_word(CheckState state) {
+  if (state == CheckState::kOk) return "ok";
+  return state == CheckState::kNote ? "note" : "BAD";
 }
 
 struct Checked {
   std::string name;
-  Verdict verdict = Verdict::kOk;
+  CheckState state = CheckState::kOk;
   std::string detail;
 };
 

@@ -106,12 +106,12 @@ class RunExamination {
   }
 
  private:
-  void add(std::string name, Verdict verdict, std::string detail) {
-    rows_.push_back({std::move(name), verdict, std::move(detail)});
+  void add(std::string name, CheckState state, std::string detail) {
+    rows_.push_back({std::move(name), state, std::move(detail)});
   }
   void add(const std::string& name, const std::vector<std::string>& wrong, std::string good) {
     const bool ok = wrong.empty();
-    add(name, ok ? Verdict::kOk : Verdict::kBad, ok ? std::move(good) : some_of(wrong));
+    add(name, ok ? CheckState::kOk : CheckState::kBad, ok ? std::move(good) : some_of(wrong));
   }
 
   // What cannot be looked at does not match.
@@ -121,7 +121,7 @@ class RunExamination {
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {
-    add(name, Verdict::kBad, error.what());
+    add(name, CheckState::kBad, error.what());
   }
 
   const StageFile* done(Stage stage) const {
@@ -162,7 +162,7 @@ class RunExamination {
     if (!fs::exists(spec_.dataset_folder, code))
       return add(
           "data",
-          Verdict::kBad,
+          CheckState::kBad,
           spec_.dataset_folder.string() + ": not there; if the data have moved, give --dataset"
       );
     std::vector<std::string> wrong;
@@ -175,7 +175,7 @@ class RunExamination {
             "hash {}, was {}", scene_->spec_hash.substr(0, 12), spec_.dataset_hash.substr(0, 12)
         ));
     } else if (!trained) {
-      return add("data", Verdict::kNote, "not looked at: --fast");
+      return add("data", CheckState::kNote, "not looked at: --fast");
     }
     add("data", wrong, spec_.dataset_folder.string());
   }
@@ -195,7 +195,7 @@ class RunExamination {
   void check_stage(Stage stage) {
     const std::string name(stage_name(stage));
     const std::string why = why_unreadable(run_.folder, stage);
-    if (!why.empty()) return add(name + " key", Verdict::kBad, "keys/" + name + ".json: " + why);
+    if (!why.empty()) return add(name + " key", CheckState::kBad, "keys/" + name + ".json: " + why);
     if (!done(stage)) return add_absent(stage);
     add(name + " key", wrong_inputs(stage), key_of(stage));
     check_files(stage);
@@ -210,7 +210,7 @@ class RunExamination {
       needed = needed || (done(later) && !input_of(done(later)->document, stage).empty());
     const std::string name(stage_name(stage));
     add(name + " key",
-        needed ? Verdict::kBad : Verdict::kNote,
+        needed ? CheckState::kBad : CheckState::kNote,
         fmt::format("no keys/{}.json: not run to the end, or by an earlier version", name));
   }
 
@@ -237,7 +237,7 @@ class RunExamination {
     if (wrong.empty() && sizes_only)
       return add(
           name,
-          Verdict::kNote,
+          CheckState::kNote,
           fmt::format("{}, by their sizes: an earlier version wrote no hashes", file.files.size())
       );
     add(name, wrong, fmt::format("{}", file.files.size()));
@@ -250,10 +250,10 @@ class RunExamination {
     try {
       const Json now = with_machine_of(document_now(stage, spec_, then, data_for(then)), then);
       const auto changes = stage_differences(then, now);
-      if (changes.empty()) return add(name, Verdict::kOk, "made from what there is now");
-      add(name, Verdict::kNote, "would now be made anew: " + some_of(changes));
+      if (changes.empty()) return add(name, CheckState::kOk, "made from what there is now");
+      add(name, CheckState::kNote, "would now be made anew: " + some_of(changes));
     } catch (const Error& error) {
-      add(name, Verdict::kNote, std::string("cannot be made now: ") + error.what());
+      add(name, CheckState::kNote, std::string("cannot be made now: ") + error.what());
     }
   }
 
@@ -266,11 +266,11 @@ class RunExamination {
   }
 
   void check_record() {
-    if (!run_.record) return add("record", Verdict::kNote, "not recorded");
+    if (!run_.record) return add("record", CheckState::kNote, "not recorded");
     const Record& record = *run_.record;
-    if (!record.ok()) return add("record", Verdict::kNote, "failed: " + record.failure->message);
+    if (!record.ok()) return add("record", CheckState::kNote, "failed: " + record.failure->message);
     if (record.score_key.empty())
-      return add("record", Verdict::kNote, "by an earlier version, without keys");
+      return add("record", CheckState::kNote, "by an earlier version, without keys");
     std::vector<std::string> wrong;
     const auto compare = [&](const char* what, const std::string& recorded, const std::string& is) {
       if (recorded != is)
@@ -321,8 +321,9 @@ class RunExamination {
   void check_scores() {
     const StageFile* scored = done(Stage::kScore);
     if (!scored) return;
-    if (verifier_.fast_) return add("metrics", Verdict::kNote, "not computed again: --fast");
-    if (!scene_) return add("metrics", Verdict::kBad, "cannot be computed again without the data");
+    if (verifier_.fast_) return add("metrics", CheckState::kNote, "not computed again: --fast");
+    if (!scene_)
+      return add("metrics", CheckState::kBad, "cannot be computed again without the data");
     const RunScores now = score_run(
         spec_,
         *scene_,
@@ -348,7 +349,7 @@ class RunExamination {
           fmt::format("; {} differ by rounding: {}", found.rounded.size(), some_of(found.rounded));
     tell("not scored then", found.added);
     const bool exact = found.rounded.empty() && found.added.empty();
-    add("metrics", exact ? Verdict::kOk : Verdict::kNote, text);
+    add("metrics", exact ? CheckState::kOk : CheckState::kNote, text);
   }
 
   RunVerifier& verifier_;

@@ -23,9 +23,9 @@ struct VerifiedRun {
   fs::path folder;
   std::vector<Checked> rows;
 
-  Verdict verdict() const {
-    Verdict worst = Verdict::kOk;
-    for (const Checked& row : rows) worst = std::max(worst, row.verdict);
+  CheckState state() const {
+    CheckState worst = CheckState::kOk;
+    for (const Checked& row : rows) worst = std::max(worst, row.state);
     return worst;
   }
 };
@@ -128,7 +128,7 @@ class Verification {
   std::vector<Checked> rows_of(const fs::path& run) try {
     const std::string holder = holder_of(run);
     if (!holder.empty())
-      return {{"run", Verdict::kNote, holder + " is at work there: not looked at"}};
+      return {{"run", CheckState::kNote, holder + " is at work there: not looked at"}};
     const RunSpec spec = read_run_spec(run);
     const CellKey cell{spec.scene, spec.method, spec.options.seed};
     return verifier_.verify(
@@ -136,7 +136,7 @@ class Verification {
     );
   } catch (const Error& error) {
     if (is_of_one_run()) throw;
-    return {{"run", Verdict::kBad, error.what()}};
+    return {{"run", CheckState::kBad, error.what()}};
   }
 
   // Stores that cannot be written to have nobody at work.
@@ -162,7 +162,7 @@ class Verification {
       const fs::path run = run_folder(plan_.root, record.cell);
       if (record.ok() && !is_our_run(run))
         verified.push_back(
-            {run, {{"record", Verdict::kBad, "there are values of it, but no run folder"}}}
+            {run, {{"record", CheckState::kBad, "there are values of it, but no run folder"}}}
         );
     }
   }
@@ -175,7 +175,7 @@ class Verification {
 
 bool all_match(const std::vector<VerifiedRun>& runs) {
   return std::all_of(runs.begin(), runs.end(), [](const VerifiedRun& run) {
-    return run.verdict() != Verdict::kBad;
+    return run.state() != CheckState::kBad;
   });
 }
 
@@ -185,11 +185,11 @@ Json verify_json(const std::vector<VerifiedRun>& runs) {
     Json rows = Json::array();
     for (const Checked& row : run.rows)
       rows.push_back(
-          {{"check", row.name}, {"verdict", verdict_word(row.verdict)}, {"detail", row.detail}}
+          {{"check", row.name}, {"verdict", state_word(row.state)}, {"detail", row.detail}}
       );
     json["runs"].push_back(
         {{"run", run.folder.string()},
-         {"verdict", verdict_word(run.verdict())},
+         {"verdict", state_word(run.state())},
          {"checks", std::move(rows)}}
     );
   }
@@ -204,12 +204,12 @@ std::string verify_text(const std::vector<VerifiedRun>& runs, bool every_row) {
     const std::string name = run.folder.string();
     std::size_t folded = 0;
     for (const Checked& row : run.rows)
-      if (every_row || row.verdict != Verdict::kOk)
-        lines.push_back({name, row.name, std::string(verdict_word(row.verdict)), row.detail});
+      if (every_row || row.state != CheckState::kOk)
+        lines.push_back({name, row.name, std::string(state_word(row.state)), row.detail});
       else
         ++folded;
     if (folded > 0) lines.push_back({name, fmt::format("{} checks", folded), "ok", ""});
-    ++counts[static_cast<int>(run.verdict())];
+    ++counts[static_cast<int>(run.state())];
   }
   return listing(lines) + fmt::format(
                               "{} of {} runs match{}\n",
