@@ -22,6 +22,7 @@ struct Checked {
   std::string name;
   CheckState state = CheckState::kOk;
   std::string detail;
+  std::string advice = {};  // what to do; empty: nothing
 };
 
 }  // namespace glint
