@@ -32,6 +32,22 @@ std::vector<std::string> below_reports(const std::vector<std::string>& folders) 
   return paths;
 }
 
+const std::vector<std::string>& folders_of_verbs() {
+  static const std::vector<std::string> all = {
+      "records",
+      "tables",
+      "pictures",
+      "bench",
+      "provenance",
+      "page",
+      "figures",
+      "import",
+      "perf",
+      "selftest",
+      "verbs"};
+  return all;
+}
+
 const std::vector<Layer>& layers() {
   static const std::vector<Layer> all = {
       {"glint/core/", {"glint/core/"}},
@@ -70,25 +86,14 @@ const std::vector<Layer>& layers() {
       {"reports/tables/", below_reports({"records", "tables"})},
       {"reports/pictures/", below_reports({"records", "pictures"})},
       {"reports/bench/", below_reports({"records", "pictures", "bench"})},
+      {"reports/provenance/", below_reports({"records", "pictures", "bench", "provenance"})},
       {"reports/page/", below_reports({"records", "tables", "pictures", "page"})},
       {"reports/figures/",
        below_reports({"records", "tables", "pictures", "bench", "page", "figures"})},
       {"reports/import/", below_reports({"records", "pictures", "import"})},
       {"reports/perf/", below_reports({"records", "perf"})},
       {"reports/selftest/", below_reports({"records", "bench", "import", "selftest"})},
-      {"reports/verbs/",
-       below_reports(
-           {"records",
-            "tables",
-            "pictures",
-            "bench",
-            "page",
-            "figures",
-            "import",
-            "perf",
-            "selftest",
-            "verbs"}
-       )},
+      {"reports/verbs/", below_reports(folders_of_verbs())},
       {"tests/", {"glint/", "metrics/", "baselines/", "datasets/", "reports/", "tests/"}}};
   return all;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "glint/core/file_lock.h"
@@ -196,26 +197,53 @@ Json verify_json(const std::vector<VerifiedRun>& runs) {
   return json;
 }
 
-// Of several runs those rows that say more than "ok".
-std::string verify_text(const std::vector<VerifiedRun>& runs, bool every_row) {
-  std::vector<std::vector<std::string>> lines{{"run", "check", "verdict", "detail"}};
-  int counts[3] = {0, 0, 0};
+using Lines = std::vector<std::vector<std::string>>;
+
+Lines every_row(const VerifiedRun& run) {
+  Lines lines;
+  for (const Checked& row : run.rows)
+    lines.push_back({run.folder.string(), row.name, std::string(state_word(row.state)), row.detail}
+    );
+  return lines;
+}
+
+// Of several runs: each with what does not match, and what is worth knowing once for all that have
+// it.
+Lines folded_rows(const std::vector<VerifiedRun>& runs) {
+  Lines lines;
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> notes;
   for (const VerifiedRun& run : runs) {
     const std::string name = run.folder.string();
-    std::size_t folded = 0;
-    for (const Checked& row : run.rows)
-      if (every_row || row.state != CheckState::kOk)
-        lines.push_back({name, row.name, std::string(state_word(row.state)), row.detail});
-      else
-        ++folded;
-    if (folded > 0) lines.push_back({name, fmt::format("{} checks", folded), "ok", ""});
-    ++counts[static_cast<int>(run.state())];
+    std::size_t good = 0;
+    for (const Checked& row : run.rows) {
+      if (row.state == CheckState::kBad) lines.push_back({name, row.name, "BAD", row.detail});
+      if (row.state == CheckState::kNote) notes[{row.name, row.detail}].push_back(name);
+      good += row.state == CheckState::kOk;
+    }
+    if (good > 0) lines.push_back({name, fmt::format("{} checks", good), "ok", ""});
   }
+  for (const auto& [row, names] : notes)
+    lines.push_back(
+        {names.size() == 1 ? names.front() : fmt::format("{} runs", names.size()),
+         row.first,
+         "note",
+         row.second}
+    );
+  return lines;
+}
+
+std::string verify_text(const std::vector<VerifiedRun>& runs, bool is_one) {
+  Lines lines{{"run", "check", "verdict", "detail"}};
+  const Lines rows = is_one ? every_row(runs.front()) : folded_rows(runs);
+  lines.insert(lines.end(), rows.begin(), rows.end());
+  const auto bad = std::count_if(runs.begin(), runs.end(), [](const VerifiedRun& run) {
+    return run.state() == CheckState::kBad;
+  });
   return listing(lines) + fmt::format(
                               "{} of {} runs match{}\n",
-                              counts[0] + counts[1],
+                              static_cast<std::ptrdiff_t>(runs.size()) - bad,
                               runs.size(),
-                              counts[2] > 0 ? fmt::format(", {} do not", counts[2]) : ""
+                              bad > 0 ? fmt::format(", {} do not", bad) : ""
                           );
 }
 
