@@ -78,11 +78,17 @@ VerifyPlan plan_of_run(const CommonOptions& common, const fs::path& run) {
 }
 
 VerifyPlan make_verify_plan(const CommonOptions& common, const VerifyArguments& arguments) {
+  const bool is_one = fs::exists(fs::path(arguments.place) / "config.json");
+  GLINT_CHECK(
+      is_one || arguments.dataset.empty(),
+      kUsage,
+      "--dataset is of one run: name its folder; rooms of several are looked for below --data, too"
+  );
   if (arguments.place.empty())
     return plan_of_folder(
         folder_with_records(common.out, load_profile(common.profile).name), common.filter()
     );
-  if (!fs::exists(fs::path(arguments.place) / "config.json") && is_folder_of_runs(arguments.place))
+  if (!is_one && is_folder_of_runs(arguments.place))
     return plan_of_folder(arguments.place, common.filter());
   return plan_of_run(common, arguments.place);
 }
@@ -91,6 +97,7 @@ class Verification {
  public:
   Verification(const CommonOptions& common, const VerifyArguments& arguments)
       : arguments_(arguments),
+        data_(common.data),
         sources_(load_profile(common.profile).sources()),
         plan_(make_verify_plan(common, arguments)),
         verifier_(arguments.fast) {}
@@ -113,8 +120,7 @@ class Verification {
  private:
   // As other verbs that open a run.
   void check_dataset(const fs::path& run) const {
-    const fs::path dataset = arguments_.dataset.empty() ? read_run_spec(run).dataset_folder
-                                                        : fs::path(arguments_.dataset);
+    const fs::path dataset = dataset_of(read_run_spec(run));
     std::error_code code;
     GLINT_CHECK(
         fs::exists(dataset, code),
@@ -125,15 +131,31 @@ class Verification {
     );
   }
 
+  // Rooms of a store that has moved lie below --data under the same name.
+  fs::path dataset_of(const RunSpec& spec) const {
+    if (!arguments_.dataset.empty()) return arguments_.dataset;
+    const fs::path below = data_ / spec.dataset / spec.dataset_folder.filename();
+    std::error_code code;
+    return !fs::exists(spec.dataset_folder, code) && fs::exists(below, code) ? below
+                                                                             : spec.dataset_folder;
+  }
+
   // One of many that cannot be read does not stop the others.
   std::vector<Checked> rows_of(const fs::path& run) try {
     const std::string holder = holder_of(run);
+    GLINT_CHECK(
+        holder.empty() || !is_of_one_run(),
+        kUsage,
+        "{}: {} is at work there; wait for it",
+        run.string(),
+        holder
+    );
     if (!holder.empty())
       return {{"run", CheckState::kNote, holder + " is at work there: not looked at"}};
     const RunSpec spec = read_run_spec(run);
     const CellKey cell{spec.scene, spec.method, spec.options.seed};
     return verifier_.verify(
-        {run, arguments_.dataset, loader_of(spec), find_record(plan_.records, cell)}
+        {run, dataset_of(spec), loader_of(spec), find_record(plan_.records, cell)}
     );
   } catch (const Error& error) {
     if (is_of_one_run()) throw;
@@ -169,6 +191,7 @@ class Verification {
   }
 
   const VerifyArguments& arguments_;
+  fs::path data_;
   std::vector<SceneSource> sources_;
   VerifyPlan plan_;
   RunVerifier verifier_;
@@ -265,7 +288,7 @@ void add_verify_verb(CommandLine& line) {
       "verify",
       "compute keys, hashes and metrics of finished runs again, and say what does not match",
       [&line, arguments] { return run_verify(line.common, *arguments); },
-      kFolderOptions | kDeviceOption | kThreadsOption
+      kFolderOptions | kDataOption | kDeviceOption | kThreadsOption
   );
   verb->add_option(
       "RUN", arguments->place, "a run folder, or a folder of runs; else the profile's folder"

@@ -2,6 +2,7 @@
 // `verify` finds nothing on an untouched run, and each thing that was changed since.
 #include <catch2/catch.hpp>
 
+#include "glint/core/file_lock.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "reports/records/stage_files.h"
@@ -296,4 +297,25 @@ TEST_CASE("values without a run are found; what is no run is refused") {
   CHECK(run({"verify", store.cell().string(), "--quiet"}) == 2);
   const test::TempFolder empty;
   CHECK(run({"verify", empty.path().string(), "--quiet"}) == 2);
+}
+
+TEST_CASE("a run at which another process is at work is left alone") {
+  const Store store;
+  const auto lock = FileLock::take(FileLock::file_beside(store.cell()));
+  REQUIRE(std::holds_alternative<FileLock>(lock));
+  CHECK(run({"verify", store.cell().string(), "--quiet"}) == 1);
+  const Store::Answer answer = store.verify({store.profile().string()});
+  CHECK(answer.code == 0);
+  CHECK(answer.verdict_of("run") == "note");
+}
+
+TEST_CASE("rooms of a store that has moved are found below --data") {
+  const Store store;
+  Store::edit_json(store.cell() / "config.json", [&](Json& json) {
+    json["dataset_folder"] = "/elsewhere/glassroom/" + store.room().filename().string();
+  });
+  CHECK(store.verify({store.cell().string(), "--fast"}).code == 3);
+  const std::string data = store.room().parent_path().parent_path();
+  CHECK(store.verify({store.cell().string(), "--fast", "--data", data}).code == 0);
+  CHECK(run({"verify", store.profile().string(), "--dataset", data, "--quiet"}) == 1);
 }
