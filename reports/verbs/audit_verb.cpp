@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "datasets/dataset.h"
 #include "glint/core/device.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/parallel.h"
@@ -20,8 +21,16 @@ constexpr int kRepeatsOnGpu = 3;
 
 struct AuditArguments {
   int repeats = 0;  // 0: 2, on a GPU 3
-  std::string keep;
+  std::string dataset, keep;
 };
+
+// The room, or data of the user's: a lean build can make no room.
+Scene audited_scene(
+    const CommonOptions& common, const AuditArguments& arguments, const Profile& room
+) {
+  if (arguments.dataset.empty()) return common.scene_loader()(room.sources().front()).scene;
+  return with_exit_code(ExitCode::kBadReference, [&] { return load_scene(arguments.dataset, {}); });
+}
 
 // Variants share their method's code: unless they are named, the methods alone.
 std::vector<std::string> audited_methods(const CommonOptions& common, const Profile& profile) {
@@ -152,14 +161,14 @@ int run_audit(const CommonOptions& common, const AuditArguments& arguments) {
   const Profile profile = load_profile(common.profile), room = load_profile(kRoomProfile);
   const std::vector<std::string> ids = audited_methods(common, profile);
   AuditOptions options = audit_options(common, arguments, room);
-  const LoadedScene loaded = common.scene_loader()(room.sources().front());
+  const Scene scene = audited_scene(common, arguments, room);
   const TemporaryFolder temporary("glint_audit");
   options.folder = arguments.keep.empty() ? temporary.path() : fs::path(arguments.keep);
   std::vector<AuditedMethod> methods;
   Progress progress("audit", ids.size());
   for (const std::string& id : ids) {
     const Json config = method_overrides(profile, id, common.set);
-    methods.push_back(audit_quietly(id, config, loaded.scene, options));
+    methods.push_back(audit_quietly(id, config, scene, options));
     progress.advance(1, id);
   }
   if (common.json)
@@ -186,6 +195,9 @@ void add_audit_verb(CommandLine& line) {
           "--repeats", arguments->repeats, "trainings with the same threads; else 2, on a GPU 3"
   )
       ->check(CLI::Range(2, 100));
+  verb->add_option(
+      "--dataset", arguments->dataset, "train on this folder or packed scene, not on a room"
+  );
   verb->add_option("--keep", arguments->keep, "leave the runs in this folder");
 }
 

@@ -118,7 +118,6 @@ TEST_CASE("a method that cannot be trained says so") {
 
 TEST_CASE("the verb exits with 4 where bytes differ") {
   register_grey_methods();
-  const test::TempFolder folder;
   int code = 0;
   const auto audit = [&](const std::string& methods) {
     return parse_json(test::captured(1, [&] {
@@ -128,8 +127,8 @@ TEST_CASE("the verb exits with 4 where bytes differ") {
            methods,
            "--iterations",
            "2",
-           "--data",
-           folder / "data",
+           "--dataset",
+           test::small_room_folder(),
            "--json",
            "--quiet",
            "--device",
