@@ -4,17 +4,13 @@
 #include "glint/core/left_behind.h"
 
 namespace glint {
-namespace {
 
-// The files of a stage, below the run's folder.
-std::vector<std::string> outputs_of(Stage stage) {
+std::vector<std::string> stage_outputs(Stage stage) {
   if (stage == Stage::kRender) return {"renders", "strip.png"};
   if (stage == Stage::kMesh) return {"mesh.ply", "mesh_transmission.ply", "mesh.json"};
   if (stage == Stage::kScore) return {"metrics.json"};
-  return {};  // training says what it saved
+  return {};
 }
-
-}  // namespace
 
 void begin_stage(const fs::path& run, Stage stage) {
   remove_left_behind(run);
@@ -22,7 +18,7 @@ void begin_stage(const fs::path& run, Stage stage) {
 }
 
 void end_stage(const fs::path& run, Stage stage, const Json& document, const std::string& note) {
-  write_stage(run, stage, document, outputs_of(stage), note);
+  write_stage(run, stage, document, stage_outputs(stage), note);
 }
 
 void run_stage(

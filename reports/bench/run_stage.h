@@ -10,6 +10,9 @@
 
 namespace glint {
 
+// The files of a stage, or their folder, in the run's; of training none: it says what it saved.
+std::vector<std::string> stage_outputs(Stage stage);
+
 // Forgets the stage and the scores behind it.
 void begin_stage(const fs::path& run, Stage stage);
 void end_stage(

@@ -21,20 +21,14 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void write_metrics(
-    const RunSpec& spec,
-    const Scores& means,
-    const std::vector<Scores>& scores,
-    const std::vector<View>& views,
-    const Json& mesh_recipe
-) {
+void write_metrics(const RunSpec& spec, const RunScores& scores, const std::vector<View>& views) {
   Json json = {{"scene", spec.scene}, {"method", spec.method}, {"seed", spec.options.seed}};
-  json["metrics"] = means;
+  json["metrics"] = scores.means;
   json["views"] = Json::array();
   for (std::size_t i = 0; i < views.size(); ++i)
-    json["views"].push_back({{"name", views[i].name}, {"metrics", scores[i]}});
+    json["views"].push_back({{"name", views[i].name}, {"metrics", scores.views[i]}});
   json["protocol"] = score_protocols();
-  if (!mesh_recipe.empty()) json["meshes"] = mesh_recipe;
+  if (!scores.meshes.empty()) json["meshes"] = scores.meshes;
   write_file(spec.folder / "metrics.json", json.dump(2) + "\n");
 }
 
@@ -81,27 +75,37 @@ double measure_fps(Method& method, const Scene& scene, const TimingOptions& opti
   return options.frames / seconds_since(start);
 }
 
+RunScores score_run(
+    const RunSpec& spec,
+    const Scene& scene,
+    const MeshProtocol& mesh,
+    const std::function<void(std::string_view)>& scored
+) {
+  RunScores scores;
+  for (const View& view : scene.test) {
+    scores.views.push_back(with_exit_code(ExitCode::kBadPrediction, [&] {
+      return score_view(view_folder(spec.folder, view.name), view);
+    }));
+    scored(view.name);
+  }
+  scores.means = mean_scores(scores.views);
+  if (score_meshes.here()) scores.means.merge(score_meshes(spec, scene, mesh, scores.meshes));
+  return scores;
+}
+
 std::map<std::string, double> eval_stage(
     const RunSpec& spec,
     const Scene& scene,
     const std::map<std::string, double>& cost,
     const MeshProtocol& mesh
 ) {
-  std::vector<Scores> scores;
   Progress progress("score", scene.test.size() + 1);  // the meshes last
-  for (const View& view : scene.test) {
-    scores.push_back(with_exit_code(ExitCode::kBadPrediction, [&] {
-      return score_view(view_folder(spec.folder, view.name), view);
-    }));
-    progress.advance(1, view.name);
-  }
-  Scores means = mean_scores(scores);
-  Json recipe = Json::object();
-  if (score_meshes.here()) means.merge(score_meshes(spec, scene, mesh, recipe));
+  RunScores scores =
+      score_run(spec, scene, mesh, [&](std::string_view view) { progress.advance(1, view); });
   progress.advance(1, "meshes");
-  means.insert(cost.begin(), cost.end());
-  write_metrics(spec, means, scores, scene.test, recipe);
-  return means;
+  scores.means.insert(cost.begin(), cost.end());
+  write_metrics(spec, scores, scene.test);
+  return scores.means;
 }
 
 }  // namespace glint

@@ -3,6 +3,7 @@
 // folder.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "metrics/mesh/mesh_protocol.h"
@@ -29,10 +30,23 @@ void render_stage(const RunSpec& spec, const Scene& scene, Method& method);
 // converted inside the clock.
 double measure_fps(Method& method, const Scene& scene, const TimingOptions& options);
 
-// Scores renders/ against the scene's test views and the run's meshes against the dataset's, and
-// writes metrics.json (means, per-view values with names, protocols). `cost` joins the means:
-// "fps", "train-minutes", "peak-memory", "num-surfels". Returns the means by id; regions as
-// "psnr@glass". Errors (kBadPrediction): a render is missing, damaged or of another size.
+// What the files of a run score: renders/ against the scene's test views, the run's meshes against
+// the dataset's. `scored` is told each view.
+struct RunScores {
+  std::vector<std::map<std::string, double>> views;  // id -> value, in the order of the test views
+  std::map<std::string, double> means;               // with the values of meshes
+  Json meshes = Json::object();                      // their recipe; empty: not scored
+};
+RunScores score_run(
+    const RunSpec& spec,
+    const Scene& scene,
+    const MeshProtocol& mesh,
+    const std::function<void(std::string_view)>& scored
+);
+
+// The same, and writes metrics.json (means, per-view values with names, protocols). `cost` joins
+// the means: "fps", "train-minutes", "peak-memory", "num-surfels". Returns the means by id; regions
+// as "psnr@glass". Errors (kBadPrediction): a render is missing, damaged or of another size.
 std::map<std::string, double> eval_stage(
     const RunSpec& spec,
     const Scene& scene,

@@ -211,6 +211,19 @@ bool is_our_run(const fs::path& folder) {
   });
 }
 
+std::vector<fs::path> runs_below(const fs::path& folder) {
+  std::error_code code;
+  std::vector<fs::path> runs;
+  for (fs::recursive_directory_iterator it(folder, code), end; it != end; it.increment(code)) {
+    if (code) break;
+    if (!it->is_directory(code) || !is_our_run(it->path())) continue;
+    runs.push_back(it->path());
+    it.disable_recursion_pending();
+  }
+  std::sort(runs.begin(), runs.end());
+  return runs;
+}
+
 bool holds_work(const fs::path& folder) {
   return fs::exists(folder / "config.json") &&
          (is_finished(folder) || fs::exists(folder / kCheckpointFile));

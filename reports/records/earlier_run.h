@@ -3,6 +3,8 @@
 // or removed; whatever else lies in the folder stays as it is.
 #pragma once
 
+#include <vector>
+
 #include "glint/core/files.h"
 
 namespace glint {
@@ -17,6 +19,9 @@ inline constexpr const char* kPreviousRun = "previous_run";
 // Does config.json say that the folder is a run of ours? Those of earlier versions are known by
 // their fields.
 bool is_our_run(const fs::path& folder);
+
+// Runs of ours in a folder and in its folders, sorted; not what lies in the folder of a run.
+std::vector<fs::path> runs_below(const fs::path& folder);
 
 // A run that has ended, or a checkpoint that one could go on from: more than a minute's work.
 bool holds_work(const fs::path& folder);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "reports/records/environment.h"
 
+#include <sys/utsname.h>
+
 #include <ctime>
+#include <fstream>
 #include <string>
 
 #include "glint/core/device.h"
@@ -9,6 +12,8 @@
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "glint/cuda/backend.h"
+#include "metrics/metric.h"
+#include "reports/records/build_info.h"
 #include "reports/records/revision.h"
 
 namespace glint {
@@ -24,18 +29,61 @@ std::string utc_now() {
   return text;
 }
 
+// "Debian GNU/Linux 12 (bookworm)"; "unknown" where it does not say.
+std::string operating_system() {
+  std::ifstream in("/etc/os-release");
+  constexpr std::string_view kKey = "PRETTY_NAME=";
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with(kKey)) continue;
+    std::string name = line.substr(kKey.size());
+    std::erase(name, '"');
+    return name;
+  }
+  return "unknown";
+}
+
+// SHA-256 of the files behind metrics: the weights of LPIPS. Empty: there are none.
+Json weights_json() try {
+  Json weights = Json::object();
+  for (const MetricFamily& family : metric_families())
+    for (const Metric& metric : family.metrics)
+      if (family.files)
+        if (const Json found = family.files(metric).provenance; found.contains("sha256"))
+          weights[metric.id] = found["sha256"];
+  return weights;
+} catch (const Error& error) {
+  return {{"unusable", error.what()}};  // scoring says so, too
+}
+
+// Of the GPU in use; empty: on the CPU.
+std::string compute_capability() {
+  const int capability = gpu::cuda_device().compute_capability;
+  return on_gpu() ? fmt::format("{}.{}", capability / 10, capability % 10) : "";
+}
+
 }  // namespace
 
 Json environment_json() {
   const Machine machine = this_machine();
+  utsname system{};
+  ::uname(&system);
   return {
       {"device", device_name()},
       {"driver", on_gpu() ? "CUDA " + gpu::cuda_device().driver : ""},
+      {"compute_capability", compute_capability()},
+      {"machine", system.nodename},
+      {"os", operating_system()},
+      {"kernel", fmt::format("{} {}", system.sysname, system.release)},
       {"cpu", machine.cpu},
       {"cores", machine.cores},
       {"threads", num_threads()},
       {"memory_bytes", machine.memory_bytes},
       {"compiler", fmt::format("g++ {}", __VERSION__)},
+      {"build_type", build_info().type},
+      {"flags", build_info().flags},
+      {"cuda", build_info().cuda},
+      {"libraries", build_info().libraries},
+      {"weights", weights_json()},
       {"git_revision", git_revision()},
       {"date", utc_now()}};
 }

@@ -8,7 +8,8 @@
 
 namespace glint {
 
-// Machine, threads, build (compiler, git revision), device and date: part of every record.
+// Machine, threads, build (compiler, flags, libraries, git revision), weights, device and date:
+// part of every record (docs/RECORDS.md).
 Json environment_json();
 
 // Where ops run from now on: "cpu", "cuda", or "auto": the GPU where one is usable, else the CPU,

@@ -32,19 +32,6 @@ std::uintmax_t bytes_below(const fs::path& path) {
   return bytes_of(files);
 }
 
-std::vector<fs::path> runs_below(const fs::path& folder) {
-  std::error_code code;
-  std::vector<fs::path> runs;
-  for (fs::recursive_directory_iterator it(folder, code), end; it != end; it.increment(code)) {
-    if (code) break;
-    if (!it->is_directory(code) || !is_our_run(it->path())) continue;
-    runs.push_back(it->path());
-    it.disable_recursion_pending();
-  }
-  std::sort(runs.begin(), runs.end());
-  return runs;
-}
-
 // Why a run belongs to no finished cell; nothing: it does, or it is kept.
 std::optional<std::string> why_leftover(
     const fs::path& run, const Record* record, bool unfinished

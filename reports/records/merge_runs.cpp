@@ -22,7 +22,7 @@ bool is_a_cost(const std::string& metric) {
 
 std::string machine_of(const Record& record) {
   const Json& environment = record.environment;
-  for (const char* field : {"machine", "device", "cpu"})
+  for (const char* field : {"host", "device", "cpu"})
     if (environment.is_object() && environment.contains(field) && environment[field].is_string())
       return environment[field];
   return "an unknown machine";

@@ -9,9 +9,19 @@ execute_process(
 if(failed OR revision STREQUAL "")
   set(revision "unknown")
 endif()
+execute_process(
+  COMMAND git -C ${SOURCE_DIR} log -1 --format=%ct
+  OUTPUT_VARIABLE time
+  OUTPUT_STRIP_TRAILING_WHITESPACE
+  ERROR_QUIET
+  RESULT_VARIABLE failed
+)
+if(failed OR NOT time MATCHES "^[0-9]+$")
+  set(time 0)
+endif()
 
 set(content
-    "#include \"reports/records/revision.h\"\n\nnamespace glint {\nconst char* git_revision() { return \"${revision}\"; }\n}  // namespace glint\n"
+    "#include \"reports/records/revision.h\"\n\nnamespace glint {\nconst char* git_revision() { return \"${revision}\"; }\nlong long git_time() { return ${time}; }\n}  // namespace glint\n"
 )
 set(previous "")
 if(EXISTS ${OUTPUT})

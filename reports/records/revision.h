@@ -6,5 +6,7 @@ namespace glint {
 
 // "1a2b3c4d5e6f", with "-dirty" when files differ; "unknown" without git.
 const char* git_revision();
+// When it was committed, in seconds since 1970 (UTC); 0: not known.
+long long git_time();
 
 }  // namespace glint

@@ -135,6 +135,19 @@ Json data_document(
       {"code", load_code(dataset, loader)}};
 }
 
+Json data_document_now(
+    const Json& then,
+    const fs::path& dataset,
+    const fs::path& data_folder,
+    const std::string& loader
+) {
+  const Json& scene = then.at("scene");
+  if (!scene.contains("spp"))
+    return data_document(dataset, scene.at("max_pixels"), data_folder, loader);
+  return {
+      {"scene", scene}, {"content", made_content(dataset)}, {"code", load_code(dataset, loader)}};
+}
+
 LoadedScene load_source(const SceneSource& source, const fs::path& data_folder) {
   LoadedScene loaded;
   LoadOptions options;

@@ -36,6 +36,15 @@ Json data_document(
     const std::string& loader = ""
 );
 
+// What a training's data are now, to be compared with `then`, its document of them: of a room that
+// `all` made, what its folder lists; else data_document().
+Json data_document_now(
+    const Json& then,
+    const fs::path& dataset,
+    const fs::path& data_folder,
+    const std::string& loader = ""
+);
+
 // Makes the scene first when it is missing, or was made by other code. Errors (kBadReference,
 // kEnvironment): as make_glassroom and load_scene.
 LoadedScene load_source(const SceneSource& source, const fs::path& data_folder);

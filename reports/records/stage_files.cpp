@@ -35,6 +35,45 @@ std::vector<fs::path> files_below(const fs::path& place) {
   return files;
 }
 
+struct StageReading {
+  std::optional<StageFile> file;
+  std::string why_not;
+};
+
+StageReading examine(const fs::path& folder, Stage stage) {
+  const fs::path path = file_of(folder, stage);
+  std::error_code code;
+  if (!fs::exists(path, code)) return {};
+  const Json json = parse_json(read_file(path));
+  try {
+    StageFile file{
+        json.at("made_from"),
+        json.at("files"),
+        json.at("note"),
+        json.value("sha256", std::map<std::string, std::string>{})};
+    const std::string stored = json.at("key"), key = stage_key(file.document);
+    if (stored != key)
+      return {
+          std::move(file), fmt::format("its key {} is not that of its document, {}", stored, key)};
+    return {std::move(file), ""};
+  } catch (const nlohmann::json::exception&) {
+    return {std::nullopt, "damaged"};
+  }
+}
+
+// Empty: the file is there and of that size.
+std::string size_change(const fs::path& folder, const std::string& name, std::uintmax_t bytes) {
+  std::error_code code;
+  const std::uintmax_t size = fs::file_size(folder / name, code);
+  if (code) return name + " is missing";
+  return size == bytes ? "" : fmt::format("{} has {} bytes, had {}", name, size, bytes);
+}
+
+bool has_same_bytes(const fs::path& folder, const StageFile& stage, const std::string& name) {
+  const auto hash = stage.hashes.find(name);
+  return hash == stage.hashes.end() || sha256(read_file(folder / name)) == hash->second;
+}
+
 // Hashes of files, by name, size and time of change.
 class HashCache {
  public:
@@ -80,17 +119,12 @@ std::string stage_key(const Json& document) {
 }
 
 std::optional<StageFile> read_stage(const fs::path& folder, Stage stage) {
-  const fs::path path = file_of(folder, stage);
-  std::error_code code;
-  if (!fs::exists(path, code)) return std::nullopt;
-  const Json json = parse_json(read_file(path));
-  try {
-    StageFile file{json.at("made_from"), json.at("files"), json.at("note")};
-    if (json.at("key") != stage_key(file.document)) return std::nullopt;
-    return file;
-  } catch (const nlohmann::json::exception&) {
-    return std::nullopt;
-  }
+  const StageReading reading = examine(folder, stage);
+  return reading.why_not.empty() ? reading.file : std::nullopt;
+}
+
+std::string why_unreadable(const fs::path& folder, Stage stage) {
+  return examine(folder, stage).why_not;
 }
 
 void write_stage(
@@ -100,10 +134,17 @@ void write_stage(
     const std::vector<std::string>& outputs,
     const std::string& note
 ) {
-  Json json = {{"key", stage_key(document)}, {"note", note}, {"files", Json::object()}};
+  Json json = {
+      {"key", stage_key(document)},
+      {"note", note},
+      {"files", Json::object()},
+      {"sha256", Json::object()}};
   for (const std::string& output : outputs)
-    for (const fs::path& file : files_below(folder / output))
-      json["files"][relative_name(file, folder)] = fs::file_size(file);
+    for (const fs::path& file : files_below(folder / output)) {
+      const std::string name = relative_name(file, folder), content = read_file(file);
+      json["files"][name] = content.size();
+      json["sha256"][name] = sha256(content);
+    }
   json["made_from"] = document;
   write_file(file_of(folder, stage), json.dump(1) + "\n");
 }
@@ -114,13 +155,19 @@ void forget_stage(const fs::path& folder, Stage stage) {
 }
 
 std::string what_is_damaged(const fs::path& folder, const StageFile& stage) {
-  for (const auto& [name, bytes] : stage.files) {
-    std::error_code code;
-    const std::uintmax_t size = fs::file_size(folder / name, code);
-    if (code) return name + " is missing";
-    if (size != bytes) return fmt::format("{} has {} bytes, had {}", name, size, bytes);
-  }
+  for (const auto& [name, bytes] : stage.files)
+    if (std::string change = size_change(folder, name, bytes); !change.empty()) return change;
   return {};
+}
+
+std::vector<std::string> changed_files(const fs::path& folder, const StageFile& stage) {
+  std::vector<std::string> changes;
+  for (const auto& [name, bytes] : stage.files) {
+    std::string change = size_change(folder, name, bytes);
+    if (change.empty() && !has_same_bytes(folder, stage, name)) change = name + " has other bytes";
+    if (!change.empty()) changes.push_back(std::move(change));
+  }
+  return changes;
 }
 
 Json with_machine_of(Json now, const Json& then) {

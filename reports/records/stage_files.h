@@ -29,10 +29,14 @@ struct StageFile {
   Json document;
   std::map<std::string, std::uintmax_t> files;  // what the stage wrote -> bytes
   std::string note;                             // of a stage that ended without: why no mesh
+  std::map<std::string, std::string> hashes;    // name -> SHA-256; earlier versions wrote none
 };
 
 // Nothing: the stage did not end here (or the file is damaged, which is the same).
 std::optional<StageFile> read_stage(const fs::path& folder, Stage stage);
+// What is wrong with the stage's file: "damaged", "its key is not that of its document". Empty:
+// nothing, or it is not there.
+std::string why_unreadable(const fs::path& folder, Stage stage);
 // With the files below `outputs` (files or folders in `folder`; those that are absent are not
 // listed).
 void write_stage(
@@ -47,6 +51,10 @@ void forget_stage(const fs::path& folder, Stage stage);
 // The first of the stage's files that is missing or has another size: "mesh.ply is missing". Empty:
 // all there.
 std::string what_is_damaged(const fs::path& folder, const StageFile& stage);
+
+// Every one of them that is missing or has other bytes, in words. Files without a hash go by their
+// size.
+std::vector<std::string> changed_files(const fs::path& folder, const StageFile& stage);
 
 // What differs between the documents of a stage then and now, one line each: "mesh.voxel 0.02 ->
 // 0.5", "code of baselines/2dgs.cpp". Keys of the stages before ("inputs") are left out.

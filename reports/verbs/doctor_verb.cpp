@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <ctime>
+#include <memory>
+
 #include "glint/core/error.h"
 #include "glint/core/machine.h"
 #include "glint/core/parallel.h"
@@ -8,11 +12,13 @@
 #include "glint/cuda/require_gpu.h"
 #include "glint/drawing/canvas.h"
 #include "metrics/feature_net.h"
-
 #include "metrics/lpips_weights.h"
 #include "reports/figures/figures.h"
+#include "reports/provenance/examine_machine.h"
+#include "reports/provenance/examine_profile.h"
 #include "reports/records/environment.h"
 #include "reports/records/revision.h"
+#include "reports/verbs/listing.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -23,108 +29,170 @@ constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 constexpr std::uint64_t kNeededDisk = 2 * kGiB;  // a profile on rooms stays well below
 constexpr std::uint64_t kNeededMemory = 2 * kGiB;
 
-struct Examined {
-  std::string name, value;
-  bool good = true;
-  std::string advice;  // when not good
-};
-
 std::string gib(std::uint64_t bytes) {
   return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / static_cast<double>(kGiB));
 }
 
+Checked good(std::string name, std::string value) {
+  return {std::move(name), CheckState::kOk, std::move(value)};
+}
+
+Checked needed(std::string name, std::string value, bool there, const char* advice) {
+  const CheckState state = there ? CheckState::kOk : CheckState::kBad;
+  return {std::move(name), state, std::move(value), there ? "" : advice};
+}
+
 // No device is no failure, but where there has to be one.
-Examined cuda() {
+Checked cuda() {
   const gpu::CudaDevice& device = gpu::cuda_device();
   if (!device.usable)
-    return {
+    return needed(
         "cuda",
         "no: " + device.why_not,
         !gpu::gpu_required(),
-        "GLINT_REQUIRE_GPU is set; unset it to work on the CPU"};
-  const std::string text = fmt::format(
-      "{}, {}, driver for CUDA {}", device.name, gib(device.memory_bytes), device.driver
+        "GLINT_REQUIRE_GPU is set; unset it to work on the CPU"
+    );
+  return good(
+      "cuda",
+      fmt::format(
+          "{}, {}, driver for CUDA {}", device.name, gib(device.memory_bytes), device.driver
+      )
   );
-  return {"cuda", text, true, ""};
 }
 
-// Which networks LPIPS has weights of.
-Examined lpips_weights() {
+// Which networks LPIPS has weights of, and whether they are those that were published.
+Checked lpips_weights() {
   const fs::path place = lpips_weights_place();
-  if (place.empty()) return {"lpips", "off: its columns will say 'no weights'", true, ""};
+  if (place.empty()) return good("lpips", "off: its columns will say 'no weights'");
   std::vector<std::string> found;
+  bool published = true;
   try {
     for (const LpipsNetwork& network : lpips_networks())
-      if (lpips_weights_at(place, network.name) != nullptr) found.push_back(network.name);
+      if (const auto weights = lpips_weights_at(place, network.name)) {
+        published = published && !weights->version.empty();
+        found.push_back(
+            network.name + (weights->version.empty() ? " (unknown)" : " " + weights->version)
+        );
+      }
   } catch (const Error& error) {
-    return {"lpips", error.what(), false, "mend or remove the file"};
+    return {"lpips", CheckState::kBad, error.what(), "mend or remove the file"};
   }
-  if (!found.empty()) return {"lpips", fmt::format("{}", fmt::join(found, ", ")), true, ""};
-  return {
-      "lpips", fmt::format("no weights at {}: its columns will say so", place.string()), true, ""};
+  if (found.empty())
+    return {
+        "lpips",
+        CheckState::kNote,
+        fmt::format("no weights at {}: its columns will say so", place.string()),
+        "scripts/convert_lpips_weights.py makes them"};
+  const std::string text = fmt::format("{}", fmt::join(found, ", "));
+  if (published) return good("lpips", text);
+  return {"lpips", CheckState::kNote, text, "not the published weights: values stand alone"};
 }
 
 // Of figures. Another font is no failure: only their look differs.
-Examined font() {
+Checked font() {
   const std::string found = figures_font.here() ? figures_font() : "";
-  if (found.empty()) return {"font", "off: this build draws no figures", true, ""};
-  if (found == kFontFamily) return {"font", found, true, ""};
+  if (found.empty()) return good("font", "off: this build draws no figures");
+  if (found == kFontFamily) return good("font", found);
   return {
-      "font", fmt::format("{} in place of {}: install fonts-inter", found, kFontFamily), true, ""};
+      "font",
+      CheckState::kNote,
+      fmt::format("{} in place of {}", found, kFontFamily),
+      "install fonts-inter"};
 }
 
-std::vector<Examined> examine(const CommonOptions& common) {
+std::vector<Checked> examine(const CommonOptions& common) {
   const Machine machine = this_machine();
   const std::uint64_t disk = free_disk_bytes(common.out);
   return {
-      {"cpu", machine.cpu, true, ""},
-      {"avx2",
-       machine.has_avx2 ? "yes" : "no",
-       machine.has_avx2,
-       "the CPU kernels need AVX2 and FMA; use another machine"},
-      {"threads", fmt::format("{} of {}", num_threads(), machine.cores), true, ""},
-      {"memory",
-       gib(machine.memory_bytes),
-       machine.memory_bytes >= kNeededMemory,
-       "2 GiB are needed; use smaller images"},
-      {"disk",
-       fmt::format("{} free for {}", gib(disk), common.out),
-       disk >= kNeededDisk,
-       "2 GiB are needed; free some or choose another --out"},
+      good("cpu", machine.cpu),
+      needed(
+          "avx2",
+          machine.has_avx2 ? "yes" : "no",
+          machine.has_avx2,
+          "the CPU kernels need AVX2 and FMA; use another machine"
+      ),
+      good("threads", fmt::format("{} of {}", num_threads(), machine.cores)),
+      needed(
+          "memory",
+          gib(machine.memory_bytes),
+          machine.memory_bytes >= kNeededMemory,
+          "2 GiB are needed; use smaller images"
+      ),
+      needed(
+          "disk",
+          fmt::format("{} free for {}", gib(disk), common.out),
+          disk >= kNeededDisk,
+          "2 GiB are needed; free some or choose another --out"
+      ),
+      examine_folder("out", common.out, "--out"),
+      examine_clock(std::time(nullptr), git_time()),
+      examine_open_files(),
       cuda(),
-      {"networks", feature_net_libraries(), true, ""},
+      good("networks", feature_net_libraries()),
       lpips_weights(),
       font(),
-      {"revision", git_revision(), true, ""}};
+      good("revision", git_revision())};
 }
 
-int run_doctor(const CommonOptions& common) {
-  bool good = true;
+std::vector<Checked> examine_plan(const CommonOptions& common) {
+  const Profile profile = common.resolved_profile();
+  std::vector<Checked> rows = examine_profile(
+      {profile,
+       make_plan(profile, common.filter(), common.set),
+       profile_folder(common.out, profile.name),
+       common.data,
+       common.scene_identifier()}
+  );
+  rows.insert(rows.begin(), examine_folder("data", common.data, "--data"));
+  return rows;
+}
+
+Json doctor_json(const std::vector<Checked>& rows) {
   Json json = Json::object();
-  std::string text;
-  for (const Examined& examined : examine(common)) {
-    good &= examined.good;
-    json[examined.name] = {{"value", examined.value}, {"ok", examined.good}};
-    text += fmt::format(
-        "{:<9} {:<5} {}\n", examined.name, examined.good ? "ok" : "BAD", examined.value
-    );
-    if (!examined.good) text += fmt::format("{:<15} {}\n", "", examined.advice);
+  for (const Checked& row : rows)
+    json[row.name] = {
+        {"value", row.detail},
+        {"ok", row.state != CheckState::kBad},
+        {"state", state_word(row.state)},
+        {"advice", row.advice}};
+  return json;
+}
+
+std::string doctor_text(const std::vector<Checked>& rows) {
+  std::vector<std::vector<std::string>> lines;
+  for (const Checked& row : rows) {
+    lines.push_back({row.name, std::string(state_word(row.state)), row.detail});
+    if (!row.advice.empty()) lines.push_back({"", "", "-> " + row.advice});
+  }
+  return listing(lines);
+}
+
+int run_doctor(const CommonOptions& common, bool with_profile) {
+  std::vector<Checked> rows = examine(common);
+  if (with_profile) {
+    const auto of_profile = examine_plan(common);
+    rows.insert(rows.end(), of_profile.begin(), of_profile.end());
   }
   if (common.json)
-    print_json(json);
+    print_json(doctor_json(rows));
   else
-    print_text(text);
-  return static_cast<int>(good ? ExitCode::kSuccess : ExitCode::kEnvironment);
+    print_text(doctor_text(rows));
+  const bool fit = std::none_of(rows.begin(), rows.end(), [](const Checked& row) {
+    return row.state == CheckState::kBad;
+  });
+  return static_cast<int>(fit ? ExitCode::kSuccess : ExitCode::kEnvironment);
 }
 
 void add_doctor_verb(CommandLine& line) {
-  line.add_verb(
+  auto with_profile = std::make_shared<std::function<bool()>>();
+  CLI::App* verb = line.add_verb(
       line.app,
       "doctor",
-      "is this machine fit for it",
-      [&line] { return run_doctor(line.common); },
-      kOutOption | kDeviceOption | kThreadsOption | kJsonOption
+      "is this machine fit for it; with --profile: is all there that the profile needs",
+      [&line, with_profile] { return run_doctor(line.common, (*with_profile)()); },
+      kPlanOptions | kThreadsOption
   );
+  *with_profile = [verb] { return verb->get_option("--profile")->count() > 0; };
 }
 
 }  // namespace

@@ -69,6 +69,16 @@ TEST_CASE("docs/PROFILES.md has every field of a profile, and no other") {
   CHECK(first_cells(section(text, "## `[mesh_metrics]`")) == field_names(MeshProtocol{}));
 }
 
+TEST_CASE("docs/ARCHITECTURE.md has every verb, and no other") {
+  std::set<std::string> verbs;
+  for (const auto& [id, verb] : Registry<Verb>::all()) verbs.insert(id);
+  std::set<std::string> named;
+  std::istringstream lines(section(doc("ARCHITECTURE.md"), "## Verbs"));
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("| `")) named.insert(line.substr(3, line.find('`', 3) - 3));
+  CHECK(named == verbs);
+}
+
 TEST_CASE("docs/JSON.md has every verb that prints JSON, and no other") {
   const CommandLine line;
   std::set<std::string> verbs;
