@@ -133,6 +133,7 @@ TEST_CASE("every field of a profile changes the keys that go by it and no other"
       {"seeds", {[](Profile& p) { p.seeds = {1}; }, kTrain, "seed"}},
       {"timing_frames", {[](Profile& p) { p.timing_frames += 1; }, kScore, "timing_frames"}},
       {"timing_warmup", {[](Profile& p) { p.timing_warmup += 1; }, kScore, "timing_warmup"}},
+      {"gpus", {[](Profile& p) { p.gpus += 1; }, kNone, ""}},
       {"defaults", {[](Profile& p) { p.defaults["max_pixels"] = 9; }, kTrain, "scene.max_pixels"}},
       {"scenes", {[](Profile& p) { p.scenes.push_back("room_2"); }, kNone, ""}},
       {"overrides",

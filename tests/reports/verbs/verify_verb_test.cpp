@@ -88,6 +88,8 @@ class Store {
         REQUIRE(
             run(
                 {"all",
+                 "--executor",
+                 "inline",
                  "--profile",
                  folder / "tiny.toml",
                  "--out",
