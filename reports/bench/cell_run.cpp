@@ -136,6 +136,7 @@ class CellRun {
       record_.metrics.clear();
       record_.failure = failure_of(error, clock_.stage(), spec_.folder);
     }
+    record_.process_memory_mb = peak_memory_mb();
     return std::move(record_);
   }
 
@@ -151,7 +152,9 @@ class CellRun {
   void check_memory(const std::vector<Record>& records) {
     const Json config = create_method(spec_.method, spec_.config)->config();
     const auto max_surfels = config.value("max_surfels", std::numeric_limits<std::size_t>::max());
-    const MemoryEstimate estimate = estimate_memory(spec_.method, scene_, max_surfels, records);
+    const MemoryEstimate estimate = estimate_memory(
+        {spec_.method, max_surfels, profile_.mesh_protocol().num_samples}, scene_, records
+    );
     record_.estimated_memory_mb = estimate.bytes / 1e6;
     check_fits(estimate, available_memory_bytes() + resident_memory_bytes());
   }

@@ -17,6 +17,8 @@ constexpr double kSets = 3;               // interface, transmission, reflection
 constexpr double kPixelsPerSurfel = 1.5;  // what rooms train to
 // Maps that a step keeps for its way back, losses and pictures of features.
 constexpr double kBytesPerPixel = 1500;
+// Points, normals, distances and the trees over them, of two meshes.
+constexpr double kBytesPerSample = 600;
 
 double pixels_of(const Scene& scene) {
   double most = 0;
@@ -54,27 +56,29 @@ double image_bytes(const Scene& scene) {
   return bytes;
 }
 
+double bytes_taken(const Record& record) {
+  const auto training = record.metrics.find("peak-memory");
+  const double trained = training == record.metrics.end() ? 0 : training->second;
+  return std::max(trained, record.process_memory_mb) * 1e6;
+}
+
 MemoryEstimate estimate_memory(
-    const std::string& method,
-    const Scene& scene,
-    std::size_t max_surfels,
-    const std::vector<Record>& records
+    const MemoryUser& user, const Scene& scene, const std::vector<Record>& records
 ) {
   double most = 0;
   for (const Record& record : records)
-    if (const auto peak = record.metrics.find("peak-memory");
-        record.ok() && record.cell.method == method && peak != record.metrics.end() &&
+    if (record.ok() && record.cell.method == user.method &&
         record.resolution == resolution_of(scene))
-      most = std::max(most, peak->second * 1e6);
+      most = std::max(most, bytes_taken(record));
   if (most > 0) return {most, "what such cells took before"};
   const double pixels = pixels_of(scene);
-  const double surfels = std::min(
-      double(max_surfels),
-      std::max(double(scene.points.positions.size()), pixels / kPixelsPerSurfel)
-  );
-  const double bytes = kProgramBytes + image_bytes(scene) + kBytesPerPixel * pixels +
-                       kSets * kBytesPerSurfel * surfels;
-  return {bytes, "its images and surfels"};
+  const double seen = std::max(double(scene.points.positions.size()), pixels / kPixelsPerSurfel);
+  const double surfels = std::min(double(user.max_surfels), seen);
+  const double loaded = kProgramBytes + image_bytes(scene);
+  const double training = kBytesPerPixel * pixels + kSets * kBytesPerSurfel * surfels;
+  const double scores = kBytesPerSample * double(user.mesh_samples);
+  if (scores > training) return {loaded + scores, "its images and the samples of meshes"};
+  return {loaded + training, "its images and surfels"};
 }
 
 void check_fits(const MemoryEstimate& estimate, std::uint64_t available) {

@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <sstream>
+#include <utility>
 
 #include "glint/core/machine.h"
 #include "glint/core/progress.h"
@@ -107,8 +108,8 @@ void CellProcess::heed_time() {
 }
 
 void CellProcess::stop(int signal) {
-  if (!told_) told_at_ = Clock::now();
-  told_ = true;
+  if (std::exchange(told_, true)) return;  // a second signal would end it at once
+  told_at_ = Clock::now();
   child_.send(signal);
 }
 

@@ -6,6 +6,7 @@
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
 #include "reports/bench/cell_stages.h"
+#include "reports/bench/memory_estimate.h"
 #include "reports/records/run_folder.h"
 
 namespace glint {
@@ -90,12 +91,11 @@ std::optional<double> CellQueue::seconds_of(const PlanCell& cell) const {
 }
 
 double CellQueue::bytes_of(const PlanCell& cell) const {
-  double most = 0;  // megabytes
+  double most = 0;
   for (const Record& record : records_)
     if (record.ok() && record.cell.method == cell.cell.method)
-      if (const auto peak = record.metrics.find("peak-memory"); peak != record.metrics.end())
-        most = std::max(most, peak->second);
-  return most * 1e6;
+      most = std::max(most, bytes_taken(record));
+  return most;
 }
 
 // Of those that wait; empty where one of them is of a method that has not been seen yet.

@@ -48,7 +48,12 @@ struct Pipe {
 
 // Between fork() and exec() only calls that are safe in a signal handler are allowed.
 [[noreturn]] void become(
-    char* const* words, char* const* environment, int output, int failure, pid_t parent
+    const char* program,
+    char* const* words,
+    char* const* environment,
+    int output,
+    int failure,
+    pid_t parent
 ) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -63,7 +68,7 @@ struct Pipe {
   const int nothing = ::open("/dev/null", O_RDONLY);
   if (nothing >= 0) ::dup2(nothing, STDIN_FILENO);
   environ = const_cast<char**>(environment);
-  ::execvp(words[0], words);
+  ::execvp(program, words);
   const int why = errno;
   [[maybe_unused]] const auto written = ::write(failure, &why, sizeof why);
   ::_exit(127);
@@ -87,13 +92,22 @@ ProcessEnd end_of(int status) {
 
 ChildProcess::ChildProcess(const Words& words, const Words& settings) {
   const std::vector<std::string> environment = environment_with(settings);
-  const auto word_pointers = pointers_to(words), environment_pointers = pointers_to(environment);
+  Words shown = words;
+  if (words.at(0) == kThisProgram) shown[0] = program_invocation_short_name;
+  const auto word_pointers = pointers_to(shown), environment_pointers = pointers_to(environment);
   const Pipe output, failure;
   const pid_t parent = ::getpid();
   id_ = output.write < 0 || failure.write < 0 ? -1 : ::fork();
   const int no_process = errno;
   if (id_ == 0)
-    become(word_pointers.data(), environment_pointers.data(), output.write, failure.write, parent);
+    become(
+        words[0].c_str(),
+        word_pointers.data(),
+        environment_pointers.data(),
+        output.write,
+        failure.write,
+        parent
+    );
   ::close(output.write);
   ::close(failure.write);
   output_ = output.read;

@@ -10,6 +10,9 @@
 
 namespace glint {
 
+// This program, even where its file has been replaced or moved since it began.
+inline constexpr const char* kThisProgram = "/proc/self/exe";
+
 // How a process ended: with `code`, or by `signal` when that is not 0.
 struct ProcessEnd {
   int code = 0, signal = 0;

@@ -24,7 +24,12 @@ constexpr const char* kTaskScript = R"(#!/bin/bash
 set -u
 task=$(($1 + SLURM_ARRAY_TASK_ID))
 shift
-"$@" --task "$task" &
+words=("$@")
+# What --force had to undo is undone since the first time.
+if [ "${SLURM_RESTART_COUNT:-0}" -gt 0 ]; then
+  for i in "${!words[@]}"; do [ "${words[i]}" != --force ] || unset "words[i]"; done
+fi
+"${words[@]}" --task "$task" &
 child=$!
 trap 'kill -USR1 "$child" 2>/dev/null' USR1
 trap 'kill -TERM "$child" 2>/dev/null' TERM
@@ -83,7 +88,7 @@ class Submission {
         plan_(make_plan(options.profile, options.filter, options.assignments)),
         queue_(plan_, options, 2),
         folder_(fs::absolute(slurm_folder(options.out))),
-        program_(fs::read_symlink("/proc/self/exe")) {}
+        program_(fs::read_symlink(kThisProgram)) {}
 
   RunSummary run() {
     RunSummary summary;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "reports/bench/memory_estimate.h"
 #include "reports/records/earlier_run.h"
 #include "reports/records/run_folder.h"
 #include "reports/records/stage_files.h"
@@ -85,8 +86,8 @@ std::optional<Estimate> memory_of_cells(const std::vector<Record>& records) {
   double most = 0;
   int known = 0;
   for (const Record& record : records)
-    if (const auto found = record.metrics.find("peak-memory"); found != record.metrics.end()) {
-      most = std::max(most, found->second * 1e6);
+    if (const double bytes = bytes_taken(record); bytes > 0) {
+      most = std::max(most, bytes);
       ++known;
     }
   if (known == 0) return std::nullopt;

@@ -30,6 +30,7 @@ void visit_fields(R& record, V&& v) {
   v("dataset_hash", record.dataset_hash);
   v("num_surfels", record.num_surfels);
   v("estimated_memory_mb", record.estimated_memory_mb);
+  v("process_memory_mb", record.process_memory_mb);
   v("warnings", record.warnings);
   v("notes", record.notes);
   v("not_measured", record.not_measured);

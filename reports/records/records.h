@@ -49,7 +49,8 @@ struct Record {
   std::string train_key, score_key;
   std::string dataset_hash;  // as the loader knows the data
   std::size_t num_surfels = 0;
-  double estimated_memory_mb = 0;     // before its training; metrics have what it really took
+  double estimated_memory_mb = 0;     // before its training
+  double process_memory_mb = 0;       // the most that its process took; metrics have the training's
   std::vector<std::string> warnings;  // of the method: losses off, missing priors
   std::vector<std::string> notes;     // of the method, for readers of tables: which masks it got
   Json timings = Json::object();      // stage -> seconds

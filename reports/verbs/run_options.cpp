@@ -5,12 +5,10 @@
 
 #include "glint/core/interrupt.h"
 #include "glint/core/parallel.h"
+#include "reports/executors/child_process.h"
 
 namespace glint {
 namespace {
-
-// This program, even where it has been replaced or moved meanwhile.
-constexpr const char* kThisProgram = "/proc/self/exe";
 
 using Words = std::vector<std::string>;
 

@@ -17,25 +17,32 @@ TEST_CASE("the images of a scene count as they lie in memory") {
 
 TEST_CASE("what cells of a method took goes before what images and surfels say") {
   const Scene scene = fake_scene("room_1");
-  const MemoryEstimate unknown = estimate_memory("fake", scene, 1000, {});
+  const MemoryEstimate unknown = estimate_memory({"fake", 1000, 0}, scene, {});
   CHECK(unknown.from == "its images and surfels");
   Record record;
   record.cell = {"room_9", "fake", 3};
   record.resolution = "16x12";
   record.metrics["peak-memory"] = 2000;
-  CHECK(estimate_memory("fake", scene, 1000, {record}).bytes == 2e9);
-  CHECK(estimate_memory("other", scene, 1000, {record}).bytes == unknown.bytes);
+  CHECK(estimate_memory({"fake", 1000, 0}, scene, {record}).bytes == 2e9);
+  CHECK(estimate_memory({"other", 1000, 0}, scene, {record}).bytes == unknown.bytes);
   record.resolution = "32x24";
-  CHECK(estimate_memory("fake", scene, 1000, {record}).bytes == unknown.bytes);
+  CHECK(estimate_memory({"fake", 1000, 0}, scene, {record}).bytes == unknown.bytes);
 }
 
 TEST_CASE("more surfels and larger images take more, up to the limit of the method") {
   Scene scene = fake_scene("room_1");
-  const double few = estimate_memory("fake", scene, 1000000, {}).bytes;
+  const double few = estimate_memory({"fake", 1000000, 0}, scene, {}).bytes;
   scene.points.positions.resize(100000);
-  const double many = estimate_memory("fake", scene, 1000000, {}).bytes;
+  const double many = estimate_memory({"fake", 1000000, 0}, scene, {}).bytes;
   CHECK(many > few + 3 * 100000 * 4 * 58 * 4);
-  CHECK(estimate_memory("fake", scene, 10, {}).bytes < few);
+  CHECK(estimate_memory({"fake", 10, 0}, scene, {}).bytes < few);
+}
+
+TEST_CASE("the samples of meshes count where they take more than the training") {
+  const Scene scene = fake_scene("room_1");
+  const MemoryEstimate sampled = estimate_memory({"fake", 1000, 1000000}, scene, {});
+  CHECK(sampled.from == "its images and the samples of meshes");
+  CHECK(sampled.bytes > estimate_memory({"fake", 1000, 0}, scene, {}).bytes);
 }
 
 TEST_CASE("a cell that does not fit says so before its training") {

@@ -7,33 +7,32 @@ folder=$(mktemp -d /tmp/glint_pool.XXXXXX)
 trap 'rm -rf "$folder"' EXIT
 fail() { echo "FAILED: $*" >&2; cat "$folder"/*.err >&2; exit 1; }
 
-common=(--profile smoke --methods 2dgs,envgs,glint --iterations 160 --device cpu --data "$folder/data"
-  --checkpoint-seconds 0.2 --quiet)
+common=(--profile smoke --methods 2dgs,envgs,glint --iterations 160 --device cpu --data "$folder/data" --quiet)
 workers() { pgrep -f -- "run --executor inline .*--out $folder/pool " || true; }
 no_worker_within() {  # SECONDS
   for _ in $(seq $(($1 * 10))); do [ -n "$(workers)" ] || return 0; sleep 0.1; done
   return 1
 }
-start() {
-  "$bench" all "${common[@]}" --out "$folder/pool" --jobs 2 >"$folder/out" 2>"$folder/pool.err" &
+start() {  # FILE CHECKPOINT_SECONDS: until a run has the file
+  "$bench" all "${common[@]}" --out "$folder/pool" --jobs 2 --checkpoint-seconds "$2" >"$folder/out" 2>"$folder/pool.err" &
   pool=$!
   for _ in $(seq 300); do
-    ls "$folder"/pool/smoke/runs/room_1/*/0/checkpoint/state.safetensors >/dev/null 2>&1 && [ -n "$(workers)" ] && return
+    ls "$folder"/pool/smoke/runs/room_1/*/0/"$1" >/dev/null 2>&1 && [ -n "$(workers)" ] && return
     sleep 0.1
   done
-  fail "no checkpoint within 30 s"
+  fail "no $1 within 30 s"
 }
 
 "$bench" all "${common[@]}" --out "$folder/inline" --executor inline >"$folder/out" 2>"$folder/inline.err"
 
-start
+start log.jsonl 1000  # so that a checkpoint is the signal's
 kill -TERM "$pool"
 code=0; wait "$pool" || code=$?
 [ "$code" -eq 143 ] || fail "SIGTERM: exit $code, not 143"
 no_worker_within 1 || fail "SIGTERM: workers are left"
 ls "$folder"/pool/smoke/runs/room_1/*/0/checkpoint/state.safetensors >/dev/null || fail "SIGTERM: no checkpoint"
 
-start
+start checkpoint/state.safetensors 0.2
 kill -9 "$pool"
 wait "$pool" 2>/dev/null || true
 no_worker_within 20 || fail "kill -9: workers are left"

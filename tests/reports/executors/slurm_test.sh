@@ -111,7 +111,7 @@ echo "== without a cluster"
 rm -rf "$folder/data"  # so that there is a job which makes it
 
 echo "== submitted"
-"$bench" all "${common[@]}" --out "$folder/slurm" --executor slurm --sbatch=--comment=glint 2>&1 | tee "$folder/submitted.txt"
+"$bench" all "${common[@]}" --out "$folder/slurm" --executor slurm --force --sbatch=--comment=glint 2>&1 | tee "$folder/submitted.txt"
 jobs=$folder/slurm/smoke/slurm/jobs.jsonl
 cat "$jobs"
 [ "$(grep -c '"stage":"cells"' "$jobs")" -eq 2 ] || fail "four cells with MaxArraySize 3 are not two arrays"
