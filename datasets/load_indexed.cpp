@@ -144,7 +144,7 @@ void check_index(const SceneIndex& index) {
   const bool has_train = std::any_of(
       index.views.begin(), index.views.end(), [](const ViewSource& view) { return view.is_train; }
   );
-  GLINT_CHECK(has_train, kBadReference, "{}: no train views", index.name);
+  GLINT_CHECK(has_train, kBadReference, "{}: no train views", index.folder.string());
 }
 
 }  // namespace
@@ -306,7 +306,9 @@ LoaderSpec indexed_loader(
   loader.match = std::move(match);
   loader.looks_for = looks_for;
   loader.load = [index](const fs::path& folder, const LoadOptions& options) {
-    return load_indexed(index(folder, options), options);
+    SceneIndex of_folder = index(folder, options);
+    of_folder.folder = folder;
+    return load_indexed(of_folder, options);
   };
   loader.check = [index](const fs::path& folder) { return check_indexed(index(folder, {})); };
   loader.split_rule = [index](const fs::path& folder) { return index(folder, {}).split_rule; };
