@@ -48,21 +48,7 @@ class YamlFile {
         path_,
         kDeepestYaml
     );
-    try {
-      constexpr int kMode =
-          cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML;
-      storage_.open(text, kMode);
-    } catch (const cv::Exception& error) {
-      throw Error(
-          ExitCode::kBadReference,
-          fmt::format(
-              "{}: not an OpenCV YAML file ({} {}); it is cut off or damaged, write it again",
-              path_,
-              error.func,
-              error.err
-          )
-      );
-    }
+    open(text);
     GLINT_CHECK(
         storage_.root().isMap(),
         kBadReference,
@@ -75,6 +61,26 @@ class YamlFile {
   cv::FileNode operator[](const std::string& key) const { return storage_[key]; }
 
  private:
+  void open(const std::string& text) {
+    try {
+      constexpr int kMode =
+          cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML;
+      storage_.open(text, kMode);
+    } catch (const cv::Exception& error) {
+      fail(fmt::format("{} {}", error.func, error.err));
+    } catch (const std::logic_error& error) {  // OpenCV makes texts of a length below zero
+      fail(error.what());
+    }
+  }
+  [[noreturn]] void fail(const std::string& why) const {
+    throw Error(
+        ExitCode::kBadReference,
+        fmt::format(
+            "{}: not an OpenCV YAML file ({}); it is cut off or damaged, write it again", path_, why
+        )
+    );
+  }
+
   std::string path_;
   cv::FileStorage storage_;
 };

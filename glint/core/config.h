@@ -37,6 +37,9 @@ Json parse_json(std::string_view text);
 // The file, which must hold a JSON object. Errors (`code`): read_file()'s, anything else in it.
 Json read_json_object(const std::filesystem::path& path, ExitCode code = ExitCode::kBadReference);
 
+// The number that an object has there; `otherwise` where it has none, or is no object.
+double number_or(const Json& object, std::string_view key, double otherwise);
+
 // The fields as a JSON object, in the order of visit().
 template <class Config>
 Json config_to_json(const Config& config) {

@@ -28,6 +28,16 @@ int run_program_on_path(const std::vector<std::string>& words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+// ffmpeg reads "-x" as an option, "x:y" as a protocol and % as the number of a frame.
+std::string plain_name(const fs::path& file) { return fs::absolute(file).string(); }
+
+std::string frames_name(const fs::path& pattern) {
+  std::string name;
+  for (const char c : plain_name(pattern).substr(0, plain_name(pattern).rfind('/')))
+    name += c == '%' ? std::string("%%") : std::string(1, c);
+  return name + "/" + pattern.filename().string();
+}
+
 }  // namespace
 
 std::vector<std::string> video_command(const fs::path& pattern, double fps, const fs::path& video) {
@@ -41,14 +51,14 @@ std::vector<std::string> video_command(const fs::path& pattern, double fps, cons
       "-framerate",
       fmt::format("{}", fps),
       "-i",
-      pattern.string(),
+      frames_name(pattern),
       "-vf",
       "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
       "-pix_fmt",
       "yuv420p",
       "-movflags",
       "+faststart",
-      video.string()};
+      plain_name(video)};
 }
 
 std::string write_video(const fs::path& pattern, double fps, const fs::path& video) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "glint/core/progress.h"
 #include "glint/scene/scene.h"
@@ -61,6 +62,10 @@ Record fields_of(const Json& json) {
     const Json failure = json.value("failure", Json::object());
     visit_failure(*record.failure, reader_of(failure));
   }
+  const Json seconds = std::exchange(record.timings, Json::object());
+  for (const auto& [stage, value] : seconds.items())
+    if (value.is_number()) record.timings[stage] = value;
+  if (!record.environment.is_object()) record.environment = Json::object();
   const Json metrics = json.value("metrics", Json::object());
   for (const auto& [id, value] : metrics.items())
     if (value.is_number()) record.metrics[id] = value.get<double>();

@@ -48,7 +48,9 @@ class HashCache {
   std::string hash_of(const fs::path& file, const std::string& name) {
     const Json state = {fs::file_size(file), fs::last_write_time(file).time_since_epoch().count()};
     const auto found = known_.find(name);
-    const bool same = found != known_.end() && found->is_object() && (*found)["state"] == state;
+    const bool same = found != known_.end() && found->is_object() &&
+                      found->value("state", Json()) == state &&
+                      found->value("hash", Json()).is_string();
     const std::string hash = same ? (*found)["hash"].get<std::string>() : sha256(read_file(file));
     changed_ = changed_ || !same;
     used_[name] = {{"state", state}, {"hash", hash}};
@@ -86,7 +88,8 @@ std::optional<StageFile> read_stage(const fs::path& folder, Stage stage) {
   const Json json = parse_json(read_file(path));
   try {
     StageFile file{json.at("made_from"), json.at("files"), json.at("note")};
-    if (json.at("key") != stage_key(file.document)) return std::nullopt;
+    if (!file.document.is_object() || json.at("key") != stage_key(file.document))
+      return std::nullopt;
     return file;
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;

@@ -6,6 +6,7 @@
 #include "glint/train/checkpoint.h"
 #include "tests/fuzz/fuzz_seeds.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/mended_safetensors.h"
 
 namespace glint::fuzz {
 namespace {
@@ -30,7 +31,7 @@ std::string method_of(const fs::path& file) {
   return kMethods[0];
 }
 
-bool read(std::string_view bytes) {
+bool read_state(std::string_view bytes) {
   const fs::path file = input_file(bytes, "input.safetensors");
   const auto method = started(method_of(file));
   TrainingProgress progress;
@@ -42,6 +43,12 @@ bool read(std::string_view bytes) {
   } catch (const Error&) {  // numbers that no training has are found by it
   }
   return true;
+}
+
+bool read(std::string_view bytes) {
+  const std::string mended = mended_safetensors(bytes);
+  const bool taken = read_state(bytes);
+  return (mended != bytes && read_state(mended)) || taken;
 }
 
 FuzzInput seed_of(const std::string& id) {

@@ -42,8 +42,10 @@ SurfelCloud one_surfel() {
 
 std::vector<FuzzInput> seeds() {
   const PointCloud points{{{0, 1, 2}, {3, 4, 5}}, {{0, 1, 0}, {1, 1, 0}}, {{0, 0, 1}, {0, 1, 0}}};
-  const TriangleMesh mesh{
-      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}}};
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.faces = {{0, 1, 2}};
   return {
       written("surfel", [](const fs::path& p) { write_surfel_ply(p, one_surfel()); }),
       written("points", [&](const fs::path& p) { write_point_ply(p, points); }),

@@ -6,10 +6,20 @@
 #include "reports/records/records.h"
 #include "reports/records/run_folder.h"
 #include "reports/records/stage_files.h"
+#include "reports/tables/table_writers.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace glint::fuzz {
 namespace {
+
+// As people see them; in a terminal, nothing of it is a command.
+void show(const std::vector<Record>& records) {
+  static const std::vector<TableDefinition> definitions = table_definitions();
+  const Table table = build_table(definitions.front(), records);
+  table_markdown(table), table_latex(table), table_csv(table), table_html(table);
+  for (const unsigned char c : table_terminal(table))
+    if (c < 32 && c != '\n') throw Finding("a control character in a terminal");
+}
 
 bool read_lines(std::string_view bytes) {
   const fs::path file = input_file(bytes, "records.jsonl"), again = input_folder() / "again.jsonl";
@@ -19,6 +29,7 @@ bool read_lines(std::string_view bytes) {
     for (const Record& record : records) append_record(again, record);
     if (read_records(again).size() != records.size())
       throw Finding("records that are other ones when they are written again");
+    show(records);
   });
 }
 
