@@ -438,7 +438,6 @@ TEST_CASE(
 ) {
   const std::vector<std::string> optional = {
       "datasets/glassroom/",
-      "datasets/opencv_yaml.cpp",
       "datasets/undistort.cpp",
       "glint/drawing/",
       "glint/render/trace_embree.cpp",

@@ -46,7 +46,7 @@ void visit_failure(F& failure, V&& v) {
 
 auto reader_of(const Json& json) {
   return [&json](const char* name, auto& field) {
-    if (const auto it = json.find(name); it != json.end()) it->get_to(field);
+    if (const auto it = json.find(name); it != json.end()) read_field(*it, field);
   };
 }
 

@@ -72,7 +72,7 @@ RunSpec read_run_spec(const fs::path& folder) {
   RunSpec spec;
   spec.folder = folder;
   try {
-    visit_spec(spec, [&](const char* name, auto& field) { json.at(name).get_to(field); });
+    visit_spec(spec, [&](const char* name, auto& field) { read_field(json.at(name), field); });
     spec.dataset_folder = json.at("dataset_folder").get<std::string>();
   } catch (const nlohmann::json::exception& error) {
     throw Error(

@@ -30,7 +30,8 @@ inline std::size_t end_of_object(std::string_view text) {
 }
 
 inline std::size_t claimed_bytes(const Json& tensor) {
-  const std::string type = tensor["dtype"].is_string() ? tensor["dtype"].get<std::string>() : "U8";
+  const Json dtype = tensor.value("dtype", Json());
+  const std::string type = dtype.is_string() ? dtype.get<std::string>() : "U8";
   std::size_t bytes = type.ends_with("64") ? 8 : type.ends_with("32") ? 4 : type == "U16" ? 2 : 1;
   for (const Json& extent : tensor["shape"])
     if (__builtin_mul_overflow(
