@@ -25,6 +25,11 @@ target_compile_options(
 if(GLINT_SANITIZE)  # ... and this one with sanitizers, in std::regex
   target_compile_options(glint_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized>)
 endif()
+if(CMAKE_CXX_COMPILER_ID MATCHES Clang)  # it is here to fuzz: GCC's warnings are those that count
+  target_compile_options(
+    glint_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-w> "SHELL:-include ${CMAKE_SOURCE_DIR}/tests/fuzz/gcc_builtins.h"
+  )
+endif()
 target_include_directories(glint_warnings INTERFACE ${CMAKE_SOURCE_DIR})
 
 # Headers that nearly every file reads, compiled once: the standard library, fmt and JSON (core), with

@@ -100,13 +100,24 @@ void undistort_view(View& view, const std::vector<double>& distortion) {
   view.camera = undistortion.camera();
 }
 
+// What fails is told with the place that led there: the file may be any.
+template <class F>
+auto at_place(const std::string& place, F&& body) {
+  try {
+    return body();
+  } catch (const OutOfMemory&) {
+    throw;
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    if (what.find(place) != std::string::npos) throw;
+    throw Error(error.code(), fmt::format("{}: {}", place, what));
+  }
+}
+
 View load_view(const ViewSource& source, const LoadOptions& options) {
   View view = read_view(source, options);
-  try {
-    if (!source.distortion.empty()) undistort_view(view, source.distortion);
-  } catch (const Error& error) {
-    throw Error(error.code(), fmt::format("{}: {}", source.where, error.what()));
-  }
+  if (!source.distortion.empty())
+    at_place(source.where, [&] { undistort_view(view, source.distortion); });
   fit_view(view, options);
   return view;
 }
@@ -144,7 +155,7 @@ void check_index(const SceneIndex& index) {
   const bool has_train = std::any_of(
       index.views.begin(), index.views.end(), [](const ViewSource& view) { return view.is_train; }
   );
-  GLINT_CHECK(has_train, kBadReference, "{}: no train views", index.name);
+  GLINT_CHECK(has_train, kBadReference, "{}: no train views", index.folder.string());
 }
 
 }  // namespace
@@ -239,7 +250,7 @@ Camera camera_at(const ViewSource& source, ImageSize image) {
 View read_view(const ViewSource& source, const LoadOptions& options) {
   View view;
   view.name = source.name;
-  view.rgb = read_image(source.image, 3);
+  view.rgb = at_place(source.where, [&] { return read_image(source.image, 3); });
   view.camera = camera_at(source, view.rgb.size());
   if (options.with_priors) view.priors = read_maps(source.priors, view.rgb.size(), read_prior);
   if (options.with_truth) view.truth = read_maps(source.truth, view.rgb.size(), read_true_map);
@@ -261,7 +272,8 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options) {
       scene.test.push_back(std::move(views[i]));
   }
   if (options.test_only) return scene;  // nobody starts a training from it
-  if (!index.points.empty()) scene.points = read_points(index.points);
+  if (!index.points.empty())
+    scene.points = at_place(index.folder.string(), [&] { return read_points(index.points); });
   set_extent(scene);
   return scene;
 }
@@ -306,7 +318,9 @@ LoaderSpec indexed_loader(
   loader.match = std::move(match);
   loader.looks_for = looks_for;
   loader.load = [index](const fs::path& folder, const LoadOptions& options) {
-    return load_indexed(index(folder, options), options);
+    SceneIndex of_folder = index(folder, options);
+    of_folder.folder = folder;
+    return load_indexed(of_folder, options);
   };
   loader.check = [index](const fs::path& folder) { return check_indexed(index(folder, {})); };
   loader.split_rule = [index](const fs::path& folder) { return index(folder, {}).split_rule; };

@@ -3,68 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core.hpp>
 
+#include "datasets/camera_yaml.h"
 #include "glint/core/error.h"
 
 namespace glint {
 namespace {
 
+using nlohmann::json;
+
 constexpr double kMaxSide = 1 << 20;  // pixels; more is no image size
-
-// OpenCV's parser calls itself for each level, and files of cameras have four.
-constexpr int kDeepestYaml = 50;
-
-// An upper bound: a level is a bracket, or stands further to the right, or behind a dash or a
-// colon.
-int yaml_depth(std::string_view text) {
-  int deepest = 0, brackets = 0, columns = 0, colons = 0;
-  bool in_margin = true;
-  for (const char c : text) {
-    if (c == '\n')
-      in_margin = true, columns = 0;
-    else if (in_margin && (c == ' ' || c == '-' || c == '?' || c == '\t'))
-      ++columns;
-    else
-      in_margin = false;
-    colons = c == '\n' || c == ',' ? 0 : colons + (c == ':');
-    if (c == '[' || c == '{') ++brackets;
-    if ((c == ']' || c == '}') && brackets > 0) --brackets;
-    deepest = std::max(deepest, brackets + columns / 2 + colons);
-  }
-  return deepest;
-}
 
 class YamlFile {
  public:
   explicit YamlFile(const fs::path& path) : path_(path.string()) {
     const std::string text = read_file(path);
     GLINT_CHECK(!text.empty(), kBadReference, "{}: the file is empty", path_);
+    root_ = parse_camera_yaml(text, path_);
     GLINT_CHECK(
-        yaml_depth(text) <= kDeepestYaml,
-        kBadReference,
-        "{}: nested more than {} deep; expected matrices and a list of names: it is damaged, "
-        "write it again",
-        path_,
-        kDeepestYaml
-    );
-    try {
-      constexpr int kMode =
-          cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML;
-      storage_.open(text, kMode);
-    } catch (const cv::Exception& error) {
-      throw Error(
-          ExitCode::kBadReference,
-          fmt::format(
-              "{}: not an OpenCV YAML file ({} {}); it is cut off or damaged, write it again",
-              path_,
-              error.func,
-              error.err
-          )
-      );
-    }
-    GLINT_CHECK(
-        storage_.root().isMap(),
+        root_.is_object(),
         kBadReference,
         "{}: holds no fields; expected 'names' and a matrix per camera",
         path_
@@ -72,14 +29,17 @@ class YamlFile {
   }
 
   const std::string& path() const { return path_; }
-  cv::FileNode operator[](const std::string& key) const { return storage_[key]; }
+  // Null where there is none.
+  const json& operator[](const std::string& key) const {
+    static const json none;
+    const auto found = root_.find(key);
+    return found == root_.end() ? none : *found;
+  }
 
  private:
   std::string path_;
-  cv::FileStorage storage_;
+  json root_;
 };
-
-bool is_number(const cv::FileNode& node) { return node.isInt() || node.isReal(); }
 
 // The camera under construction and the place where its problems go.
 struct CameraReader {
@@ -91,22 +51,20 @@ struct CameraReader {
   }
 
   // The values of matrix PREFIX_NAME, row by row; empty when absent or (with a problem noted) when
-  // malformed. cv::Mat's own reader would allocate what `rows` and `cols` claim.
+  // malformed.
   std::vector<double> matrix(const std::string& prefix) const {
     const std::string key = prefix + camera.name;
-    const cv::FileNode node = file[key];
-    if (node.empty()) return {};
-    const cv::FileNode data = node.isMap() ? node["data"] : node;
-    std::vector<double> values;
-    for (const auto& value : data) {
-      if (!is_number(value)) break;
-      values.push_back(static_cast<double>(value));
-    }
-    if (!data.isSeq() || values.size() != data.size()) {
+    const json& node = file[key];
+    if (node.is_null()) return {};
+    const json data = node.is_object() ? node.value("data", json()) : node;
+    const bool good = data.is_array() && std::all_of(data.begin(), data.end(), [](const json& v) {
+                        return v.is_number();
+                      });
+    if (!good) {
       complain(key, "not a matrix of numbers");
       return {};
     }
-    return values;
+    return data.get<std::vector<double>>();
   }
 
   // As matrix(), with `count` values; notes a problem when absent.
@@ -118,9 +76,9 @@ struct CameraReader {
   }
 
   int extent(const std::string& prefix) const {
-    const cv::FileNode node = file[prefix + camera.name];
-    if (node.empty()) return 0;
-    const double value = is_number(node) ? static_cast<double>(node) : 0;
+    const json& node = file[prefix + camera.name];
+    if (node.is_null()) return 0;
+    const double value = node.is_number() ? node.get<double>() : 0;
     if (value >= 1 && value <= kMaxSide) return static_cast<int>(value);
     complain(prefix + camera.name, "not a number of pixels");
     return 0;
@@ -165,7 +123,7 @@ void read_intrinsics(const CameraReader& reader) {
 
 void read_pose(const CameraReader& reader) {
   Camera& camera = reader.camera.camera;
-  if (!reader.file["Rot_" + reader.camera.name].empty()) {
+  if (!reader.file["Rot_" + reader.camera.name].is_null()) {
     const std::vector<double> rotation = reader.require("Rot_", 9);
     if (!rotation.empty()) camera.rotation_cam_from_world = to_matrix(rotation);
   } else {
@@ -179,17 +137,17 @@ void read_pose(const CameraReader& reader) {
 }
 
 std::vector<std::string> read_names(const YamlFile& file) {
-  const cv::FileNode node = file["names"];
+  const json& node = file["names"];
   std::vector<std::string> names;
-  for (const auto& name : node) {
+  for (const json& name : node.is_array() ? node : json::array()) {
     GLINT_CHECK(
-        name.isString(),
+        name.is_string(),
         kBadReference,
         "{}: names: entry {} is not a text; put quotes around every name",
         file.path(),
         names.size()
     );
-    names.push_back(static_cast<std::string>(name));
+    names.push_back(name.get<std::string>());
   }
   GLINT_CHECK(
       !names.empty(), kBadReference, "{}: names: expected a list of camera names", file.path()
@@ -199,7 +157,7 @@ std::vector<std::string> read_names(const YamlFile& file) {
 
 // Both files list the same cameras; a shorter list is a file that was cut off.
 void check_same_names(const YamlFile& intrinsics, const YamlFile& extrinsics) {
-  if (intrinsics["names"].empty()) return;
+  if (intrinsics["names"].is_null()) return;
   std::vector<std::string> a = read_names(intrinsics), b = read_names(extrinsics);
   std::sort(a.begin(), a.end());
   std::sort(b.begin(), b.end());

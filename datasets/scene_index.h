@@ -32,6 +32,7 @@ struct ViewSource {
 
 struct SceneIndex {
   std::string name, dataset, spec_hash;
+  fs::path folder;  // for messages
   bool simulated_priors = false;
   fs::path points;                // empty: none
   std::vector<ViewSource> views;  // natural order of names

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Configures and builds one preset: scripts/build.sh [release|debug|asan|tsan|cuda] [targets...].
+# Configures and builds one preset: scripts/build.sh [release|debug|asan|tsan|fuzz|cuda] [targets...].
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-release}

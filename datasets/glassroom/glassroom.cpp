@@ -97,7 +97,7 @@ std::string stored_hash(const fs::path& folder) {
   const Json json = parse_json(text);
   if (!json.is_object() && was_a_scene(folder, text)) return {};
   GLINT_CHECK(
-      json.is_object() && json.value("dataset", "") == "glassroom" && json.contains("hash") &&
+      json.is_object() && json.value("dataset", Json()) == "glassroom" && json.contains("hash") &&
           json["hash"].is_string(),
       kUsage,
       "{}: is there already and is not a GlassRoom scene; choose another folder",

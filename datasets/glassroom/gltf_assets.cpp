@@ -8,11 +8,13 @@
 #include <array>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "datasets/glassroom/write_scene.h"
+#include "glint/core/config.h"
 #include "glint/core/error.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
@@ -49,9 +51,36 @@ std::optional<FurnitureKind> kind_of(const fs::path& file) {
   return std::nullopt;
 }
 
+// The JSON of a .gltf, or of a .glb's first chunk: magic, version, length; length, type, bytes.
+std::string_view gltf_json(std::string_view bytes) {
+  constexpr std::size_t kLengthAt = 12, kJsonAt = 20;
+  if (!bytes.starts_with("glTF") || bytes.size() < kJsonAt) return bytes;
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + kLengthAt, sizeof length);
+  return bytes.substr(kJsonAt, length);
+}
+
+// assimp tries its readers of forty other formats on what is no glTF, and calls itself for every
+// level of JSON.
+void check_gltf(const fs::path& file) {
+  const std::string bytes = read_file(file);
+  const Json json = parse_json(gltf_json(bytes));
+  const Json asset = json.is_object() ? json.value("asset", Json()) : Json();
+  const Json version = asset.is_object() ? asset.value("version", Json()) : Json();
+  GLINT_CHECK(
+      version.is_string() && version.get<std::string>().starts_with("2"),
+      kBadReference,
+      "{}: no glTF 2.0 (asset.version is {}), or nested more than {} deep; export it again",
+      file.string(),
+      version.dump(),
+      kDeepestJson
+  );
+}
+
 class Importer {
  public:
   Importer(const fs::path& file, TraceScene& scene) : file_(file), scene_(scene) {
+    check_gltf(file);
     model_ = importer_.ReadFile(
         file.string(),
         aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_GenSmoothNormals |
@@ -74,6 +103,14 @@ class Importer {
       result.push_back({triangle_mesh(mesh), material(mesh.mMaterialIndex)});
     }
     GLINT_CHECK(!result.empty(), kBadReference, "{}: has no triangles", file_.string());
+    for (const FurniturePart& part : result)
+      for (const Vec3f v : part.mesh.vertices)
+        GLINT_CHECK(
+            std::isfinite(v.x + v.y + v.z),
+            kBadReference,
+            "{}: a vertex is not finite; export it again",
+            file_.string()
+        );
     stand_against_wall(result);
     return result;
   }
@@ -105,6 +142,9 @@ class Importer {
   int material(unsigned index) {
     const auto known = materials_.find(index);
     if (known != materials_.end()) return known->second;
+    GLINT_CHECK(
+        index < model_->mNumMaterials, kBadReference, "{}: no material {}", file_.string(), index
+    );
     const aiMaterial& source = *model_->mMaterials[index];
     Material material{.name = file_.stem().string(), .albedo = {0.8f, 0.8f, 0.8f}};
     aiColor4D color;

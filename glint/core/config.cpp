@@ -53,6 +53,11 @@ Json read_json_object(const std::filesystem::path& path, ExitCode code) {
   });
 }
 
+double number_or(const Json& object, std::string_view key, double otherwise) {
+  const auto found = object.find(key);  // end() of what is no object
+  return found != object.end() && found->is_number() ? found->get<double>() : otherwise;
+}
+
 std::string ConfigField::type() const {
   if (value.is_string()) return "text";
   if (value.is_boolean()) return "true or false";

@@ -11,6 +11,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -36,6 +39,9 @@ Json parse_json(std::string_view text);
 
 // The file, which must hold a JSON object. Errors (`code`): read_file()'s, anything else in it.
 Json read_json_object(const std::filesystem::path& path, ExitCode code = ExitCode::kBadReference);
+
+// The number that an object has there; `otherwise` where it has none, or is no object.
+double number_or(const Json& object, std::string_view key, double otherwise);
 
 // The fields as a JSON object, in the order of visit().
 template <class Config>
@@ -68,20 +74,49 @@ std::vector<ConfigField> config_fields(const Config& config) {
 }
 
 namespace detail {
+// Whether a field that is an integer, or a list of them, gets such ones, which fit. get() converts
+// whatever number it is, and what a double holds beyond the integer's range is undefined.
+template <class T>
+bool holds_integers(const Json& value, const T&) {
+  if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+    if (value.is_number_unsigned()) return std::in_range<T>(value.get<std::uint64_t>());
+    if (value.is_number_integer()) return std::in_range<T>(value.get<std::int64_t>());
+    if (!value.is_number()) return false;
+    constexpr double kExact = 9007199254740992;  // doubles count so far
+    const double number = value.get<double>();
+    return std::abs(number) <= kExact && std::floor(number) == number &&
+           std::in_range<T>(static_cast<std::int64_t>(number));
+  }
+  return true;
+}
+template <class T>
+bool holds_integers(const Json& value, const std::vector<T>&) {
+  return std::all_of(value.begin(), value.end(), [](const Json& item) {
+    return holds_integers(item, T{});
+  });
+}
+
 // False, and the field as it was, where the value is of another type or no number the field can
 // hold (get() would cut off an integer's fraction and wrap what is too large).
 template <class Field>
 bool set_field(Field& field, const Json& value) {
   try {
-    Field read = value.get<Field>();
-    if (std::is_integral_v<Field> && Json(read) != value) return false;
-    field = std::move(read);
+    if (!holds_integers(value, field)) return false;
+    field = value.get<Field>();
     return true;
   } catch (const nlohmann::json::exception&) {
     return false;
   }
 }
 }  // namespace detail
+
+// A field as get_to() reads it; numbers that are no such integer have another type, too. Throws
+// nlohmann::json::exception.
+template <class Field>
+void read_field(const Json& value, Field& field) {
+  if (!detail::set_field(field, value))
+    throw nlohmann::json::type_error::create(302, "not " + value.dump(), &value);
+}
 
 // Sets every field named in `json`. Errors (kUsage): unknown name (the nearest is named, the known
 // ones are listed), wrong type. `where` opens the message.

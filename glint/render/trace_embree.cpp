@@ -161,7 +161,11 @@ bool SurfelBvh::has_triangles() { return true; }
 
 SurfelBvh::SurfelBvh() : impl_(std::make_unique<Impl>()) {
   // One instruction set everywhere: which boxes a ray visits must not depend on the machine.
+#if defined(GLINT_STD_THREADS)  // Embree's threads are TBB's, too
+  impl_->device = rtcNewDevice("isa=avx2,threads=1");
+#else
   impl_->device = rtcNewDevice("isa=avx2");
+#endif
   GLINT_CHECK(
       impl_->device != nullptr,
       kEnvironment,

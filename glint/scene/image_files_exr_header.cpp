@@ -50,16 +50,56 @@ class HeaderSource {
   std::string_view bytes_;
 };
 
-// Channels of a list: name, then 16 bytes of type and sampling.
-std::int64_t count_channels(const fs::path& path, std::string_view list) {
-  HeaderSource source(path, list);
+// OpenEXR reads as many bytes as values of these types have, whatever the attribute says: with
+// another size it would take the rest of the header for something else.
+struct TypeBytes {
+  std::string_view type;
+  std::uint32_t bytes;
+};
+constexpr TypeBytes kTypeBytes[] = {{"box2f", 16},      {"box2i", 16},   {"chromaticities", 32},
+                                    {"compression", 1}, {"double", 8},   {"envmap", 1},
+                                    {"float", 4},       {"int", 4},      {"keycode", 28},
+                                    {"lineOrder", 1},   {"m33d", 72},    {"m33f", 36},
+                                    {"m44d", 128},      {"m44f", 64},    {"rational", 8},
+                                    {"tiledesc", 9},    {"timecode", 8}, {"v2d", 16},
+                                    {"v2f", 8},         {"v2i", 8},      {"v3d", 24},
+                                    {"v3f", 12},        {"v3i", 12},     {"deepImageState", 1}};
+
+// Channels of a list: name, then 16 bytes of type and sampling; an empty name ends it.
+std::int64_t count_channels(HeaderSource list) {
   std::int64_t count = 0;
-  while (!source.empty() && !source.ends_here()) {
-    source.text();
-    source.take(16);
-    ++count;
+  for (; !list.ends_here(); ++count) {
+    list.text();
+    list.take(16);
   }
+  list.take(1);
+  if (!list.empty()) list.fail("bytes behind the last channel");
   return count;
+}
+
+bool fits_strings(HeaderSource strings) {
+  while (!strings.empty()) strings.take(strings.number<std::uint32_t>());
+  return true;
+}
+
+bool fits_preview(HeaderSource preview, std::uint64_t bytes) {
+  const std::uint64_t width = preview.number<std::uint32_t>();
+  const std::uint64_t height = preview.number<std::uint32_t>();
+  return width < 65536 && height < 65536 && 8 + 4 * width * height == bytes;
+}
+
+void check_attribute(std::string_view type, HeaderSource value, std::uint32_t bytes) {
+  const auto* fixed =
+      std::find_if(std::begin(kTypeBytes), std::end(kTypeBytes), [&](const TypeBytes& t) {
+        return t.type == type;
+      });
+  const bool fits = fixed != std::end(kTypeBytes) ? fixed->bytes == bytes
+                    : type == "stringvector"      ? fits_strings(value)
+                    : type == "preview"           ? fits_preview(value, bytes)
+                    : type == "idmanifest"        ? bytes >= 4
+                    : type == "chlist"            ? count_channels(value) >= 0
+                                                  : true;
+  if (!fits) value.fail(fmt::format("an attribute of type {} with {} bytes", type, bytes));
 }
 
 }  // namespace
@@ -81,8 +121,9 @@ void detail::check_exr_header(const fs::path& path, std::string_view file) {
     const std::string_view name = source.text(), type = source.text();
     const auto bytes = source.number<std::uint32_t>();
     HeaderSource value(path, source.take(bytes));
+    check_attribute(type, value, bytes);
     if (name == "channels" && type == "chlist") {
-      size.channels = count_channels(path, value.take(bytes));
+      size.channels = count_channels(value);
     } else if (name == "dataWindow" && type == "box2i") {
       const std::int64_t left = value.number<std::int32_t>(), top = value.number<std::int32_t>();
       const std::int64_t right = value.number<std::int32_t>();

@@ -53,7 +53,7 @@ Image detail::decode_jpeg(const fs::path& path, const std::string& file) {
           0,
           height,
           grey ? TJPF_GRAY : TJPF_RGB,
-          0
+          TJFLAG_STOPONWARNING
       )
   );
   Image picture(width, height, pixels.channels());

@@ -20,11 +20,27 @@ using detail::ClaimedSize;
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
 constexpr std::string_view kJpegSignature = "\xff\xd8\xff"sv;
 
+// Each scan of a progressive picture is work for all of its pixels; encoders write about ten. The
+// marker is no part of compressed data.
+constexpr std::size_t kMostScans = 100;
+constexpr std::string_view kScanMarker = "\xff\xda"sv;
+
+std::size_t count_scans(std::string_view file) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = file.find(kScanMarker, at)) != std::string_view::npos; ++at)
+    ++count;
+  return count;
+}
+
 // The frame header (SOF0 ... SOF15), after checking that the file ends with an end marker.
 ClaimedSize walk_jpeg(const fs::path& path, std::string_view file) {
   const std::size_t end = file.find_last_not_of("\0\n\r "sv);
   if (end == std::string_view::npos || file.substr(end - 1, 2) != "\xff\xd9"sv)
     detail::fail_incomplete(path, "JPEG", "the end marker is missing");
+  if (const std::size_t scans = count_scans(file); scans > kMostScans)
+    detail::fail_incomplete(
+        path, "JPEG", fmt::format("{} scans, expected at most {}", scans, kMostScans)
+    );
   std::size_t at = 2;
   while (at + 9 < file.size() && static_cast<unsigned char>(file[at]) == 0xff) {
     const auto marker = static_cast<unsigned char>(file[at + 1]);

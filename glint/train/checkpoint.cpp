@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/checkpoint.h"
 
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <vector>
@@ -93,6 +94,12 @@ void TrainingProgress::visit_state(TrainingState& state) {
   state("saving_seconds", saving_seconds);
   state("peak_memory_mb", peak_memory_mb);
   state("events", events);
+  if (!state.reading()) return;
+  const bool possible = iterations >= 0 && std::isfinite(seconds) &&
+                        std::isfinite(saving_seconds) && std::isfinite(peak_memory_mb);
+  GLINT_CHECK(
+      possible, kBadReference, "iteration {} after {} s, of no training", iterations, seconds
+  );
 }
 
 bool write_checkpoint(
@@ -124,15 +131,12 @@ bool is_checkpoint_of(const fs::path& file, const std::string& identity) {
 void read_checkpoint(const fs::path& file, Method& method, TrainingProgress& progress) {
   StateReader state(file);
   try {
-    GLINT_CHECK(
-        method.visit_state(state), kBadReference, "{}: of a method without a state", file.string()
-    );
+    GLINT_CHECK(method.visit_state(state), kBadReference, "of a method without a state");
     state("trainer", progress);
-  } catch (const std::logic_error& number) {  // std::stod and its kin
-    throw Error(
-        ExitCode::kBadReference,
-        fmt::format("{}: a number in its metadata is none ({})", file.string(), number.what())
-    );
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    const bool named = what.find(file.string()) != std::string::npos;
+    throw Error(error.code(), named ? what : fmt::format("{}: {}", file.string(), what));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
+#include "glint/core/nearest.h"
 #include "glint/method.h"
 #include "glint/scene/scene.h"
 #include "glint/train/opacity_penalty_kernels.h"
@@ -160,14 +161,35 @@ DensifyCounts TrainableSet::update(int step) {
   return counts;
 }
 
+void TrainableSet::check_read(const std::vector<std::string>& channels) const {
+  GLINT_CHECK(
+      cloud_.extra_names == channels,
+      kBadReference,
+      "surfels with the channels '{}', expected '{}'",
+      comma_list(cloud_.extra_names),
+      comma_list(channels)
+  );
+  SurfelCloud &first = training().adam.first(), &second = training().adam.second();
+  const bool same = first.extra_names == channels && second.extra_names == channels;
+  GLINT_CHECK(
+      first.size() == second.size() && (same || first.size() == 0),
+      kBadReference,
+      "first moments of {} surfels and second ones of {}, or with other channels",
+      first.size(),
+      second.size()
+  );
+}
+
 void TrainableSet::visit_state(TrainingState& state) {
   Training& t = training();
+  const std::vector<std::string> channels = cloud_.extra_names;
   state("cloud", cloud_);
   state("adam", t.adam);
   state("densifier", t.densifier);
   state("frozen_geometry", t.frozen_geometry);
   state("opacity_paused_until", t.opacity_paused_until);
   if (!state.reading()) return;
+  check_read(channels);
   if (t.frozen_geometry) freeze_geometry();
   t.gradient = SurfelCloud();
   t.gradient.extra_names = cloud_.extra_names;

@@ -89,6 +89,8 @@ class TrainableSet final : public SurfelSet {
     Densifier densifier;
   };
   Training& training() const;
+  // Errors (kBadReference): a cloud of other channels, moments that are no pair of its kind.
+  void check_read(const std::vector<std::string>& channels) const;
 
   std::unique_ptr<Training> training_;  // null: only to be rendered
 };

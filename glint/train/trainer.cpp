@@ -77,8 +77,7 @@ void cut_log(const fs::path& file, int iteration) {
   std::istringstream log(read_file(file));
   std::string kept;
   for (std::string line; std::getline(log, line);) {
-    const auto json = nlohmann::json::parse(line, nullptr, false);
-    if (json.is_object() && json.value("iteration", iteration) < iteration) kept += line + "\n";
+    if (number_or(parse_json(line), "iteration", iteration) < iteration) kept += line + "\n";
   }
   write_file(file, kept);
 }
@@ -280,6 +279,11 @@ int scaled_step(int published, int iterations, int at_least, int of) {
 
 ViewSampler::ViewSampler(std::size_t num_views, std::uint64_t seed)
     : num_views_(num_views), seed_(seed) {}
+
+void ViewSampler::check_views() const {
+  for (const std::size_t view : remaining_)
+    GLINT_CHECK(view < num_views_, kBadReference, "view {} of {}", view, num_views_);
+}
 
 std::size_t ViewSampler::next() {
   if (remaining_.empty()) {

@@ -46,9 +46,12 @@ class ViewSampler {
   void visit_state(State& state) {
     state("epoch", epoch_);
     state("remaining", remaining_);
+    if (state.reading()) check_views();
   }
 
  private:
+  void check_views() const;  // errors (kBadReference): one that is not there
+
   std::size_t num_views_ = 0;
   std::uint64_t seed_ = 0, epoch_ = 0;
   std::vector<std::size_t> remaining_;

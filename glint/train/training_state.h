@@ -5,11 +5,13 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <concepts>
 #include <functional>
 #include <string>
 #include <type_traits>
 
+#include "glint/core/error.h"
 #include "glint/scene/safetensors.h"
 #include "glint/scene/surfels.h"
 
@@ -73,20 +75,21 @@ class TrainingState {
   std::string path_;  // of the part that is visited: "interface.adam."
 };
 
-// Numbers are text with all their digits.
+// Numbers are text with all their digits. Errors (kBadReference): text that is no such number.
 template <class T>
 void TrainingState::number(const std::string& name, T& value) {
   std::string text = fmt::format("{}", value);
   exchange(path_ + name, text);
   if (!reading()) return;
-  if constexpr (std::is_same_v<T, bool>)
+  bool good = false;
+  if constexpr (std::is_same_v<T, bool>) {
     value = text == "true";
-  else if constexpr (std::is_floating_point_v<T>)
-    value = static_cast<T>(std::stod(text));
-  else if constexpr (std::is_unsigned_v<T>)
-    value = static_cast<T>(std::stoull(text));
-  else
-    value = static_cast<T>(std::stoll(text));
+    good = value || text == "false";
+  } else {
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+    good = end.ec == std::errc{} && end.ptr == text.data() + text.size();
+  }
+  GLINT_CHECK(good, kBadReference, "{}{} is '{}', which is no such number", path_, name, text);
 }
 
 }  // namespace glint

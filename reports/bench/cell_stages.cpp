@@ -19,8 +19,10 @@ std::string joined(const std::vector<std::string>& lines) {
 // The stages in front, of which some has changed.
 std::string after_inputs(const Json& then, const Json& now) {
   std::string text;
+  const Json before = then.value("inputs", Json::object());
   for (const auto& [stage, key] : now.at("inputs").items())
-    if (then["inputs"].value(stage, "") != key) text += (text.empty() ? "after " : ", ") + stage;
+    if (!before.contains(stage) || before[stage] != key)
+      text += (text.empty() ? "after " : ", ") + stage;
   return text;
 }
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "reports/bench/child_process.h"
 #include "reports/executors/cell_queue.h"
-#include "reports/executors/child_process.h"
 #include "reports/executors/executor.h"
 
 namespace glint {

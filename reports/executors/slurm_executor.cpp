@@ -6,7 +6,7 @@
 #include <charconv>
 
 #include "glint/core/progress.h"
-#include "reports/executors/child_process.h"
+#include "reports/bench/child_process.h"
 #include "reports/executors/executor.h"
 #include "reports/executors/slurm_jobs.h"
 #include "reports/executors/task_file.h"

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "glint/core/config.h"
-#include "reports/executors/child_process.h"
+#include "reports/bench/child_process.h"
 #include "reports/executors/task_file.h"
 
 namespace glint {

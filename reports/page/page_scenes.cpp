@@ -43,8 +43,9 @@ Json read_scores(const fs::path& folder) {
 std::map<std::string, Json> scores_by_view(const Json& scores) {
   std::map<std::string, Json> by_view;
   for (const Json& view : scores.value("views", Json::array()))
-    if (view.is_object() && view.value("name", Json()).is_string())
-      by_view[view["name"].get<std::string>()] = view.value("metrics", Json::object());
+    if (view.is_object() && view.value("name", Json()).is_string() &&
+        view.value("metrics", Json()).is_object())
+      by_view[view["name"].get<std::string>()] = view["metrics"];
   return by_view;
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <utility>
 
 #include "glint/core/progress.h"
 #include "glint/scene/scene.h"
@@ -52,7 +53,7 @@ void visit_failure(F& failure, V&& v) {
 
 auto reader_of(const Json& json) {
   return [&json](const char* name, auto& field) {
-    if (const auto it = json.find(name); it != json.end()) it->get_to(field);
+    if (const auto it = json.find(name); it != json.end()) read_field(*it, field);
   };
 }
 
@@ -68,6 +69,10 @@ Record fields_of(const Json& json) {
     const Json failure = json.value("failure", Json::object());
     visit_failure(*record.failure, reader_of(failure));
   }
+  const Json seconds = std::exchange(record.timings, Json::object());
+  for (const auto& [stage, value] : seconds.items())
+    if (value.is_number()) record.timings[stage] = value;
+  if (!record.environment.is_object()) record.environment = Json::object();
   const Json metrics = json.value("metrics", Json::object());
   for (const auto& [id, value] : metrics.items())
     if (value.is_number()) record.metrics[id] = value.get<double>();

@@ -72,7 +72,7 @@ RunSpec read_run_spec(const fs::path& folder) {
   RunSpec spec;
   spec.folder = folder;
   try {
-    visit_spec(spec, [&](const char* name, auto& field) { json.at(name).get_to(field); });
+    visit_spec(spec, [&](const char* name, auto& field) { read_field(json.at(name), field); });
     spec.dataset_folder = json.at("dataset_folder").get<std::string>();
   } catch (const nlohmann::json::exception& error) {
     throw Error(
@@ -95,11 +95,17 @@ std::optional<TrainCost> trained_cost(const RunSpec& spec) {
   const fs::path path = spec.folder / "env.json";
   if (!fs::exists(path)) return std::nullopt;
   const Json json = read_json_object(path, ExitCode::kBadPrediction);
-  return TrainCost{
-      json.value("train_seconds", 0.0),
-      json.value("peak_memory_mb", 0.0),
-      json.value("warnings", std::vector<std::string>{}),
-      json.value("notes", std::vector<std::string>{})};
+  try {
+    return TrainCost{
+        json.value("train_seconds", 0.0),
+        json.value("peak_memory_mb", 0.0),
+        json.value("warnings", std::vector<std::string>{}),
+        json.value("notes", std::vector<std::string>{})};
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(
+        ExitCode::kBadPrediction, fmt::format("{}: {}; train again", path.string(), error.what())
+    );
+  }
 }
 
 fs::path view_folder(const fs::path& run, const std::string& view_name) {
@@ -122,7 +128,8 @@ bool is_eight_bit_render(const fs::path& view_folder) {
   if (fs::exists(view_folder / "rgb.exr") || !fs::exists(run / "config.json")) return false;
   const Json json = read_json_object(run / "config.json", ExitCode::kBadPrediction);
   const auto config = json.find("config");
-  return config != json.end() && config->is_object() && config->value(kEightBitField, false);
+  return config != json.end() && config->is_object() &&
+         config->value(kEightBitField, Json()) == true;
 }
 
 fs::path render_file(const fs::path& folder, const MapRow& row) {

@@ -51,6 +51,7 @@ StageReading examine(const fs::path& folder, Stage stage) {
         json.at("files"),
         json.at("note"),
         json.value("sha256", std::map<std::string, std::string>{})};
+    if (!file.document.is_object()) return {std::nullopt, "damaged"};
     const std::string stored = json.at("key"), key = stage_key(file.document);
     if (stored != key)
       return {
@@ -87,7 +88,9 @@ class HashCache {
   std::string hash_of(const fs::path& file, const std::string& name) {
     const Json state = {fs::file_size(file), fs::last_write_time(file).time_since_epoch().count()};
     const auto found = known_.find(name);
-    const bool same = found != known_.end() && found->is_object() && (*found)["state"] == state;
+    const bool same = found != known_.end() && found->is_object() &&
+                      found->value("state", Json()) == state &&
+                      found->value("hash", Json()).is_string();
     const std::string hash = same ? (*found)["hash"].get<std::string>() : sha256(read_file(file));
     changed_ = changed_ || !same;
     used_[name] = {{"state", state}, {"hash", hash}};

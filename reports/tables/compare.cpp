@@ -122,9 +122,9 @@ class Comparer {
 
   void note_differences(const CellPair& pair) {
     const auto& [before, after] = pair;
+    const std::string& scene = after->cell.scene;
     const auto note = [&](const char* what, const std::string& a, const std::string& b) {
-      if (a != b)
-        notes_.insert(fmt::format("{}: {} differs: '{}', now '{}'", after->cell.scene, what, a, b));
+      if (a != b) notes_.insert(fmt::format("{}: {} differs: '{}', now '{}'", scene, what, a, b));
     };
     note("the data", before->dataset_hash, after->dataset_hash);
     note("the resolution", before->resolution, after->resolution);

@@ -62,8 +62,11 @@ std::string latex_text(std::string_view text) {
   return result;
 }
 
+// For a comment, which a line feed or a carriage return ends.
 std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' '
+  );
   return text;
 }
 

@@ -60,10 +60,24 @@ struct TextRows {
 };
 
 std::vector<std::string> row_texts(const Table& table, const TableRow& row) {
-  std::vector<std::string> texts{printable(row.title)};
+  std::vector<std::string> texts{row.title};
   for (std::size_t i = 0; i < row.cells.size(); ++i)
-    texts.push_back(printable(shown_text(row.cells[i], table.columns[i])));
+    texts.push_back(shown_text(row.cells[i], table.columns[i]));
   return texts;
+}
+
+// Names from files are in all texts. Escapes are put in later, for colours.
+Table printable_table(Table table) {
+  std::vector<std::string*> texts{&table.title};
+  for (TableColumn& column : table.columns)
+    texts.insert(texts.end(), {&column.title, &column.group});
+  for (TableRow& row : table.rows) {
+    texts.push_back(&row.title);
+    for (TableCell& cell : row.cells) texts.insert(texts.end(), {&cell.text, &cell.note});
+  }
+  for (std::string& note : table.notes) texts.push_back(&note);
+  for (std::string* text : texts) *text = printable(*text);
+  return table;
 }
 
 TextRows texts_of(const Table& table) {
@@ -269,12 +283,13 @@ std::string aligned_rows(const std::vector<std::vector<std::string>>& rows) {
     for (std::size_t i = 0; i < row.size(); ++i)
       line += (i ? "  " : "") + padded(row[i], widths[i], i == 0);
     line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
+    text += printable(line) + "\n";
   }
   return text;
 }
 
-std::string table_terminal(const Table& table, TerminalStyle style) {
+std::string table_terminal(const Table& any_table, TerminalStyle style) {
+  const Table table = printable_table(any_table);
   const Layout layout = layout_of(style.brief ? brief_table(table) : table, style);
   const std::string& group = layout.rows.only_group;
   std::string text = table.title + (group.empty() ? "" : ", " + group) + "\n";

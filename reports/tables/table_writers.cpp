@@ -91,7 +91,9 @@ Json column_json(const TableColumn& column) {
 std::string markdown_rows(const Table& table) {
   std::vector<std::string> header{"Method"}, rule{"---"};
   for (const TableColumn& column : table.columns) {
-    header.push_back(markdown_text(shown_title(column)) + "<br>" + group_title(column));
+    header.push_back(
+        markdown_text(shown_title(column)) + "<br>" + markdown_text(group_title(column))
+    );
     rule.push_back("---:");
   }
   std::string text = fmt::format("| {} |\n| {} |\n", join(header, " | "), join(rule, " | "));
@@ -127,7 +129,7 @@ Json differences_json(const Table& differences) {
 
 std::string markdown_text(std::string_view text) {
   std::string safe;
-  for (const char c : text)
+  for (const char c : printable(text))
     safe += c == '|' ? "\\|" : (c == '<' ? "&lt;" : (c == '\n' ? " " : std::string(1, c)));
   return safe;
 }

@@ -240,10 +240,12 @@ int run_command_line(int argc, const char* const* argv) {
 void print_json(const Json& json) {
   Json document = {{"schema", kVerbSchema}};
   document.update(json);
-  print_text(document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  print_raw(document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-void print_text(std::string_view text) {
+void print_text(std::string_view text) { print_raw(printable(text)); }
+
+void print_raw(std::string_view text) {
   // What is larger than the buffer is written at once: then there is nothing left to flush.
   const bool taken = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   GLINT_CHECK(std::fflush(stdout) == 0 && taken, kEnvironment, "{}", kNoOutput);

@@ -80,8 +80,11 @@ int print_scores(
 // The frames behind the cost that an earlier scoring found; nothing: none were timed.
 std::optional<TimingOptions> earlier_timing(const fs::path& run) {
   const auto scored = read_stage(run, Stage::kScore);
-  if (!scored || !scored->document.value("timing_frames", Json()).is_number()) return std::nullopt;
-  return TimingOptions{scored->document["timing_frames"], scored->document["timing_warmup"]};
+  if (!scored) return std::nullopt;
+  const double frames = number_or(scored->document, "timing_frames", -1),
+               warmup = number_or(scored->document, "timing_warmup", -1);
+  if (!(frames >= 0 && warmup >= 0 && frames + warmup < 1e9)) return std::nullopt;
+  return TimingOptions{static_cast<int>(frames), static_cast<int>(warmup)};
 }
 
 // Of renders and meshes without a key (an earlier version's, another program's): none.

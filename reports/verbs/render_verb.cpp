@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "glint/core/interrupt.h"
+#include "glint/core/printable.h"
 #include "glint/core/progress.h"
 #include "glint/scene/camera_path.h"
 #include "reports/bench/path_frames.h"
@@ -109,7 +110,7 @@ void print_path(const CommonOptions& common, const PathFrames& options, const Pa
   const fs::path sheets = options.folder / "layers/%04d.png", video = options.folder / "layers.mp4";
   std::string command;  // for a shell
   for (const std::string& word : video_command(sheets, options.path.fps, video))
-    command += (word.find_first_of("( %") == std::string::npos ? word : "'" + word + "'") + " ";
+    command += shell_word(word) + " ";
   if (common.json) {
     print_json(
         {{"folder", options.folder.string()},

@@ -56,7 +56,7 @@ void write_tables(const fs::path& folder, const std::vector<Table>& tables) {
 void print_tables(const std::vector<Table>& tables) {
   const std::size_t width = terminal_width();
   for (const Table& table : tables)
-    print_text(
+    print_raw(
         has_measurement(table) || has_failure(table)
             ? table_terminal(table, {color_terminal(), width, width == 0}) + "\n"
             : fmt::format("{} ({}): nothing measured yet\n\n", table.title, table.id)

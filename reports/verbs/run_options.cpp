@@ -5,7 +5,7 @@
 
 #include "glint/core/interrupt.h"
 #include "glint/core/parallel.h"
-#include "reports/executors/child_process.h"
+#include "reports/bench/child_process.h"
 
 namespace glint {
 namespace {

@@ -23,7 +23,7 @@ std::string last_step(const fs::path& run) {
     const Json json = parse_json(line);
     if (json.is_object())
       return fmt::format(
-          "step {}, PSNR {:.2f}", json.value("iteration", 0), json.value("psnr", 0.0)
+          "step {:.0f}, PSNR {:.2f}", number_or(json, "iteration", 0), number_or(json, "psnr", 0)
       );
   }
   return "";

@@ -37,7 +37,7 @@ int run_table(const CommonOptions& common, const TableVerbOptions& options) {
     print_tables(tables);
   } else {
     for (std::size_t i = 0; i < tables.size(); ++i)
-      print_text((i ? "\n" : "") + table_text(tables[i], options.format));
+      print_raw((i ? "\n" : "") + table_text(tables[i], options.format));
   }
   return 0;
 }

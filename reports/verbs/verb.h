@@ -102,7 +102,8 @@ inline constexpr int kVerbSchema = 1;
 
 // Results go here: one JSON document, or text. Documents open with "schema".
 void print_json(const Json& json);
-void print_text(std::string_view text);
-bool color_terminal();  // standard output is a terminal and NO_COLOR is not set
+void print_text(std::string_view text);  // names in it are made printable
+void print_raw(std::string_view text);   // with colours, or a file of some format
+bool color_terminal();                   // standard output is a terminal and NO_COLOR is not set
 
 }  // namespace glint

@@ -104,7 +104,7 @@ TEST_CASE("A checkpoint that is damaged or of another run says what is wrong") {
   };
   CHECK_THROWS_WITH(
       with(R"("set.adam.steps":"0")", R"("set.adam.steps":"x")"),
-      Catch::Contains("a number in its metadata is none")
+      Catch::Contains("set.adam.steps is 'x', which is no such number")
   );
   CHECK_THROWS_WITH(
       with(R"("set.cloud.means":{"dtype":"F32")", R"("set.cloud.means":{"dtype":"U32")"),

@@ -94,6 +94,20 @@ TEST_CASE("A number that does not fit an integer field is an error") {
   CHECK(config.steps == 100);
 }
 
+TEST_CASE("A number beyond an integer's range is no integer, in lists neither") {
+  std::uint64_t seed = 7;
+  std::vector<std::int32_t> steps{1};
+  CHECK_THROWS_AS(read_field(Json(1.8446749377040552e19), seed), nlohmann::json::exception);
+  CHECK_THROWS_AS(read_field(Json(-1), seed), nlohmann::json::exception);
+  CHECK_THROWS_AS(read_field(Json(true), seed), nlohmann::json::exception);
+  CHECK(seed == 7);
+  read_field(Json(18446744073709551615u), seed);
+  CHECK(seed == 18446744073709551615u);
+  CHECK_THROWS_AS(read_field(Json({1, 1e300}), steps), nlohmann::json::exception);
+  read_field(Json({2.0, -3}), steps);
+  CHECK(steps == std::vector<std::int32_t>{2, -3});
+}
+
 TEST_CASE("A file that must hold a JSON object says what it holds instead") {
   const test::TempFolder folder;
   const auto message = [&](const char* content) {

@@ -14,6 +14,14 @@ TEST_CASE("what a terminal would obey is shown, what it prints stays") {
   );  // the control sequence introducer in UTF-8
 }
 
+TEST_CASE("what a shell would read in a name is quoted") {
+  CHECK(shell_word("runs/room_1/layers.mp4") == "runs/room_1/layers.mp4");
+  CHECK(shell_word("$(reboot)") == "'$(reboot)'");
+  CHECK(shell_word("a b;`c`&\n") == "'a b;`c`&\n'");
+  CHECK(shell_word("it's") == "'it'\\''s'");
+  CHECK(shell_word("") == "''");
+}
+
 TEST_CASE("text that a spreadsheet would run gets an apostrophe, numbers do not") {
   CHECK(csv_field("=HYPERLINK(1)") == "'=HYPERLINK(1)");
   CHECK(csv_field("@SUM(A1)") == "'@SUM(A1)");

@@ -86,3 +86,16 @@ TEST_CASE("bytes that are left over between the scans of a JPEG are an error") {
   write_file(folder / "x.jpg", file.substr(0, scan) + "abc" + file.substr(scan));
   CHECK_THAT(bad_reference([&] { read_image(folder / "x.jpg"); }), Contains("3 extraneous bytes"));
 }
+
+TEST_CASE("a JPEG of more scans than any encoder writes is an error before it is decoded") {
+  const TempFolder folder;
+  std::string file = jpeg(64, 64, TJPF_RGB, {204, 102, 51}, TJFLAG_PROGRESSIVE);
+  const std::string scan =
+      file.substr(file.rfind("\xff\xda"), file.size() - 2 - file.rfind("\xff\xda"));
+  for (int i = 0; i < 200; ++i) file.insert(file.size() - 2, scan);
+  write_file(folder / "x.jpg", file);
+  CHECK_THAT(bad_reference([&] { read_image(folder / "x.jpg"); }), Contains("scans, expected"));
+  CHECK_THAT(
+      bad_reference([&] { read_image_size(folder / "x.jpg"); }), Contains("scans, expected")
+  );
+}

@@ -86,13 +86,25 @@ TEST_CASE("chosen maps alone are rendered, over an earlier path, over nothing el
   CHECK(read_file(options.folder / "rgb/0000.png") == "someone's");
 }
 
+TEST_CASE("no name of a folder is an option, a protocol or a pattern to ffmpeg") {
+  for (const char* folder : {"-version", "http:x", "a%db", "$(reboot)"}) {
+    const auto words = video_command(fs::path(folder) / "%04d.png", 24, fs::path(folder) / "v.mp4");
+    INFO(folder);
+    const std::string here = fs::current_path().string() + "/";
+    const std::string name = folder == std::string("a%db") ? "a%%db" : folder;
+    CHECK(*(std::find(words.begin(), words.end(), "-i") + 1) == here + name + "/%04d.png");
+    CHECK(words.back() == here + folder + "/v.mp4");
+  }
+}
+
 TEST_CASE("ffmpeg makes the video where it is installed, and may fail") {
   const test::TempFolder folder;
   const SearchPath own(folder.path().string() + ":/bin:/usr/bin");
   install_ffmpeg(folder.path(), "for last; do :; done\necho \"$@\" > \"$last\"\n");
   const fs::path video = folder / "layers.mp4";
   CHECK(write_video("layers/%04d.png", 12, video).empty());
-  CHECK(read_file(video).find("-framerate 12 -i layers/%04d.png") != std::string::npos);
+  const std::string frames = (fs::current_path() / "layers/%04d.png").string();
+  CHECK(read_file(video).find("-framerate 12 -i " + frames) != std::string::npos);
   fs::remove(video);
   install_ffmpeg(folder.path(), "exit 3\n");
   CHECK(write_video("layers/%04d.png", 12, video) == "ffmpeg ended with 3");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reports/executors/child_process.h"
+#include "reports/bench/child_process.h"
 
 #include <fcntl.h>
 #include <poll.h>
