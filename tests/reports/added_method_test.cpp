@@ -59,7 +59,7 @@ TEST_CASE("a method in a file of its own is trained, tabulated, drawn and shown"
     words.insert(words.end(), common.begin(), common.end());
     return run(words);
   };
-  REQUIRE(run_verb({"all", "--methods", std::string("2dgs,") + kId}) == 0);
+  REQUIRE(run_verb({"all", "--executor", "inline", "--methods", std::string("2dgs,") + kId}) == 0);
 
   const fs::path results = folder / "out/tiny";
   const auto records = read_records(results / "records.jsonl");
