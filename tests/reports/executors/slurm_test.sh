@@ -138,13 +138,16 @@ for task in $(squeue -h -r -t RUNNING -o %A); do
   scontrol show job "$task" | grep -q "StdOut=.*cells" && { scancel --batch --signal=USR1 "$task" || true; }
 done
 
-# Slurm keeps what was requeued back for two minutes; not here.
+# Slurm keeps what was requeued back for two minutes, so that the end of the first try does not meet the second;
+# here five seconds will do.
+declare -A since
 for _ in $(seq 1800); do
   [ -n "$(squeue -h)" ] || break
   for task in $(squeue -h -r -t PENDING -o '%i %r' | awk '$2 == "BeginTime" { print $1 }'); do
-    scontrol update JobId="$task" StartTime=now || true
+    since[$task]=${since[$task]:-$SECONDS}
+    [ $((SECONDS - since[$task])) -lt 5 ] || scontrol update JobId="$task" StartTime=now || true
   done
-  sleep 0.1
+  sleep 0.2
 done
 [ -z "$(squeue -h)" ] || fail "jobs are left: $(squeue)"
 echo "== results"
