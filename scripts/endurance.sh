@@ -106,7 +106,7 @@ while [ "$(done_seconds)" -lt "$seconds" ]; do
   times=$((1 + $(random 3)))
   for _ in $(seq $times); do $kind "$method"; done
   why=$(what_is_wrong "$method")
-  cells=$(wc -l <"$disk/out/smoke/records.jsonl")
+  cells=$(cat "$disk/out/smoke/records.jsonl" 2>/dev/null | wc -l)
   umount "$disk"
   [ -z "$why" ] || { wrong=$((wrong + 1)); cp "$work/err.txt" "build/endurance_$(done_rounds).txt"; }
   printf '{"round":%d,"disturbance":"%s","times":%d,"method":"%s","records":%d,"lost":"%s","seconds":%d,"commit":"%s"}\n' \
