@@ -54,7 +54,9 @@ undisturbed() {
   umount "$disk"
 }
 
-killed_run() { all "$1" & local id=$!; pause "${took[$1]}"; kill -9 $id 2>/dev/null || true; wait $id 2>/dev/null || true; sleep 0.3; }
+# Those whose starter was killed end after their step; until then their cells are theirs.
+no_workers() { for _ in $(seq 600); do pgrep -f "run --executor inline .*--out $disk/out" >/dev/null || return 0; sleep 0.1; done; }
+killed_run() { all "$1" & local id=$!; pause "${took[$1]}"; kill -9 $id 2>/dev/null || true; wait $id 2>/dev/null || true; no_workers; }
 killed_worker() {
   all "$1" & local id=$!
   pause "${took[$1]}"

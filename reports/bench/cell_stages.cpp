@@ -106,6 +106,13 @@ std::string CellStages::why() const {
   return text;
 }
 
+std::vector<std::string> stages_to_do(const CellStages& stages) {
+  std::vector<std::string> names;
+  for (const Stage stage : kStages)
+    if (!stages[stage].done && stage != Stage::kData) names.emplace_back(stage_name(stage));
+  return names;
+}
+
 CellStages cell_stages(
     const PlanCell& cell,
     const Profile& profile,

@@ -31,6 +31,9 @@ class CellStages {
   std::array<StageState, kStages.size()> states_;
 };
 
+// Names of those that are not done, but for the making of data, which no record times.
+std::vector<std::string> stages_to_do(const CellStages& stages);
+
 // `record`: the cell's, or null. `run`: its folder; empty: as if nothing had been done (--force).
 CellStages cell_stages(
     const PlanCell& cell,

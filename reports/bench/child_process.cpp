@@ -65,7 +65,7 @@ struct Pipe {
   }
   ::dup2(output, STDOUT_FILENO);
   ::dup2(output, STDERR_FILENO);
-  const int nothing = ::open("/dev/null", O_RDONLY);
+  const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (nothing >= 0) ::dup2(nothing, STDIN_FILENO);
   environ = const_cast<char**>(environment);
   ::execvp(program, words);
@@ -124,11 +124,6 @@ ChildProcess::ChildProcess(const Words& words, const Words& settings) {
       fmt::format("{}: cannot be started ({})", words.at(0), std::strerror(why))
   );
 }
-
-ChildProcess::ChildProcess(ChildProcess&& other) noexcept
-    : id_(std::exchange(other.id_, -1)),
-      output_(std::exchange(other.output_, -1)),
-      end_(std::move(other.end_)) {}
 
 ChildProcess::~ChildProcess() {
   if (output_ >= 0) ::close(output_);

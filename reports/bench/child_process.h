@@ -31,10 +31,9 @@ class ChildProcess {
   // can be made, or no such program.
   explicit ChildProcess(const Words& words, const Words& settings = {});
   ~ChildProcess();  // one that still runs is killed
-  ChildProcess(ChildProcess&& other) noexcept;
-  ChildProcess& operator=(ChildProcess&&) = delete;
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
 
-  pid_t id() const { return id_; }
   int output() const { return output_; }  // to poll(); ready when read() gives something
   // What it wrote since; never waits. Empty: nothing yet, or nothing ever again.
   std::string read();

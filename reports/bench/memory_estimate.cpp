@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glint/core/error.h"
+#include "reports/bench/plan.h"
 
 namespace glint {
 namespace {
@@ -13,8 +14,7 @@ constexpr double kProgramBytes = 60e6;
 // A value, its gradient and its two moments, of 58 values a surfel with SH degree 3, and the lists
 // and trees over them.
 constexpr double kBytesPerSurfel = 4 * 58 * sizeof(float) + 250;
-constexpr double kSets = 3;               // interface, transmission, reflection
-constexpr double kPixelsPerSurfel = 1.5;  // what rooms train to
+constexpr double kSets = 3;  // interface, transmission, reflection
 // Maps that a step keeps for its way back, losses and pictures of features.
 constexpr double kBytesPerPixel = 1500;
 // Points, normals, distances and the trees over them, of two meshes.

@@ -25,6 +25,9 @@ std::vector<PlanCell> make_plan(
     const Profile& profile, const CellFilter& filter, const std::vector<std::string>& assignments
 );
 
+// Of a picture, for each surfel of a set: about what rooms train to.
+inline constexpr double kPixelsPerSurfel = 1.5;
+
 // Seconds that these stages of the cell will take, from the mean of finished cells of the same
 // method. Nothing: unknown, none has finished.
 std::optional<double> estimated_seconds(

@@ -21,13 +21,6 @@ SceneIdentity identity_of(const RunnerOptions& options, const SceneSource& sourc
   }
 }
 
-std::vector<std::string> stages_to_do(const CellStages& stages) {
-  std::vector<std::string> names;
-  for (const Stage stage : kStages)
-    if (!stages[stage].done) names.emplace_back(stage_name(stage));
-  return names;
-}
-
 }  // namespace
 
 CellQueue::CellQueue(const std::vector<PlanCell>& plan, const RunnerOptions& options, int jobs)

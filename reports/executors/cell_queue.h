@@ -38,7 +38,7 @@ class CellQueue {
   bool postpone(const CellTry& what);  // to the end, once; false: it was there already
   void learn(const Record& record);    // for estimates
 
-  // "[3/34, 12m 10s left] room_1/glint/0".
+  // "[3/34, 12m 10s left behind it] room_1/glint/0".
   std::string place_of(const CellTry& what) const;
   // What the cell takes by what its method took before; 0: unknown.
   double bytes_of(const PlanCell& cell) const;

@@ -14,11 +14,6 @@ namespace {
 // Of values that other kernels computed: networks on another CPU, anything on a GPU.
 constexpr double kRounding = 1e-6;  // relative
 
-const std::set<std::string>& costs() {
-  static const std::set<std::string> ids{"fps", "train-minutes", "peak-memory", "num-surfels"};
-  return ids;
-}
-
 // "psnr@glass" is psnr on a region; of meshes '@' belongs to the id.
 std::string metric_of(const std::string& id) {
   const Metric* metric = find_metric(id);
@@ -39,7 +34,7 @@ bool is_of_meshes(const std::string& id) {
 
 // Values that nothing here can compute.
 bool cannot_recompute(const std::string& id) {
-  if (costs().contains(id)) return true;
+  if (is_cost(id) || id == "num-surfels") return true;
   const std::string metric = metric_of(id);
   return find_metric(id) == nullptr || missing_metrics().contains(metric) ||
          (is_of_meshes(metric) && !score_meshes.here());

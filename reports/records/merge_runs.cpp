@@ -13,13 +13,6 @@
 namespace glint {
 namespace {
 
-// Of the machine, not of the method.
-constexpr std::array kCosts = {"fps", "train-minutes", "peak-memory"};
-
-bool is_a_cost(const std::string& metric) {
-  return std::find(kCosts.begin(), kCosts.end(), metric) != kCosts.end();
-}
-
 std::string machine_of(const Record& record) {
   const Json& environment = record.environment;
   for (const char* field : {"host", "device", "cpu"})
@@ -105,7 +98,7 @@ std::string score_differences(const Record& a, const Record& b) {
   std::set<std::string> ids;
   for (const Record* record : {&a, &b})
     for (const auto& [id, value] : record->metrics)
-      if (!is_a_cost(id)) ids.insert(id);
+      if (!is_cost(id)) ids.insert(id);
   std::string text;
   for (const std::string& id : ids) {
     const auto in_a = a.metrics.find(id), in_b = b.metrics.find(id);

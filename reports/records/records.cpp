@@ -183,6 +183,10 @@ std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte)
   return records.take();
 }
 
+bool is_cost(const std::string& metric) {
+  return metric == "fps" || metric == "train-minutes" || metric == "peak-memory";
+}
+
 const Record* find_record(const std::vector<Record>& records, const CellKey& cell) {
   const auto it = std::find_if(records.begin(), records.end(), [&](const Record& record) {
     return record.cell == cell;

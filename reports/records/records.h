@@ -72,6 +72,9 @@ void append_record(const fs::path& file, const Record& record);
 // that is JSON but no record, a newer schema.
 std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte = 0);
 
+// Is this metric the machine's, not the method's: speed, time, memory?
+bool is_cost(const std::string& metric);
+
 const Record* find_record(const std::vector<Record>& records, const CellKey& cell);
 
 }  // namespace glint

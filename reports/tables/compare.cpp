@@ -16,12 +16,7 @@ namespace glint {
 
 namespace {
 
-constexpr const char* kCosts[] = {"fps", "train-minutes", "peak-memory"};
 constexpr double kRounding = 1e-12;  // relative; smaller differences are none
-
-bool is_cost(const std::string& metric) {
-  return std::find(std::begin(kCosts), std::end(kCosts), metric) != std::end(kCosts);
-}
 
 // Metric id -> which way is better, of every column of the tables.
 const std::map<std::string, RankOrder>& table_metrics() {

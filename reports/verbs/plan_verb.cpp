@@ -19,9 +19,6 @@ struct PlanRow {
   std::string from;               // "records", "timed steps"; empty: unknown
 };
 
-// Surfels of every set in timed steps: what rooms of that size train to, about one for each pixel
-// and a half of a picture.
-constexpr double kPixelsPerSurfel = 1.5;
 constexpr int kTimedSteps = 2;
 
 // Steps of each method at each image size, timed once; methods of which nothing is known yet. Not
@@ -53,13 +50,6 @@ class StepTimer {
   int iterations_;
   std::map<Key, double> steps_;
 };
-
-std::vector<std::string> stages_to_do(const CellStages& stages) {
-  std::vector<std::string> names;
-  for (const Stage stage : kStages)
-    if (!stages[stage].done && stage != Stage::kData) names.emplace_back(stage_name(stage));
-  return names;
-}
 
 // From earlier cells of the method where there are any, else from timed steps.
 PlanRow plan_row(const PlannedCell& cell, const std::vector<Record>& records, StepTimer& timer) {

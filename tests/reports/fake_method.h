@@ -14,6 +14,7 @@
 
 #include "glint/core/device_lost.h"
 #include "glint/method.h"
+#include "reports/bench/runner.h"
 #include "reports/records/scene_source.h"
 
 namespace glint {
@@ -133,6 +134,24 @@ inline Scene fake_scene(const std::string& name, float grey = 0.6f) {
 // There, without a file.
 inline SceneIdentity fake_identity(const SceneSource& source) {
   return {{{"scene", {{"max_pixels", source.max_pixels}}}, {"content", "fake-data"}}, ""};
+}
+
+// Two scenes and two methods, of which nothing has to be rendered or read.
+inline RunnerOptions fake_run(const fs::path& out) {
+  register_fake_methods();
+  RunnerOptions options;
+  options.profile.name = "fake";
+  options.profile.iterations = 10;
+  options.profile.methods = {"fake", "fake/other"};
+  options.profile.timing_frames = 2;
+  for (const char* scene : {"room_1", "room_2"})
+    options.profile.scenes.push_back({{"scene", scene}, {"folder", "nowhere"}});
+  options.out = out;
+  options.identify = fake_identity;
+  options.load = [](const SceneSource& source) {
+    return LoadedScene{fake_scene(source.scene), "nowhere"};
+  };
+  return options;
 }
 
 }  // namespace glint

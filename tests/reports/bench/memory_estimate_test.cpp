@@ -52,17 +52,8 @@ TEST_CASE("a cell that does not fit says so before its training") {
       Catch::Contains("needs about 2.79 GiB (by its images and surfels), 1.00 GiB are free")
   );
   const test::TempFolder folder;
-  register_fake_methods();
-  RunnerOptions options;
-  options.profile.name = "fake";
-  options.profile.iterations = 3;
-  options.profile.methods = {"fake"};
-  options.profile.scenes = {{{"scene", "room_1"}, {"folder", "nowhere"}}};
-  options.out = folder.path();
-  options.identify = fake_identity;
-  options.load = [](const SceneSource& source) {
-    return LoadedScene{fake_scene(source.scene), "nowhere"};
-  };
+  RunnerOptions options = fake_run(folder.path());
+  options.filter.only = {"room_1/fake/0"};
   Record before;  // of another seed: a cell that took more than there is
   before.cell = {"room_1", "fake", 7};
   before.resolution = "16x12";

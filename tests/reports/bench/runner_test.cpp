@@ -19,24 +19,7 @@ using namespace glint;
 
 namespace {
 
-// A profile of folder scenes, so that nothing has to be rendered.
-RunnerOptions fake_run(const fs::path& out) {
-  static const bool registered = (register_fake_methods(), set_quiet(true), true);
-  REQUIRE(registered);
-  RunnerOptions options;
-  options.profile.name = "fake";
-  options.profile.iterations = 10;
-  options.profile.methods = {"fake", "fake/other"};
-  options.profile.timing_frames = 2;
-  for (const char* scene : {"room_1", "room_2"})
-    options.profile.scenes.push_back({{"scene", scene}, {"folder", "nowhere"}});
-  options.out = out;
-  options.identify = fake_identity;
-  options.load = [](const SceneSource& source) {
-    return LoadedScene{fake_scene(source.scene), "nowhere"};
-  };
-  return options;
-}
+[[maybe_unused]] const bool quiet = (set_quiet(true), true);
 
 // One cell, and what can be said of it after a run.
 struct OneCell {
