@@ -38,6 +38,7 @@ class Parser {
   Parser(std::string_view text, const std::string& path) : text_(text), path_(path) {}
 
   json document() {
+    refuse_zero_bytes();
     skip_head();
     skip_blanks();
     if (ended()) return nullptr;
@@ -60,6 +61,14 @@ class Parser {
             why
         )
     );
+  }
+
+  // Errors end at them: what() is a C string, and the file's name may stand behind.
+  void refuse_zero_bytes() {
+    const std::size_t zero = text_.find('\0');
+    if (zero == std::string_view::npos) return;
+    at_ = zero;
+    fail("a zero byte");
   }
 
   std::string_view rest() const { return text_.substr(at_); }

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Smoke cells again and again, disturbed each time: workers and whole runs killed at random times, a full disk, a
+# Smoke cells again and again, disturbed each time: workers and whole runs killed at random times, two runs at once, a full disk, a
 # folder that becomes read-only, a clock that jumps. After each disturbance the same command has to end with exit
 # code 0 and the surfels of an undisturbed run; nothing may be left over, and no record torn.
 #   scripts/endurance.sh [--seconds N (7200)] [--records FILE] [GLINT_BENCH]
 # One JSON line a round goes to FILE (docs/results/endurance.jsonl); what it holds already counts towards N, so the
 # work may be done in pieces. Root (for tmpfs); libfaketime for the clock, else that round is left out.
 # Exit 4: something was lost.
-set -euo pipefail
+set -eEuo pipefail
 cd "$(dirname "$0")/.."
 
 seconds=7200 records=docs/results/endurance.jsonl bench=build/release/bin/glint-bench
@@ -23,6 +23,7 @@ disk=$work/disk
 mkdir "$disk"
 cleanup() { mountpoint -q "$disk" && umount -l "$disk"; rm -rf "$work"; }
 trap cleanup EXIT
+trap 'echo "endurance: line $LINENO failed: $BASH_COMMAND" >&2' ERR
 cp "$bench" "$work/glint-bench"  # not what is built meanwhile
 bench=$work/glint-bench
 commit=$("$bench" --version | sed 's/.*(\(.*\)).*/\1/')
@@ -32,10 +33,11 @@ faketime=$(find /usr/lib -name libfaketimeMT.so.1 2>/dev/null | head -n 1)
 done_seconds() { [ -f "$records" ] && awk -F'"seconds":' '{ split($2, s, ","); sum += s[1] } END { printf "%d", sum }' "$records" || echo 0; }
 done_rounds() { [ -f "$records" ] && wc -l <"$records" || echo 0; }
 
-# all METHOD [words]: one cell on the tmpfs.
+words=(all --profile smoke --iterations 40 --device cpu --threads 1 --data "$work/data" --out "$disk/out"
+  --checkpoint-seconds 0.1 --quiet)
+# all METHOD: one cell on the tmpfs.
 all() {
-  "$bench" all --profile smoke --only "room_1/$1/0" --methods "$1" --iterations 40 --device cpu --threads 1 \
-    --data "$work/data" --out "$disk/out" --checkpoint-seconds 0.1 --quiet "${@:2}" >"$work/out.txt" 2>"$work/err.txt"
+  "$bench" "${words[@]}" --only "room_1/$1/0" --methods "$1" >"$work/out.txt" 2>"$work/err.txt"
 }
 surfels() { (cd "$disk/out/smoke/runs/room_1/$1/0" && find . -maxdepth 1 -name '*.ply' -not -name 'mesh*' -exec sha256sum {} + | sort); }
 mount_disk() { mount -t tmpfs -o "size=$1" tmpfs "$disk"; }
@@ -54,26 +56,39 @@ undisturbed() {
   umount "$disk"
 }
 
+# A run that is disturbed from outside: `run` is its process, which no function stands in front of.
+start() {
+  "$bench" "${words[@]}" --only "room_1/$1/0" --methods "$1" >"$work/out.txt" 2>"$work/err.txt" &
+  run=$!
+}
 # Those whose starter was killed end after their step; until then their cells are theirs.
 no_workers() { for _ in $(seq 600); do pgrep -f "run --executor inline .*--out $disk/out" >/dev/null || return 0; sleep 0.1; done; }
-killed_run() { all "$1" & local id=$!; pause "${took[$1]}"; kill -9 $id 2>/dev/null || true; wait $id 2>/dev/null || true; no_workers; }
+killed_run() { start "$1"; pause "${took[$1]}"; kill -9 $run 2>/dev/null || true; wait $run 2>/dev/null || true; no_workers; }
+# Killed while another one has begun on the same folder: they share its cell, or one waits.
+two_runs() {
+  start "$1"; local first=$run
+  pause "${took[$1]}"
+  "$bench" "${words[@]}" --only "room_1/$1/0" --methods "$1" >"$work/second.txt" 2>&1 & local second=$!
+  wait $first 2>/dev/null || true
+  wait $second || true
+}
 killed_worker() {
-  all "$1" & local id=$!
+  start "$1"
   pause "${took[$1]}"
   pkill -9 -f "run --executor inline .*--out $disk/out" || true
-  wait $id 2>/dev/null || true
+  wait $run 2>/dev/null || true
 }
-told_to_stop() { all "$1" & local id=$!; pause "${took[$1]}"; kill -TERM $id 2>/dev/null || true; wait $id 2>/dev/null || true; }
+told_to_stop() { start "$1"; pause "${took[$1]}"; kill -TERM $run 2>/dev/null || true; wait $run 2>/dev/null || true; }
 full_disk() {
   mount -o "remount,size=$((100 + $(random 4000)))k" "$disk" 2>/dev/null || return 0
   all "$1" || true
   mount -o remount,size=200m "$disk"
 }
 read_only() {
-  all "$1" & local id=$!
+  start "$1"
   pause "${took[$1]}"
   mount -o remount,ro "$disk" 2>/dev/null || true
-  wait $id 2>/dev/null || true
+  wait $run 2>/dev/null || true
   mount -o remount,rw "$disk"
 }
 # Only the clock of the calendar: the other one cannot jump.
@@ -98,7 +113,7 @@ what_is_wrong() {
   [ "$left" = "nothing is left over" ] || echo "left over: $left"
 }
 
-kinds=(killed_run killed_worker told_to_stop full_disk read_only clock_jumps)
+kinds=(killed_run two_runs killed_worker told_to_stop full_disk read_only clock_jumps)
 wrong=0
 while [ "$(done_seconds)" -lt "$seconds" ]; do
   method=${methods[$(random ${#methods[@]})]} kind=${kinds[$(random ${#kinds[@]})]}
@@ -108,7 +123,7 @@ while [ "$(done_seconds)" -lt "$seconds" ]; do
   times=$((1 + $(random 3)))
   for _ in $(seq $times); do $kind "$method"; done
   why=$(what_is_wrong "$method")
-  cells=$(cat "$disk/out/smoke/records.jsonl" 2>/dev/null | wc -l)
+  cells=$({ cat "$disk/out/smoke/records.jsonl" 2>/dev/null || true; } | wc -l)
   umount "$disk"
   [ -z "$why" ] || { wrong=$((wrong + 1)); cp "$work/err.txt" "build/endurance_$(done_rounds).txt"; }
   printf '{"round":%d,"disturbance":"%s","times":%d,"method":"%s","records":%d,"lost":"%s","seconds":%d,"commit":"%s"}\n' \

@@ -7,6 +7,7 @@
 #include "datasets/glassroom/glassroom_scene.h"
 #include "datasets/glassroom/gltf_assets.h"
 #include "datasets/glassroom/priors.h"
+#include "datasets/glassroom/replace_scene.h"
 #include "datasets/glassroom/sfm_points.h"
 #include "datasets/glassroom/write_scene.h"
 #include "datasets/scene_index.h"
@@ -29,42 +30,6 @@ constexpr int kTestSampleFactor = 4;
 constexpr int kSheetColumns = 8, kSheetTileWidth = 240;
 
 bool is_test_view(int view) { return view % kTestEvery == 0; }
-
-// A folder beside the final one, removed unless it was renamed.
-class UnfinishedFolder {
- public:
-  explicit UnfinishedFolder(const fs::path& final_path) {
-    const fs::path absolute = fs::absolute(final_path).lexically_normal();
-    const fs::path target = absolute.has_filename() ? absolute : absolute.parent_path();
-    path_ = unfinished_path(target);
-    std::error_code code;
-    remove_left_behind(target.parent_path(), false);
-    fs::remove_all(path_, code);
-    fs::create_directories(path_, code);
-    GLINT_CHECK(!code, kEnvironment, "{}: cannot be created ({})", path_.string(), code.message());
-  }
-  ~UnfinishedFolder() {
-    std::error_code code;
-    fs::remove_all(path_, code);
-  }
-  UnfinishedFolder(const UnfinishedFolder&) = delete;
-  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
-  // Takes the place of an older scene, if there is one.
-  void finish(const fs::path& final_path) {
-    std::error_code code;
-    fs::remove_all(final_path, code);
-    if (!code) fs::rename(path_, final_path, code);
-    GLINT_CHECK(
-        !code, kEnvironment, "{}: cannot be written ({})", final_path.string(), code.message()
-    );
-  }
-
- private:
-  fs::path path_;
-};
 
 // Of a folder whose scene.json is damaged: what is left of it says so, or the key of the data.
 bool was_a_scene(const fs::path& folder, const std::string& description) {
@@ -313,7 +278,7 @@ bool make_room(const GlassRoomOptions& options, const fs::path& folder, bool aga
   }
   UnfinishedFolder unfinished(folder);
   SceneMaker(options, unfinished.path()).make();
-  unfinished.finish(folder);
+  replace_scene(unfinished.path(), folder);
   return true;
 }
 

@@ -8,10 +8,13 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <ctime>
+#include <thread>
 
 #include "glint/core/error.h"
+#include "glint/core/interrupt.h"
 #include "glint/core/machine.h"
 
 namespace glint {
@@ -51,6 +54,20 @@ int open_file(const fs::path& file) {
 }
 
 }  // namespace
+
+FileLock FileLock::wait_for(
+    const fs::path& file, const std::function<void(const std::string& holder)>& waiting
+) {
+  constexpr auto kPause = std::chrono::milliseconds(100);
+  bool told = false;
+  while (true) {
+    auto lock = take(file);
+    if (auto* taken = std::get_if<FileLock>(&lock)) return std::move(*taken);
+    if (!std::exchange(told, true)) waiting(std::get<std::string>(lock));
+    throw_if_interrupted();
+    std::this_thread::sleep_for(kPause);
+  }
+}
 
 fs::path FileLock::file_beside(const fs::path& folder) {
   const fs::path plain = fs::absolute(folder / "").lexically_normal().parent_path();

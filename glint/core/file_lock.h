@@ -3,6 +3,7 @@
 // when the process ends, however it ends. Other machines see it where their file system takes part.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -17,6 +18,11 @@ class FileLock {
   // folder. Errors (kEnvironment): the file cannot be made. A file system without locks is no
   // obstacle: then nothing is guarded.
   static std::variant<FileLock, std::string> take(const fs::path& file);
+  // Waits until the lock can be taken; meanwhile `waiting` with who has it is told once. Errors: as
+  // take(), and Interrupted.
+  static FileLock wait_for(
+      const fs::path& file, const std::function<void(const std::string& holder)>& waiting
+  );
   // Of a folder: ".NAME.lock" beside it.
   static fs::path file_beside(const fs::path& folder);
 

@@ -101,4 +101,20 @@ void remove_left_behind(const fs::path& folder, bool recursive) {
   for (const fs::path& path : list_left_behind(folder, recursive)) fs::remove_all(path, code);
 }
 
+UnfinishedFolder::UnfinishedFolder(const fs::path& final_path) {
+  const fs::path absolute = fs::absolute(final_path).lexically_normal();
+  const fs::path target = absolute.has_filename() ? absolute : absolute.parent_path();
+  path_ = unfinished_path(target);
+  std::error_code code;
+  remove_left_behind(target.parent_path(), false);
+  fs::remove_all(path_, code);
+  fs::create_directories(path_, code);
+  GLINT_CHECK(!code, kEnvironment, "{}: cannot be created ({})", path_.string(), code.message());
+}
+
+UnfinishedFolder::~UnfinishedFolder() {
+  std::error_code code;
+  fs::remove_all(path_, code);
+}
+
 }  // namespace glint

@@ -21,4 +21,19 @@ std::vector<fs::path> list_left_behind(const fs::path& folder, bool recursive = 
 // Removes them; what cannot be removed stays without a word.
 void remove_left_behind(const fs::path& folder, bool recursive = true);
 
+// A folder beside the one it will become, made anew; at its end, what was not moved out of it goes.
+// So does what ended processes left there. Errors (kEnvironment): cannot be created.
+class UnfinishedFolder {
+ public:
+  explicit UnfinishedFolder(const fs::path& final_path);
+  ~UnfinishedFolder();
+  UnfinishedFolder(const UnfinishedFolder&) = delete;
+  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
 }  // namespace glint

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reports/page/page.h"
 
+#include "glint/core/file_lock.h"
+#include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
 #include "reports/page/mesh_part.h"
 #include "reports/page/page_scenes.h"
@@ -94,11 +96,19 @@ void write_assets(
   write_file(assets / "data.js", fmt::format("window.GLINT_REPORT={};\n", script_json(summary)));
 }
 
-std::uintmax_t bytes_below(const fs::path& folder) {
-  std::uintmax_t bytes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
+std::uintmax_t bytes_of_page(const fs::path& report) {
+  std::uintmax_t bytes = fs::file_size(report / "index.html");
+  if (!fs::exists(report / "assets")) return bytes;
+  for (const auto& entry : fs::recursive_directory_iterator(report / "assets"))
     if (entry.is_regular_file()) bytes += entry.file_size();
   return bytes;
+}
+
+// Each `all` on a folder writes the page at its end: the pages come one after the other.
+FileLock wait_for_page(const fs::path& report) {
+  return FileLock::wait_for(FileLock::file_beside(report), [&](const std::string& holder) {
+    log::info(fmt::format("{}: waiting for {}, which writes it", report.string(), holder));
+  });
 }
 
 void remove_folder(const fs::path& folder) {
@@ -129,20 +139,17 @@ std::size_t mesh_faces(const PageOptions& options) {
 
 fs::path write_page(const PageOptions& options, const std::vector<Table>& tables) {
   const fs::path report = options.folder / "report", assets = report / "assets";
-  const fs::path fresh = report / "assets.new";  // an error leaves the page before as it was
-  remove_folder(fresh);
-  write_assets(options, tables, fresh);
+  const UnfinishedFolder fresh(assets);  // an error leaves the page before as it was
+  write_assets(options, tables, fresh.path());
   const std::string html =
-      options.single_file ? inlined_page(options, fresh) : linked_page(options);
+      options.single_file ? inlined_page(options, fresh.path()) : linked_page(options);
+  const FileLock lock = wait_for_page(report);
   remove_folder(assets);
-  if (options.single_file)
-    remove_folder(fresh);
-  else
-    move_folder(fresh, assets);
+  if (!options.single_file) move_folder(fresh.path(), assets);
   write_file(report / "index.html", html);
   log::info(fmt::format(
       "report: {:.1f} MB in {}, meshes of at most {} faces",
-      static_cast<double>(bytes_below(report)) / 1e6,
+      static_cast<double>(bytes_of_page(report)) / 1e6,
       options.single_file ? "one file" : "a folder",
       mesh_faces(options)
   ));

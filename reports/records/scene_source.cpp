@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "reports/records/scene_source.h"
 
-#include <chrono>
-#include <thread>
 #include <utility>
 
 #include "datasets/dataset.h"
 #include "datasets/glassroom/glassroom.h"
 #include "glint/core/file_lock.h"
-#include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "glint/core/sha256.h"
 #include "reports/records/code_hashes.h"
@@ -87,18 +84,9 @@ SceneIdentity made_identity(const SceneSource& source, const fs::path& data_fold
 
 // Of several processes that want the scene one makes it, and the others wait.
 FileLock wait_for(const fs::path& folder) {
-  constexpr auto kPause = std::chrono::milliseconds(200);
-  bool told = false;
-  while (true) {
-    auto lock = FileLock::take(FileLock::file_beside(folder));
-    if (auto* taken = std::get_if<FileLock>(&lock)) return std::move(*taken);
-    if (!std::exchange(told, true))
-      log::info(fmt::format(
-          "{}: waiting for {}, which makes it", folder.string(), std::get<std::string>(lock)
-      ));
-    throw_if_interrupted();
-    std::this_thread::sleep_for(kPause);
-  }
+  return FileLock::wait_for(FileLock::file_beside(folder), [&](const std::string& holder) {
+    log::info(fmt::format("{}: waiting for {}, which makes it", folder.string(), holder));
+  });
 }
 
 void make_source(const SceneSource& source, const fs::path& folder, const fs::path& data_folder) {

@@ -60,3 +60,10 @@ TEST_CASE("what is no such file is an error of its line") {
   CHECK_THAT(error_of("%YAML:1.0\n---%YAML:1.\nn0\n-"), Contains("x.yml: line 3"));
   CHECK_THAT(error_of("a: " + std::string(1000, '[')), Contains("nested more than 50 deep"));
 }
+
+TEST_CASE("a zero byte, behind which no message would go on, is refused with its line") {
+  const std::string zero(1, '\0');
+  for (const std::string& text :
+       {"names:\n   - a" + zero + "b\n", "names:\n   - \"" + zero + "\"\n"})
+    CHECK_THAT(error_of(text), Contains("x.yml: line 2: a zero byte"));
+}

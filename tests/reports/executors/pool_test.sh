@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # `all` with a process for each cell, stopped by SIGTERM and by kill -9: no process of it is left, checkpoints are,
-# and in the end the surfels are those of cells that ran in one process: pool_test.sh GLINT_BENCH
+# and in the end the surfels are those of cells that ran in one process; reports at the same time: pool_test.sh GLINT_BENCH
 set -euo pipefail
 bench=$(readlink -f "$1")
 folder=$(mktemp -d /tmp/glint_pool.XXXXXX)
@@ -43,4 +43,15 @@ content() { (cd "$1/smoke/runs" && find . -name '*.ply' -not -name 'mesh*' -exec
 [ "$(content "$folder/inline" | wc -l)" -ge 5 ] || fail "too few surfel files"
 diff <(content "$folder/inline") <(content "$folder/pool") || fail "other surfels than in one process"
 "$bench" compare "$folder/inline/smoke" "$folder/pool/smoke" --tolerance 0 --quiet >"$folder/compare.err" || fail "other scores"
+
+# Each of two `all`s on one folder writes the page at its end.
+for try in 1 2 3; do
+  ids=()
+  for one in 1 2 3; do
+    "$bench" report --profile smoke --out "$folder/pool" --data "$folder/data" --quiet >"$folder/report_$one.err" 2>&1 & ids+=($!)
+  done
+  for id in "${ids[@]}"; do wait "$id" || fail "three reports at once, try $try"; done
+  left=$(ls -A "$folder/pool/smoke/report")
+  [ "$left" = $'assets\nindex.html' ] || fail "three reports left $left"
+done
 echo "stopped twice, ended with the same surfels and scores"
