@@ -2,7 +2,6 @@
 #include "reports/bench/cell_run.h"
 
 #include <chrono>
-#include <limits>
 
 #include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
@@ -150,10 +149,8 @@ class CellRun {
   }
 
   void check_memory(const std::vector<Record>& records) {
-    const Json config = create_method(spec_.method, spec_.config)->config();
-    const auto max_surfels = config.value("max_surfels", std::numeric_limits<std::size_t>::max());
     const MemoryEstimate estimate = estimate_memory(
-        {spec_.method, max_surfels, profile_.mesh_protocol().num_samples}, scene_, records
+        memory_user(spec_.method, spec_.config, profile_), size_of(scene_), records
     );
     record_.estimated_memory_mb = estimate.bytes / 1e6;
     check_fits(estimate, available_memory_bytes() + resident_memory_bytes());

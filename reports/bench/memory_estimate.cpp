@@ -2,8 +2,10 @@
 #include "reports/bench/memory_estimate.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "glint/core/error.h"
+#include "glint/method.h"
 #include "reports/bench/plan.h"
 
 namespace glint {
@@ -20,20 +22,6 @@ constexpr double kBytesPerPixel = 1500;
 // Points, normals, distances and the trees over them, of two meshes.
 constexpr double kBytesPerSample = 600;
 
-double pixels_of(const Scene& scene) {
-  double most = 0;
-  for (const auto* views : {&scene.train, &scene.test})
-    for (const View& view : *views)
-      most = std::max(most, double(view.camera.width) * view.camera.height);
-  return most;
-}
-
-std::string resolution_of(const Scene& scene) {
-  if (scene.test.empty()) return "";
-  const Camera& camera = scene.test.front().camera;
-  return fmt::format("{}x{}", camera.width, camera.height);
-}
-
 double bytes_of(const Image& image) {
   return double(image.num_pixels()) * image.channels() * sizeof(float);
 }
@@ -48,12 +36,37 @@ std::string gib(double bytes) { return fmt::format("{:.2f} GiB", bytes / (1 << 3
 
 }  // namespace
 
-double image_bytes(const Scene& scene) {
-  double bytes = 0;
+MemoryUser memory_user(const std::string& method, const Json& config, const Profile& profile) {
+  const Json resolved = create_method(method, config)->config();
+  const auto max_surfels = resolved.value("max_surfels", std::numeric_limits<std::size_t>::max());
+  return {method, max_surfels, profile.mesh_protocol().num_samples};
+}
+
+SceneSize size_of(const Scene& scene) {
+  SceneSize size;
   for (const auto* views : {&scene.train, &scene.test})
-    for (const View& view : *views)
-      bytes += bytes_of(view.rgb) + bytes_of(view.priors) + bytes_of(view.truth);
-  return bytes;
+    for (const View& view : *views) {
+      size.view_pixels = std::max(size.view_pixels, double(view.camera.width) * view.camera.height);
+      size.image_bytes += bytes_of(view.rgb) + bytes_of(view.priors) + bytes_of(view.truth);
+    }
+  size.points = double(scene.points.positions.size());
+  if (!scene.test.empty()) {
+    const Camera& camera = scene.test.front().camera;
+    size.resolution = fmt::format("{}x{}", camera.width, camera.height);
+  }
+  return size;
+}
+
+SceneSize size_of(const SceneSource& room) {
+  int channels = 3;  // of the photo
+  for (const MapRow& row : maps())
+    channels += row.channels() * (int(!row.prior.empty()) + int(!row.truth.empty()));
+  const double pixels = double(room.width) * room.height;
+  return {
+      pixels,
+      pixels * room.views * channels * sizeof(float),
+      0,
+      fmt::format("{}x{}", room.width, room.height)};
 }
 
 double bytes_taken(const Record& record) {
@@ -63,18 +76,17 @@ double bytes_taken(const Record& record) {
 }
 
 MemoryEstimate estimate_memory(
-    const MemoryUser& user, const Scene& scene, const std::vector<Record>& records
+    const MemoryUser& user, const SceneSize& scene, const std::vector<Record>& records
 ) {
   double most = 0;
   for (const Record& record : records)
-    if (record.ok() && record.cell.method == user.method &&
-        record.resolution == resolution_of(scene))
+    if (record.ok() && record.cell.method == user.method && record.resolution == scene.resolution)
       most = std::max(most, bytes_taken(record));
   if (most > 0) return {most, "what such cells took before"};
-  const double pixels = pixels_of(scene);
-  const double seen = std::max(double(scene.points.positions.size()), pixels / kPixelsPerSurfel);
+  const double pixels = scene.view_pixels;
+  const double seen = std::max(scene.points, pixels / kPixelsPerSurfel);
   const double surfels = std::min(double(user.max_surfels), seen);
-  const double loaded = kProgramBytes + image_bytes(scene);
+  const double loaded = kProgramBytes + scene.image_bytes;
   const double training = kBytesPerPixel * pixels + kSets * kBytesPerSurfel * surfels;
   const double scores = kBytesPerSample * double(user.mesh_samples);
   if (scores > training) return {loaded + scores, "its images and the samples of meshes"};

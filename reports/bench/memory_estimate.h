@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "glint/scene/scene.h"
+#include "reports/records/profile.h"
 #include "reports/records/records.h"
 
 namespace glint {
@@ -21,12 +22,25 @@ struct MemoryUser {
   std::size_t max_surfels = 0;   // of a set
   std::size_t mesh_samples = 0;  // points on each mesh that is scored
 };
+// Of a method with these overrides (PlanCell) in a profile.
+MemoryUser memory_user(const std::string& method, const Json& config, const Profile& profile);
+
+// What a scene takes, in memory or before it is made.
+struct SceneSize {
+  double view_pixels = 0;  // of the largest view
+  double image_bytes = 0;  // of the images and maps of all views
+  double points = 0;       // that surfels begin with
+  std::string resolution;  // as in records; empty: no view is scored
+};
+SceneSize size_of(const Scene& scene);
+// Of a room that is made, there or not. Its points are not known: none.
+SceneSize size_of(const SceneSource& room);
 
 // By what cells of this method took at this size of images, where `records` has some; else by the
 // images of the scene and the surfels that it begins with, or will have, or by what the scores of
 // its meshes take.
 MemoryEstimate estimate_memory(
-    const MemoryUser& user, const Scene& scene, const std::vector<Record>& records
+    const MemoryUser& user, const SceneSize& scene, const std::vector<Record>& records
 );
 
 // Bytes that the cell took, all stages; 0: unknown.
@@ -35,8 +49,5 @@ double bytes_taken(const Record& record);
 // Errors: OutOfMemory when more is needed than `available` bytes; the message says how much and
 // why.
 void check_fits(const MemoryEstimate& estimate, std::uint64_t available);
-
-// Of the images and maps of all views.
-double image_bytes(const Scene& scene);
 
 }  // namespace glint

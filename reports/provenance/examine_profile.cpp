@@ -145,9 +145,11 @@ class ProfileExamination {
       ));
   }
 
-  // A machine of the size of the largest cell so far would do.
+  // A machine of the size of the largest cell would do.
   void add_memory() {
-    const auto need = memory_of_cells(read_records(examined_.folder / "records.jsonl"));
+    const auto need = memory_of_cells(
+        examined_.plan, examined_.profile, read_records(examined_.folder / "records.jsonl")
+    );
     if (!need) {
       rows_.push_back(
           {"memory of cells", CheckState::kNote, "not known before one of these cells has run"}

@@ -82,16 +82,24 @@ double disk_of_room(const SceneSource& source) {
   return kRoomBytes + kBytesPerRoomPixel * pixels_of(source) * source.views;
 }
 
-std::optional<Estimate> memory_of_cells(const std::vector<Record>& records) {
-  double most = 0;
-  int known = 0;
-  for (const Record& record : records)
-    if (const double bytes = bytes_taken(record); bytes > 0) {
-      most = std::max(most, bytes);
-      ++known;
-    }
-  if (known == 0) return std::nullopt;
-  return Estimate{most, counted(known, "record")};
+std::optional<Estimate> memory_of_cells(
+    const std::vector<PlanCell>& plan, const Profile& profile, const std::vector<Record>& records
+) {
+  std::optional<Estimate> most;
+  const auto take = [&](double bytes, const std::string& from) {
+    if (bytes > 0 && (!most || bytes > most->bytes)) most = Estimate{bytes, from};
+  };
+  for (const Record& record : records) take(bytes_taken(record), "records");
+  for (const PlanCell& cell : plan) {
+    if (!cell.source.made()) continue;
+    const MemoryUser user = memory_user(cell.cell.method, cell.config, profile);
+    const MemoryEstimate estimate = estimate_memory(user, size_of(cell.source), records);
+    take(
+        estimate.bytes,
+        fmt::format("{} of {}: {}", cell.cell.method, cell.cell.scene, estimate.from)
+    );
+  }
+  return most;
 }
 
 }  // namespace glint

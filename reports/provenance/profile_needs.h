@@ -26,7 +26,10 @@ std::optional<Estimate> disk_of_runs(
 // Of rooms that have to be made.
 double disk_of_room(const SceneSource& source);
 
-// Of the largest cell; nothing: none has run.
-std::optional<Estimate> memory_of_cells(const std::vector<Record>& records);
+// Of the largest of the planned cells, by what such cells took before, else by images and surfels
+// of rooms. Nothing: their data are folders of the user's, and none has run.
+std::optional<Estimate> memory_of_cells(
+    const std::vector<PlanCell>& plan, const Profile& profile, const std::vector<Record>& records
+);
 
 }  // namespace glint

@@ -6,17 +6,30 @@
 #include "glint/core/machine.h"
 #include "reports/bench/runner.h"
 #include "tests/reports/fake_method.h"
+#include "tests/support/small_room.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
 
 TEST_CASE("the images of a scene count as they lie in memory") {
   // Four views of 16x12 with an image of three and a map of one channel.
-  CHECK(image_bytes(fake_scene("room_1")) == 4 * 16 * 12 * (3 + 1) * 4);
+  const SceneSize size = size_of(fake_scene("room_1"));
+  CHECK(size.image_bytes == 4 * 16 * 12 * (3 + 1) * 4);
+  CHECK(size.view_pixels == 16 * 12);
+  CHECK(size.resolution == "16x12");
+}
+
+TEST_CASE("a room that is not made yet counts as it will be loaded") {
+  SceneSource source;
+  source.width = 64, source.height = 36, source.views = 16;
+  const SceneSize expected = size_of(source), loaded = size_of(test::small_room());
+  CHECK(expected.image_bytes == Approx(loaded.image_bytes).epsilon(0.15));  // not all maps are kept
+  CHECK(expected.view_pixels == loaded.view_pixels);
+  CHECK(expected.resolution == loaded.resolution);
 }
 
 TEST_CASE("what cells of a method took goes before what images and surfels say") {
-  const Scene scene = fake_scene("room_1");
+  const SceneSize scene = size_of(fake_scene("room_1"));
   const MemoryEstimate unknown = estimate_memory({"fake", 1000, 0}, scene, {});
   CHECK(unknown.from == "its images and surfels");
   Record record;
@@ -30,16 +43,16 @@ TEST_CASE("what cells of a method took goes before what images and surfels say")
 }
 
 TEST_CASE("more surfels and larger images take more, up to the limit of the method") {
-  Scene scene = fake_scene("room_1");
+  SceneSize scene = size_of(fake_scene("room_1"));
   const double few = estimate_memory({"fake", 1000000, 0}, scene, {}).bytes;
-  scene.points.positions.resize(100000);
+  scene.points = 100000;
   const double many = estimate_memory({"fake", 1000000, 0}, scene, {}).bytes;
   CHECK(many > few + 3 * 100000 * 4 * 58 * 4);
   CHECK(estimate_memory({"fake", 10, 0}, scene, {}).bytes < few);
 }
 
 TEST_CASE("the samples of meshes count where they take more than the training") {
-  const Scene scene = fake_scene("room_1");
+  const SceneSize scene = size_of(fake_scene("room_1"));
   const MemoryEstimate sampled = estimate_memory({"fake", 1000, 1000000}, scene, {});
   CHECK(sampled.from == "its images and the samples of meshes");
   CHECK(sampled.bytes > estimate_memory({"fake", 1000, 0}, scene, {}).bytes);
