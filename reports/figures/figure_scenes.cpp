@@ -69,6 +69,13 @@ void check_inside(const Crop& crop, const Camera& camera, const std::string& sce
   );
 }
 
+// Without the priors, which no figure shows.
+std::shared_ptr<const View> kept_view(const View& view) {
+  auto kept = std::make_shared<View>(view);
+  kept->priors = {};
+  return kept;
+}
+
 FigureScene figure_scene(const PageScene& scene, const Truth& truth, const FigureView& shown) {
   const Scene& data = truth.scene;
   const View& view = shown_view(data, shown.view);
@@ -86,18 +93,28 @@ FigureScene figure_scene(const PageScene& scene, const Truth& truth, const Figur
   result.camera = view.camera;
   for (const View& train : data.train) result.train_cameras.push_back(train.camera);
   std::vector<fs::path> folders;
+  const auto kept = kept_view(view);
   for (const PageRun& run : scene.runs) {
     if (!run.record->ok() || result.methods.count(run.record->cell.method)) continue;
     folders.push_back(run.folder);
     result.runs[run.record->cell.method] = run.folder;
-    result.methods[run.record->cell.method] =
-        rendered_layers(view_folder(run.folder, view.name), &view);
+    result.methods[run.record->cell.method] = {view_folder(run.folder, view.name), kept};
   }
   result.scale = depth_scale(folders, data.test);
   return result;
 }
 
 }  // namespace
+
+bool FigureLayers::has(const std::string& id) const {
+  return view_ ? has_rendered_layer(folder_, id, *view_) : maps_.contains(id);
+}
+
+Image FigureLayers::at(const std::string& id) const {
+  if (view_) return rendered_layer(folder_, id, *view_);
+  const auto it = maps_.find(id);
+  return it == maps_.end() ? Image() : it->second;
+}
 
 std::size_t figure_view(const std::vector<View>& views) {
   const auto most = std::max_element(views.begin(), views.end(), [](const View& a, const View& b) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,17 +14,35 @@
 
 namespace glint {
 
+// Layers of a view by their ids. Those of runs are read when they are asked for, and not kept: all
+// methods of all scenes would not fit into memory.
+class FigureLayers {
+ public:
+  FigureLayers() = default;
+  FigureLayers(LayerMaps maps) : maps_(std::move(maps)) {}  // at hand
+  FigureLayers(fs::path view_folder, std::shared_ptr<const View> view)
+      : folder_(std::move(view_folder)), view_(std::move(view)) {}
+
+  bool has(const std::string& id) const;
+  Image at(const std::string& id) const;  // empty: not there, or it cannot be read (a warning)
+
+ private:
+  LayerMaps maps_;
+  fs::path folder_;
+  std::shared_ptr<const View> view_;  // nullptr: maps at hand
+};
+
 struct FigureScene {
   std::string name, view;
   bool chosen_view = false;  // by FigureView, not by kViewRule
   std::vector<Crop> crops;   // of FigureView
   DepthScale scale;
-  MaskImage glass;                           // empty: the data have none
-  LayerMaps truth;                           // ids of page_layers()
-  std::map<std::string, LayerMaps> methods;  // the first finished seed of each
-  std::map<std::string, fs::path> runs;      // run folder of each
-  fs::path data;                             // the scene's folder
-  Camera camera;                             // of the view
+  MaskImage glass;                              // empty: the data have none
+  FigureLayers truth;                           // ids of page_layers()
+  std::map<std::string, FigureLayers> methods;  // the first finished seed of each
+  std::map<std::string, fs::path> runs;         // run folder of each
+  fs::path data;                                // the scene's folder
+  Camera camera;                                // of the view
   std::vector<Camera> train_cameras;
 };
 

@@ -14,24 +14,25 @@ namespace {
 
 constexpr float kReflectedGain = 4;  // what glass mirrors is faint
 
-const LayerMaps* maps_of(const FigureScene& scene, const std::string& method) {
+const FigureLayers* maps_of(const FigureScene& scene, const std::string& method) {
   const auto it = scene.methods.find(method);
   return it == scene.methods.end() ? nullptr : &it->second;
 }
 
-bool has(const LayerMaps* maps, const std::string& id) { return maps && maps->count(id) > 0; }
+bool has(const FigureLayers* maps, const std::string& id) { return maps && maps->has(id); }
 
 // The layer's picture in its own size; empty where there is none.
-Image picture_of(const LayerMaps* maps, const std::string& id, const DepthScale& scale) {
+Image picture_of(const FigureLayers* maps, const std::string& id, const DepthScale& scale) {
   if (!has(maps, id)) return {};
   const std::vector<PageLayer> layers = page_layers();
   const auto layer = std::find_if(layers.begin(), layers.end(), [&](const PageLayer& candidate) {
     return id == candidate.id;
   });
-  return layer_picture(*layer, maps->at(id), scale);
+  const Image map = maps->at(id);
+  return map.empty() ? Image() : layer_picture(*layer, map, scale);
 }
 
-Image panel_of(const LayerMaps* maps, const std::string& id, const DepthScale& scale) {
+Image panel_of(const FigureLayers* maps, const std::string& id, const DepthScale& scale) {
   const Image picture = picture_of(maps, id, scale);
   return picture.empty() ? Image() : fit_panel(picture);
 }
@@ -56,11 +57,13 @@ std::set<std::string> methods_with(
 
 std::vector<Crop> crops_of(const FigureScene& scene, const std::set<std::string>& methods) {
   if (!scene.crops.empty()) return scene.crops;
-  std::vector<const Image*> errors;
+  std::vector<Image> errors;
   for (const std::string& method : methods)
-    if (const LayerMaps* maps = maps_of(scene, method); has(maps, "error"))
-      errors.push_back(&maps->at("error"));
-  return choose_crops(errors, scene.glass);
+    if (const FigureLayers* maps = maps_of(scene, method); has(maps, "error"))
+      if (Image error = maps->at("error"); !error.empty()) errors.push_back(std::move(error));
+  std::vector<const Image*> pointers;
+  for (const Image& error : errors) pointers.push_back(&error);
+  return choose_crops(pointers, scene.glass);
 }
 
 std::vector<LegendLine> legend_of(const std::vector<FigureScene>& scenes, bool depth) {
@@ -112,11 +115,11 @@ void add_qualitative_rows(
     PictureGrid& grid, const FigureScene& scene, const std::set<std::string>& methods
 ) {
   const std::vector<Crop> crops = crops_of(scene, methods);
-  std::vector<const LayerMaps*> columns{&scene.truth};
+  std::vector<const FigureLayers*> columns{&scene.truth};
   for (const std::string& method : methods) columns.push_back(maps_of(scene, method));
   for (const MapId map : kImageAndSurface) {
     std::vector<Image> whole, parts;
-    for (const LayerMaps* maps : columns) {
+    for (const FigureLayers* maps : columns) {
       const Image picture = picture_of(maps, std::string(map.row().id), scene.scale);
       whole.push_back(outlined(picture, crops));
       parts.push_back(crop_panel(picture, crops));

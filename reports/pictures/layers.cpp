@@ -174,6 +174,28 @@ LayerMaps rendered_layers(const fs::path& view_folder, const View* view) {
   return layers.take();
 }
 
+Image rendered_layer(const fs::path& view_folder, const std::string& id, const View& view) {
+  if (id == "error" || id == "angle") {
+    const bool error = id == "error";
+    const Image map = rendered_layer(view_folder, error ? "rgb" : "normal", view);
+    const Image& truth = error ? view.rgb : view.truth["normal"];
+    if (map.empty() || truth.size() != map.size()) return {};
+    return error ? error_map(map, truth) : angle_map(map, truth);
+  }
+  const MapRow* row = find_map(id);
+  if (row == nullptr || row->shown_file().empty()) return {};
+  Image map = read_layer(render_file(view_folder, *row), row->channels());
+  return map.size() == view.rgb.size() ? map : Image();
+}
+
+bool has_rendered_layer(const fs::path& view_folder, const std::string& id, const View& view) {
+  if (id == "error") return has_rendered_layer(view_folder, "rgb", view);
+  if (id == "angle")
+    return !view.truth["normal"].empty() && has_rendered_layer(view_folder, "normal", view);
+  const MapRow* row = find_map(id);
+  return row != nullptr && !row->shown_file().empty() && fs::exists(render_file(view_folder, *row));
+}
+
 LayerMaps true_layers(const View& view) {
   Collector layers(view.rgb.size());
   layers.add("rgb", view.rgb);

@@ -35,6 +35,10 @@ inline constexpr float kPageErrorHigh = 0.25f, kPageAngleHigh = 45;
 // need `view`; nullptr: the truth is not at hand.
 using LayerMaps = std::map<std::string, Image>;
 LayerMaps rendered_layers(const fs::path& view_folder, const View* view);
+// One of them; empty where that would be absent.
+Image rendered_layer(const fs::path& view_folder, const std::string& id, const View& view);
+// Is there a file for it? It may be damaged.
+bool has_rendered_layer(const fs::path& view_folder, const std::string& id, const View& view);
 // The truth under the same ids; parts of the image as displayed.
 LayerMaps true_layers(const View& view);
 

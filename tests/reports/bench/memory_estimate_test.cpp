@@ -58,6 +58,16 @@ TEST_CASE("the samples of meshes count where they take more than the training") 
   CHECK(sampled.bytes > estimate_memory({"fake", 1000, 0}, scene, {}).bytes);
 }
 
+TEST_CASE("the fusion of meshes counts where it takes most: with the square of the voxels") {
+  const SceneSize scene = size_of(fake_scene("room_1"));
+  const MemoryEstimate coarse = estimate_memory({"fake", 1000, 0, 0.02}, scene, {});
+  const MemoryEstimate fine = estimate_memory({"fake", 1000, 0, 0.01}, scene, {});
+  CHECK(coarse.from == "its images and the fusion of meshes");
+  CHECK(coarse.bytes == Approx(750e6).epsilon(0.1));  // 720 to 814 MB were taken with 128x72 pixels
+  CHECK(fine.bytes > 3.5 * coarse.bytes);
+  CHECK(estimate_memory({"fake", 1000, 0}, scene, {}).bytes < coarse.bytes / 2);
+}
+
 TEST_CASE("a cell that does not fit says so before its training") {
   CHECK_NOTHROW(check_fits({1e9, "x"}, 1000000000));
   CHECK_THROWS_WITH(

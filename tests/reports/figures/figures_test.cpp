@@ -59,12 +59,34 @@ FigureScene scene_of(std::map<std::string, LayerMaps> methods) {
   FigureScene scene;
   scene.name = "room_1";
   scene.view = "0002";
-  scene.truth["rgb"] = Image(kWidth, kHeight, 3, 0.5f);
-  scene.methods = std::move(methods);
+  scene.truth = LayerMaps{{"rgb", Image(kWidth, kHeight, 3, 0.5f)}};
+  for (auto& [method, maps] : methods) scene.methods[method] = std::move(maps);
   return scene;
 }
 
 }  // namespace
+
+TEST_CASE("layers of a run are read one at a time as they are all at once") {
+  const test::TempFolder folder;
+  add_run(folder.path(), "glint", 0.5f, true);
+  const auto view = std::make_shared<View>(fake_scene("room_1").test.front());
+  const fs::path renders =
+      view_folder(run_folder(folder.path(), {"room_1", "glint", 0}), view->name);
+  const LayerMaps all = rendered_layers(renders, view.get());
+  const FigureLayers layers(renders, view);
+  REQUIRE(all.size() > 4);
+  REQUIRE(all.contains("error"));
+  for (const PageLayer& layer : page_layers()) {
+    INFO(layer.id);
+    CHECK(layers.has(layer.id) == all.contains(layer.id));
+    const Image map = layers.at(layer.id);
+    REQUIRE(map.empty() != all.contains(layer.id));
+    if (!map.empty()) CHECK(std::ranges::equal(map.values(), all.at(layer.id).values()));
+  }
+  CHECK_FALSE(layers.has("nonsense"));
+  write_file(renders / "depth.exr", "damaged");
+  CHECK(layers.at("depth").empty());
+}
 
 TEST_CASE("figures have what the runs rendered and nothing else") {
   const test::TempFolder folder;
