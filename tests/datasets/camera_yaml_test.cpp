@@ -62,8 +62,8 @@ TEST_CASE("what is no such file is an error of its line") {
 }
 
 TEST_CASE("a zero byte, behind which no message would go on, is refused with its line") {
-  const std::string zero(1, '\0');
-  for (const std::string& text :
-       {"names:\n   - a" + zero + "b\n", "names:\n   - \"" + zero + "\"\n"})
+  for (std::string text : {"names:\n   - a?b\n", "names:\n   - \"?\"\n"}) {
+    text[text.find('?')] = '\0';
     CHECK_THAT(error_of(text), Contains("x.yml: line 2: a zero byte"));
+  }
 }
