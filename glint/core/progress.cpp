@@ -28,10 +28,14 @@ void set_quiet(bool value) { quiet = value; }
 bool is_quiet() { return quiet; }
 
 namespace log {
-void info(std::string_view message) {
-  if (!quiet) fmt::print(stderr, "{}\n", printable(message));
+void text(std::string_view text) {
+  [[maybe_unused]] const auto written = std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
 }
-void warn(std::string_view message) { fmt::print(stderr, "warning: {}\n", printable(message)); }
+void info(std::string_view message) {
+  if (!quiet) text(fmt::format("{}\n", printable(message)));
+}
+void warn(std::string_view message) { text(fmt::format("warning: {}\n", printable(message))); }
 }  // namespace log
 
 std::string format_duration(double seconds) {
@@ -75,8 +79,7 @@ void Progress::draw(std::string_view note, bool last) {
   const double percent =
       total_ > 0 ? 100.0 * static_cast<double>(done) / static_cast<double>(total_) : 100.0;
   const std::string time = last ? format_duration(elapsed) : format_duration(left) + " left";
-  fmt::print(
-      stderr,
+  log::text(fmt::format(
       "{}{} {:3.0f}% {}/{} {} {}{}",
       terminal_ ? "\r\x1b[K" : "",
       printable(title_),
@@ -86,8 +89,7 @@ void Progress::draw(std::string_view note, bool last) {
       time,
       printable(note),
       terminal_ && !last ? "" : "\n"
-  );
-  std::fflush(stderr);
+  ));
 }
 
 }  // namespace glint

@@ -19,7 +19,9 @@ void set_quiet(bool quiet);  // silences progress and log::info; warnings stay
 bool is_quiet();
 
 // One line an event on standard error; standard output carries results only.
+// Nobody who can read it, or no room, is no reason to stop.
 namespace log {
+void text(std::string_view text);  // as it is
 void info(std::string_view message);
 void warn(std::string_view message);
 }  // namespace log

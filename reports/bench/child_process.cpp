@@ -56,6 +56,7 @@ struct Pipe {
     pid_t parent
 ) {
   ::setpgid(0, 0);
+  ::signal(SIGPIPE, SIG_IGN);  // whoever reads the output may end first, and this one's work not
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::getppid() != parent) ::_exit(127);  // it has ended already
   const int score = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);

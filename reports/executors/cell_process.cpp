@@ -90,7 +90,7 @@ void CellProcess::show(const std::string& text) {
   line_ += text;
   for (std::size_t end = line_.find('\n'); end != std::string::npos; end = line_.find('\n')) {
     const std::string line = line_.substr(0, end);
-    fmt::print(stderr, "{}: {}\n", what_.cell->cell.text(), line);
+    log::text(fmt::format("{}: {}\n", what_.cell->cell.text(), line));
     line_.erase(0, end + 1);
   }
 }

@@ -84,7 +84,7 @@ void add_machine_options(const CommonOptionAdder& add, CommonOptions& common) {
 }
 
 int report_error(const std::string& message, ExitCode code) {
-  fmt::print(stderr, "error: {}\n", printable(message));
+  log::text(fmt::format("error: {}\n", printable(message)));
   return static_cast<int>(code);
 }
 

@@ -53,6 +53,18 @@ TEST_CASE("what a killed process left is found by its name, what is being writte
   CHECK(fs::exists(folder / "a/.x.12.part"));
 }
 
+TEST_CASE("a process that has ended and was not waited for writes nothing any more") {
+  const TempFolder folder;
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  siginfo_t info{};
+  ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOWAIT);  // it stays a zombie
+  const fs::path file = of_process(folder / "x.png", child);
+  std::ofstream(file) << "half";
+  CHECK(list_left_behind(folder.path()) == std::vector<fs::path>{file});
+  ::waitpid(child, nullptr, 0);
+}
+
 TEST_CASE("another machine's processes are not known: a day decides") {
   const TempFolder folder;
   const fs::path fresh = folder / ".x.1-elsewhere.part.png", old = folder / ".y.1-elsewhere.part";

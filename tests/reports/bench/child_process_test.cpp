@@ -89,8 +89,9 @@ TEST_CASE("children are told to stop when the program that started them is kille
   const std::string ready = folder / "ready", told = folder / "told";
   const pid_t parent = ::fork();
   if (parent == 0) {
-    const std::string script = "trap 'echo told >" + told + "; exit' TERM; echo go >" + ready +
-                               "; while :; do sleep 0.05; done";
+    // Nobody reads what it says to that.
+    const std::string script = "trap 'echo oh; echo no >&2; echo told >" + told +
+                               "; exit' TERM; echo go >" + ready + "; while :; do sleep 0.05; done";
     const ChildProcess child({"sh", "-c", script});
     ::pause();
   }
