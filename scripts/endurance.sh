@@ -123,11 +123,12 @@ while [ "$(done_seconds)" -lt "$seconds" ]; do
   times=$((1 + $(random 3)))
   for _ in $(seq $times); do $kind "$method"; done
   why=$(what_is_wrong "$method")
+  why=${why//[$'\n\t\\"']/ }
   cells=$({ cat "$disk/out/smoke/records.jsonl" 2>/dev/null || true; } | wc -l)
   umount "$disk"
   [ -z "$why" ] || { wrong=$((wrong + 1)); cp "$work/err.txt" "build/endurance_$(done_rounds).txt"; }
   printf '{"round":%d,"disturbance":"%s","times":%d,"method":"%s","records":%d,"lost":"%s","seconds":%d,"commit":"%s"}\n' \
-    "$(done_rounds)" $kind $times "$method" "$cells" "${why//\"/\'}" $((SECONDS - begin)) "$commit" >>"$records"
+    "$(done_rounds)" $kind $times "$method" "$cells" "$why" $((SECONDS - begin)) "$commit" >>"$records"
 done
 echo "$(done_rounds) rounds in $(done_seconds) s, $wrong of these with something lost"
 [ $wrong -eq 0 ] || exit 4
