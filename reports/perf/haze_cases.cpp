@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What a training from random points begins with: many faint, large surfels one behind the other,
-// nearly all of which count in a pixel. The statistics are those of the capture `fox` at 135x240
-// with 20,000 points in [-3, 3]^3 and steps 20 to 80, as other programs have been timed on it: one
-// that is made for opaque walls is slow here.
+// nearly all of which count in a pixel. Modelled on the capture `fox` at 135x240 with 20,000 points
+// in [-3, 3]^3 and steps 20 to 80, as other programs have been timed on it: its size, focal length,
+// number of views and mean distance; pictures and the cameras' arc are made up. What was compared
+// with fox is the time of a step only (39 to 50 ms here, 45 to 53 there, on two threads).
 #include <cmath>
 #include <memory>
 

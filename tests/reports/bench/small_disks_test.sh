@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # `all` on disks of 14 (or N) sizes, most of them too small: it says so or ends, never with a half file under a final name,
-# and with room goes on to the same surfels: small_disks_test.sh GLINT_BENCH [N]. Needs root, for tmpfs.
+# and every fifth is given room and goes on to the same surfels: small_disks_test.sh GLINT_BENCH [N]. Needs root, for tmpfs.
 set -euo pipefail
 bench=$(readlink -f "$1") sizes=${2:-14}
 work=$(mktemp -d /tmp/glint_disks.XXXXXX)
@@ -30,7 +30,7 @@ whole_files() {
 all "$work/whole" || fail "on a disk with room"
 expected=$(surfels "$work/whole")
 needed=$(du -sk "$work/whole" | cut -f 1)
-full=0
+full=0 continued=0
 for i in $(seq $sizes); do
   size=$((20 + needed * i * 7 / (sizes * 6)))
   mount -t tmpfs -o "size=${size}k" tmpfs "$disk"
@@ -44,6 +44,7 @@ for i in $(seq $sizes); do
   if [ $((i % 5)) -eq 0 ]; then
     mount -o remount,size=200m "$disk"
     all "$disk/out" || fail "$size kB, then room: exit $?"
+    continued=$((continued + 1))
     [ "$(surfels "$disk/out")" = "$expected" ] || fail "$size kB, then room: other surfels"
     "$bench" verify --profile smoke --out "$disk/out" --data "$work/data" --quiet >"$work/out.txt" 2>"$work/err.txt" ||
       fail "$size kB, then room: verify"
@@ -51,4 +52,4 @@ for i in $(seq $sizes); do
   umount "$disk"
 done
 [ $full -ge $((sizes / 2)) ] || fail "only $full of $sizes disks were too small"
-echo "$full of $sizes disks were too small; with room, each went on to the same surfels"
+echo "$full of $sizes disks were too small; with room, $continued of them were continued, to the same surfels"
