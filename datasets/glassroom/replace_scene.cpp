@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/glassroom/replace_scene.h"
 
-#include <algorithm>
 #include <set>
 #include <string>
-#include <vector>
 
+#include "datasets/glassroom/write_scene.h"
 #include "glint/core/config.h"
 #include "glint/core/error.h"
 
@@ -13,14 +12,6 @@ namespace glint {
 namespace {
 
 constexpr const char* kDescription = "scene.json";
-
-// Names of the regular files below, with '/' between folders.
-std::set<std::string> files_below(const fs::path& folder) {
-  std::set<std::string> names;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file()) names.insert(fs::relative(entry.path(), folder).generic_string());
-  return names;
-}
 
 // Of a scene whose description is damaged: all that lies where scenes have their files.
 bool is_in_layout(const std::string& name) {

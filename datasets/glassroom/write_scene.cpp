@@ -141,15 +141,17 @@ TriangleMesh truth_mesh(const TraceScene& scene, TruthLayer layer, float max_edg
   return result;
 }
 
-Json file_hashes(const fs::path& folder) {
-  std::vector<std::string> paths;
+std::set<std::string> files_below(const fs::path& folder) {
+  std::set<std::string> names;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file())
-      paths.push_back(fs::relative(entry.path(), folder).generic_string());
-  std::sort(paths.begin(), paths.end());
+    if (entry.is_regular_file()) names.insert(fs::relative(entry.path(), folder).generic_string());
+  return names;
+}
+
+Json file_hashes(const fs::path& folder) {
   Json hashes = Json::object();
-  for (const std::string& path : paths)
-    hashes[path] = fmt::format("{:016x}", hash_name(read_file(folder / path)));
+  for (const std::string& name : files_below(folder))
+    hashes[name] = fmt::format("{:016x}", hash_name(read_file(folder / name)));
   return hashes;
 }
 

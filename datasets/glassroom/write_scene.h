@@ -10,6 +10,7 @@
 // clamped.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,5 +45,7 @@ TriangleMesh truth_mesh(const TraceScene& scene, TruthLayer layer, float max_edg
 // Relative path -> FNV-1a hash of the bytes, sixteen hexadecimal digits, for every file in
 // `folder`.
 Json file_hashes(const fs::path& folder);
+// Names of the regular files below, with '/' between folders.
+std::set<std::string> files_below(const fs::path& folder);
 
 }  // namespace glint
