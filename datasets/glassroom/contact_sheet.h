@@ -16,7 +16,7 @@ class ContactSheet {
   // Keeps the view if it is one of those shown.
   void add(int view, const PathTracerOutput& truth, const MapSet& priors, float exposure);
   // With titles of rows and columns. A view that was not added is "missing".
-  Image image() const { return draw_image(draw_grid(grid_)); }
+  ByteImage image() const { return draw_bytes(draw_grid(grid_)); }
 
  private:
   int views_, columns_;

@@ -186,5 +186,7 @@ using ImageRef = BasicImageRef<float>;
 using ImageView = BasicImageView<float>;
 using MaskImage = BasicImage<unsigned char>;  // one channel; non-zero means "counts"
 using MaskView = BasicImageView<unsigned char>;
+using ByteImage = BasicImage<unsigned char>;  // as displayed, 255 for 1
+using ByteView = BasicImageView<unsigned char>;
 
 }  // namespace glint

@@ -41,12 +41,9 @@ void apply(cairo_t* cairo, const Stroke& stroke) {
   cairo_stroke(cairo);
 }
 
-std::uint32_t packed_pixel(const float* pixel, int channels) {
+std::uint32_t packed_pixel(const unsigned char* pixel, int channels) {
   std::uint32_t packed = 0;
-  for (int c = 0; c < 3; ++c) {
-    const float value = std::clamp(pixel[channels == 1 ? 0 : c], 0.0f, 1.0f);
-    packed = packed << 8 | static_cast<std::uint32_t>(std::nearbyint(value * 255));
-  }
+  for (int c = 0; c < 3; ++c) packed = packed << 8 | pixel[channels == 1 ? 0 : c];
   return packed;
 }
 
@@ -57,10 +54,10 @@ std::uint32_t* row_of(cairo_surface_t* surface, int y) {
   );
 }
 
-Surface surface_of(ImageView image) {
+Surface surface_of(ByteView image) {
   Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width, image.height));
   cairo_surface_flush(surface.get());
-  const float* pixel = image.data;
+  const unsigned char* pixel = image.data;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x, pixel += image.channels)
       row_of(surface.get(), y)[x] = packed_pixel(pixel, image.channels);
@@ -108,15 +105,14 @@ cairo_status_t append(void* to, const unsigned char* data, unsigned int size) {
   return CAIRO_STATUS_SUCCESS;
 }
 
-Image image_of(cairo_surface_t* surface) {
+ByteImage bytes_of(cairo_surface_t* surface) {
   cairo_surface_flush(surface);
-  Image image(cairo_image_surface_get_width(surface), cairo_image_surface_get_height(surface), 3);
+  const int width = cairo_image_surface_get_width(surface);
+  ByteImage image(width, cairo_image_surface_get_height(surface), 3);
   for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x)
-      for (int c = 0; c < 3; ++c) {
-        const std::uint32_t byte = row_of(surface, y)[x] >> (16 - 8 * c) & 255;
-        image.at(x, y, c) = static_cast<float>(byte) / 255;
-      }
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 3; ++c)
+        image.at(x, y, c) = static_cast<unsigned char>(row_of(surface, y)[x] >> (16 - 8 * c) & 255);
   return image;
 }
 
@@ -157,7 +153,9 @@ void Canvas::fill_dot_path(Color color) {
   apply(cairo_, {kPaper, kDotBorder, {}});
 }
 
-void Canvas::picture(ImageView image, const Box& box) {
+void Canvas::picture(ImageView image, const Box& box) { picture(to_bytes(image), box); }
+
+void Canvas::picture(ByteView image, const Box& box) {
   const Surface surface = surface_of(image);
   const Box place = pixels_ ? on_whole_pixels(cairo_, box) : box;
   cairo_save(cairo_);
@@ -170,7 +168,7 @@ void Canvas::picture(ImageView image, const Box& box) {
   cairo_restore(cairo_);
 }
 
-Image draw_image(const Drawing& drawing) {
+ByteImage draw_bytes(const Drawing& drawing) {
   const auto pixels = [&](double points) {
     return std::max(1, static_cast<int>(std::ceil(points * drawing.pixels_per_point - 1e-6)));
   };
@@ -179,7 +177,15 @@ Image draw_image(const Drawing& drawing) {
   );
   check(cairo_surface_status(surface.get()), "a picture");
   paint(drawing, surface.get(), true);
-  return image_of(surface.get());
+  return bytes_of(surface.get());
+}
+
+Image draw_image(const Drawing& drawing) {
+  const ByteImage bytes = draw_bytes(drawing);
+  Image image(bytes.width(), bytes.height(), bytes.channels());
+  for (std::size_t i = 0; i < bytes.values().size(); ++i)
+    image.values()[i] = static_cast<float>(bytes.values()[i]) / 255;
+  return image;
 }
 
 std::string draw_pdf(const Drawing& drawing) {
@@ -195,7 +201,7 @@ std::string draw_pdf(const Drawing& drawing) {
 }
 
 void write_drawing(const fs::path& png, const Drawing& drawing) {
-  write_png(png, draw_image(drawing));
+  write_png(png, draw_bytes(drawing));
   write_file(fs::path(png).replace_extension(".pdf"), draw_pdf(drawing));
 }
 

@@ -73,7 +73,8 @@ class Canvas {
   void text(const std::string& text, Point at, const TextStyle& style = {});
   // Read from below: turned about `at` by a quarter.
   void text_upwards(const std::string& text, Point at, const TextStyle& style = {});
-  // 1 or 3 channels, clamped to [0, 1]; pixels stay squares.
+  // 1 or 3 channels; pixels stay squares. Floats by to_bytes() (glint/scene/image_files.h).
+  void picture(ByteView image, const Box& box);
   void picture(ImageView image, const Box& box);
 
  private:
@@ -91,6 +92,7 @@ struct Drawing {
 };
 
 // [H][W][3] on white.
+ByteImage draw_bytes(const Drawing& drawing);
 Image draw_image(const Drawing& drawing);
 // The same bytes for the same drawing: without a date.
 std::string draw_pdf(const Drawing& drawing);

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "glint/drawing/color_maps.h"
-#include "glint/scene/image_files.h"
 
 namespace glint {
 
@@ -134,7 +133,7 @@ class GridDrawing {
     num_columns_ = std::max<std::size_t>(1, grid_.titles.size());
     for (const auto& row : grid_.rows) {
       num_columns_ = std::max(num_columns_, row.size());
-      for (const Image& panel : row) pixels_ = std::max(pixels_, panel.width());
+      for (const Panel& panel : row) pixels_ = std::max(pixels_, panel.size().width);
     }
     if (pixels_ == 0) pixels_ = kMinPanelWidth;
     for (const std::string& title : grid_.row_titles)
@@ -158,8 +157,8 @@ class GridDrawing {
       double height = i < grid_.row_titles.size()
                           ? measure_text(grid_.row_titles[i], row_style()).height
                           : measure_text("missing", kRowTitle).height;
-      for (const Image& panel : grid_.rows[i])
-        height = std::max(height, panel.height() / pixels_per_point());
+      for (const Panel& panel : grid_.rows[i])
+        height = std::max(height, panel.size().height / pixels_per_point());
       rows_.push_back(height);
     }
   }
@@ -187,7 +186,7 @@ class GridDrawing {
     });
   }
 
-  void draw_panel(Canvas& canvas, const Image& panel, Box box) const {
+  void draw_panel(Canvas& canvas, const Panel& panel, Box box) const {
     if (panel.empty()) {
       canvas.picture(Image(1, 1, 3, kNothingGrey), box);
       const double text = measure_text("missing", kRowTitle).height;
@@ -197,9 +196,9 @@ class GridDrawing {
       canvas.text("missing", {box.left + box.width / 2, box.top + (box.height - text) / 2}, style);
       return;
     }
-    box.width = panel.width() / pixels_per_point();
-    box.height = panel.height() / pixels_per_point();
-    canvas.picture(panel, box);
+    box.width = panel.size().width / pixels_per_point();
+    box.height = panel.size().height / pixels_per_point();
+    canvas.picture(panel.bytes(), box);
   }
 
   double height_of(const LegendLine& line) const {

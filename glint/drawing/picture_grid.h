@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "glint/drawing/canvas.h"
+#include "glint/scene/image_files.h"
 
 namespace glint {
 
@@ -27,9 +28,24 @@ struct LegendLine {
   std::string rest;                  // behind the bar
 };
 
+// A picture [h][w][1 or 3] as displayed, in bytes: a page of figures holds hundreds.
+class Panel {
+ public:
+  Panel() = default;
+  Panel(const Image& picture) : bytes_(to_bytes(picture)) {}
+
+  bool empty() const { return bytes_.empty(); }
+  ImageSize size() const { return bytes_.size(); }
+  const ByteImage& bytes() const { return bytes_; }
+
+ private:
+  ByteImage bytes_;
+};
+using PanelRow = std::vector<Panel>;
+
 struct PictureGrid {
-  std::vector<std::string> titles;       // one a column
-  std::vector<std::vector<Image>> rows;  // panels [h][w][1 or 3]; empty: "missing"
+  std::vector<std::string> titles;  // one a column
+  std::vector<PanelRow> rows;       // empty panel: "missing"
   std::vector<LegendLine> legend;
   std::vector<std::string> row_titles = {};  // left of the rows, '\n' between lines; none: no room
   bool bands = false;  // columns that do not fit the page stand below the others, all rows of them

@@ -31,9 +31,12 @@ MaskImage read_mask(const fs::path& path);
 // those of radiance or of 0 to 255. Empty: nothing.
 std::string color_range_problem(ImageView colors);
 
-// [0, 1] clamped, times 255, rounded half to even. 1 or 3 channels.
+// [0, 1] clamped, times 255, rounded half to even; not a number: 0.
+ByteImage to_bytes(ImageView image);
+// 1 or 3 channels; floats by to_bytes().
+void write_png(const fs::path& path, ByteView image);
 void write_png(const fs::path& path, ImageView image);
-// The same with 65535 in place of 255; 1 channel.
+// Floats times 65535; 1 channel.
 void write_png16(const fs::path& path, ImageView grey);
 // float32 channels: Z for 1, R G B for 3 (or X Y Z when `xyz`), scan lines, ZIP.
 void write_exr(const fs::path& path, ImageView image, bool xyz = false);

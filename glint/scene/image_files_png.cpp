@@ -89,7 +89,14 @@ ImageSize read_image_size(const fs::path& path) {
   return {static_cast<int>(size.width), static_cast<int>(size.height)};
 }
 
-void write_png(const fs::path& path, ImageView image) {
+ByteImage to_bytes(ImageView image) {
+  ByteImage bytes(image.width, image.height, image.channels);
+  std::
+      transform(image.data, image.data + bytes.values().size(), bytes.data(), to_step<unsigned char>);
+  return bytes;
+}
+
+void write_png(const fs::path& path, ByteView image) {
   GLINT_CHECK(
       !image.empty() && (image.channels == 1 || image.channels == 3),
       kUsage,
@@ -99,11 +106,10 @@ void write_png(const fs::path& path, ImageView image) {
       image.height,
       image.channels
   );
-  MaskImage bytes(image.width, image.height, image.channels);
-  std::
-      transform(image.data, image.data + bytes.values().size(), bytes.data(), to_step<unsigned char>);
-  write_file(path, detail::encode_png(bytes));
+  write_file(path, detail::encode_png(image));
 }
+
+void write_png(const fs::path& path, ImageView image) { write_png(path, to_bytes(image)); }
 
 void write_png16(const fs::path& path, ImageView grey) {
   GLINT_CHECK(

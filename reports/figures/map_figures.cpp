@@ -88,18 +88,18 @@ LegendLine error_line() {
 LegendLine share_line() { return {"shares: 0", LegendBar::kShare, "1"}; }
 
 // A row of one layer: the truth, then every method.
-std::vector<Image> layer_row(
+PanelRow layer_row(
     const FigureScene& scene, const std::vector<std::string>& methods, const std::string& layer
 ) {
-  std::vector<Image> row{panel_of(&scene.truth, layer, scene.scale)};
+  PanelRow row{panel_of(&scene.truth, layer, scene.scale)};
   for (const std::string& method : methods)
     row.push_back(panel_of(maps_of(scene, method), layer, scene.scale));
   return row;
 }
 
-void add_row(PictureGrid& grid, const std::string& title, std::vector<Image> row) {
+void add_row(PictureGrid& grid, const std::string& title, PanelRow row) {
   const bool nothing =
-      std::all_of(row.begin(), row.end(), [](const Image& panel) { return panel.empty(); });
+      std::all_of(row.begin(), row.end(), [](const Panel& panel) { return panel.empty(); });
   if (nothing) return;
   grid.row_titles.push_back(title);
   grid.rows.push_back(std::move(row));
@@ -118,7 +118,7 @@ void add_qualitative_rows(
   std::vector<const FigureLayers*> columns{&scene.truth};
   for (const std::string& method : methods) columns.push_back(maps_of(scene, method));
   for (const MapId map : kImageAndSurface) {
-    std::vector<Image> whole, parts;
+    PanelRow whole, parts;
     for (const FigureLayers* maps : columns) {
       const Image picture = picture_of(maps, std::string(map.row().id), scene.scale);
       whole.push_back(outlined(picture, crops));
@@ -169,7 +169,7 @@ PictureGrid method_rows(
   for (const FigureColumn& column : columns) grid.titles.push_back(column.title);
   for (const FigureScene& scene : scenes)
     for (const std::string& method : methods_with({scene}, needed)) {
-      std::vector<Image> row;
+      PanelRow row;
       for (const FigureColumn& column : columns)
         row.push_back(brightened(
             panel_of(
@@ -234,7 +234,7 @@ PictureGrid transparency_figure(const std::vector<FigureScene>& scenes) {
   }
   if (panels.empty()) return {};
   for (const FigureScene& scene : scenes) {
-    std::vector<Image> row{panel_of(&scene.truth, "rgb", scene.scale), mask_panel(scene.glass)};
+    PanelRow row{panel_of(&scene.truth, "rgb", scene.scale), mask_panel(scene.glass)};
     for (const auto& [method, map] : panels)
       row.push_back(panel_of(maps_of(scene, method), map, scene.scale));
     add_row(grid, scene.name, std::move(row));
@@ -266,7 +266,7 @@ PictureGrid ablation_figure(const std::vector<FigureScene>& scenes) {
       add_row(
           grid, row_title(scene, map.row()), layer_row(scene, methods, std::string(map.row().id))
       );
-    std::vector<Image> errors = layer_row(scene, methods, "error");
+    PanelRow errors = layer_row(scene, methods, "error");
     errors[0] = mask_panel(scene.glass);
     add_row(grid, scene.name + "\nError; glass", std::move(errors));
   }

@@ -121,7 +121,7 @@ void add_rows(
     MeshPainter& painter
 ) {
   const SeenMesh* truth = painter.see(scene.data / kind.layer.truth, true);
-  std::vector<Image> shaded, errors;
+  PanelRow shaded, errors;
   const auto add = [&](const SeenMesh* mesh) {
     shaded.push_back(mesh != nullptr ? mesh->shaded : Image());
     errors.push_back(mesh != nullptr ? painter.errors(*mesh, truth) : Image());

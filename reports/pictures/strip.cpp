@@ -75,11 +75,10 @@ Image panel_of(const LayerMaps& maps, const MapRow& row, DepthScale scale) {
   return fit_panel(layer_picture(layer_of(row), map->second, scale));
 }
 
-std::vector<Image> row_of(const StripPlan& plan, const View& view) {
+PanelRow row_of(const StripPlan& plan, const View& view) {
   const fs::path folder = view_folder(plan.run, view.name);
   const Image render = read_image(render_file(folder, *find_map("rgb")), 3);
-  std::vector<Image> row = {
-      fit_panel(view.rgb), fit_panel(render), fit_panel(error_panel(render, view.rgb))};
+  PanelRow row = {fit_panel(view.rgb), fit_panel(render), fit_panel(error_panel(render, view.rgb))};
   const LayerMaps rendered = rendered_layers(folder, &view), truth = true_layers(view);
   for (const MapPanel& panel : plan.panels) {
     row.push_back(panel_of(rendered, panel.map, plan.scale));
@@ -121,7 +120,7 @@ void write_strip(
   PictureGrid grid{titles_of(plan), {}, legend_of(plan, views)};
   grid.bands = true;
   for (const View* view : views) grid.rows.push_back(row_of(plan, *view));
-  write_png(path, draw_image(draw_grid(std::move(grid))));
+  write_png(path, draw_bytes(draw_grid(std::move(grid))));
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST_CASE("every pixel of a panel is a pixel of the picture") {
 
 TEST_CASE("a grid is as wide as a page, narrower of few pixels, wider of many columns") {
   const auto width = [](std::size_t columns, int pixels) {
-    const std::vector<Image> row(columns, Image(pixels, pixels / 2, 3));
+    const PanelRow row(columns, Image(pixels, pixels / 2, 3));
     return draw_grid({std::vector<std::string>(columns, "title"), {row}, {}}).width;
   };
   CHECK(width(4, 480) == Approx(504));

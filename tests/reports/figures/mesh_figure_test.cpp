@@ -16,7 +16,8 @@ using namespace glint::test;
 
 namespace {
 
-constexpr double kColorMargin = 1e-4;  // of some micrometres, the rounding of hits; 1 mm is 0.01
+// Half a step of bytes, and the rounding of hits, some micrometres; 1 mm is 0.01.
+constexpr double kColorMargin = 0.5 / 255 + 1e-4;
 
 // At the origin, along z.
 Camera small_camera() {
@@ -43,10 +44,14 @@ FigureScene scene_of(const fs::path& folder, const std::vector<std::string>& met
   return scene;
 }
 
-void check_color(const Image& picture, const Image& expected) {
-  const int x = picture.width() / 2 + 3, y = picture.height() / 2 + 2;
+float value_at(const Panel& panel, int x, int y, int c) {
+  return static_cast<float>(panel.bytes().at(x, y, c)) / 255;
+}
+
+void check_color(const Panel& panel, const Image& expected) {
+  const int x = panel.size().width / 2 + 3, y = panel.size().height / 2 + 2;
   for (int c = 0; c < 3; ++c)
-    CHECK(picture.at(x, y, c) == Approx(expected.at(0, 0, c)).margin(kColorMargin));
+    CHECK(value_at(panel, x, y, c) == Approx(expected.at(0, 0, c)).margin(kColorMargin));
 }
 
 Image color_of(float distance) {
@@ -160,8 +165,8 @@ TEST_CASE("the protocol that a run was scored with says what is culled") {
   FigureScene scene = scene_of(folder.path(), {"a"});
   scene.train_cameras.front().translation_cam_from_world = {2, 0, 0};  // sees the left half only
   const auto right_edge = [&] {
-    const Image errors = meshes_figure({scene}).rows[1][1];
-    return errors.at(errors.width() - 2, 15, 2);
+    const Panel errors = meshes_figure({scene}).rows[1][1];
+    return value_at(errors, errors.size().width - 2, 15, 2);
   };
   CHECK(right_edge() > 0.8f);  // stripes
   write_file(folder / "a/metrics.json", R"({"meshes": {"protocol": {"cull": "none"}}})");
