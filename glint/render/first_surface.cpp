@@ -24,7 +24,7 @@ float surface_behind_mask(
   SurfacePixel pixel(x, y, limit.empty() ? near : std::max(near, limit.at(x, y)));
   const int tile = y / kTileSize * lists.tiles_x + x / kTileSize;
   for (std::uint32_t k = lists.tile_begin[tile]; k < lists.tile_begin[tile + 1]; ++k)
-    if (!pixel.add(lists.splats[lists.entries[k].surfel])) break;
+    if (!pixel.add(lists.splats[lists.entries[k]])) break;
   return first_surface_depth(pixel.hits, settings);
 }
 

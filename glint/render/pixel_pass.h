@@ -139,6 +139,12 @@ struct PixelSums {
   }
 };
 
+// dL/d(what a hit is made of), at one pixel.
+template <class T>
+struct HitGradient {
+  T opacity, rho, depth;
+};
+
 // dL/d(maps of a pixel), and what the way back needs of the maps themselves.
 template <class T, class Code>
 struct PixelGradient {
@@ -169,7 +175,7 @@ struct PixelGradient {
       remaining +=
           T(2) * *dL.distortion * (*maps.alpha * *kept.moment2 - *kept.moment1 * *kept.moment1);
   }
-  // Back through one hit, front to back. out: SplatSum and ExtraSum, added to.
+  // Back through one hit: through() and add() in one.
   GLINT_HD void hit(
       const SplatHit<T>& hit,
       const Splat& splat,
@@ -178,17 +184,25 @@ struct PixelGradient {
       const DistortionRange& range,
       T* out
   ) {
-    has = Code::known(has);
+    add(hit, through(hit, splat, feature, has, range), splat, has, out);
+  }
+  // Through the compositing, in the order of the hits, front to back.
+  GLINT_HD HitGradient<T> through(
+      const SplatHit<T>& hit,
+      const Splat& splat,
+      const float* feature,
+      MapChannels has,
+      const DistortionRange& range
+  ) {
     T value = fma_of(*dL.depth_sum, hit.depth, *dL.alpha);
     for_each_attribute(
         splat,
         feature,
-        has,
+        Code::known(has),
         Code::kFeatureSlot,
-        [&](const auto& attribute, int slot, int width, const auto& gradient) {
+        [&](const auto& attribute, int, int width, const auto& gradient) {
           for_channels(gradient, width, [&](int c) {
             value = fma_of(gradient[c], T(attribute[c]), value);
-            out[slot + c] = fma_of(hit.weight, gradient[c], out[slot + c]);
           });
         },
         dL
@@ -200,12 +214,61 @@ struct PixelGradient {
     if (range.on) add_distortion(hit, range, value, dL_dz);
     remaining = remaining - hit.weight * value;
     const T dL_dalpha = blend_alpha_vjp(hit.transmittance, hit.alpha.alpha, value, remaining);
-    T dL_drho(0);
-    splat_alpha_vjp(
-        T(splat.opacity), hit.alpha, keep(hit.valid, dL_dalpha), out[kSumOpacity], dL_drho
+    HitGradient<T> g{T(0), T(0), keep(hit.valid, dL_dz)};
+    splat_alpha_vjp(T(splat.opacity), hit.alpha, keep(hit.valid, dL_dalpha), g.opacity, g.rho);
+    return g;
+  }
+  // What through() returned, to the splat. out: SplatSum and ExtraSum, added to. In three parts
+  // that share no sums.
+  GLINT_HD void add(
+      const SplatHit<T>& hit, const HitGradient<T>& g, const Splat& splat, MapChannels has, T* out
+  ) const {
+    add_attributes(hit, splat, has, out);
+    add_alpha(hit, g, splat, has, out);
+    add_geometry(hit, g, splat, out);
+  }
+  GLINT_HD void add_attributes(const SplatHit<T>& hit, const Splat& splat, MapChannels has, T* out)
+      const {
+    for_each_attribute(
+        splat,
+        nullptr,
+        Code::known(has),
+        Code::kFeatureSlot,
+        [&](const auto&, int slot, int width, const auto& gradient) {
+          for_channels(gradient, width, [&](int c) {
+            out[slot + c] = fma_of(hit.weight, gradient[c], out[slot + c]);
+          });
+        },
+        dL
     );
-    if (has.statistics) add_screen_abs(hit, splat, dL_drho, &out[kSumScreenAbsX]);
-    add_geometry(hit, splat, dL_drho, keep(hit.valid, dL_dz), out);
+  }
+  GLINT_HD static void add_alpha(
+      const SplatHit<T>& hit, const HitGradient<T>& g, const Splat& splat, MapChannels has, T* out
+  ) {
+    out[kSumOpacity] += g.opacity;
+    if (Code::known(has).statistics) add_screen_abs(hit, splat, g.rho, &out[kSumScreenAbsX]);
+  }
+  // From rho and depth of the hit.
+  GLINT_HD static void add_geometry(
+      const SplatHit<T>& hit, const HitGradient<T>& g, const Splat& splat, T* out
+  ) {
+    const auto in_plane = hit.valid & hit.in_plane;
+    const PlaneHit<T> plane{
+        keep(in_plane, hit.plane.u),
+        keep(in_plane, hit.plane.v),
+        keep(in_plane, hit.plane.t),
+        keep(in_plane, hit.plane.inverse)};
+    const T scale = g.rho + g.rho;  // rho = u^2 + v^2
+    Vec3<T> dL_dzeta{};
+    intersect_vjp(plane, scale * plane.u, scale * plane.v, g.depth, dL_dzeta, out[kSumDet]);
+    for (int k = 0; k < 3; ++k) {
+      out[kSumGx + k] = fma_of(dL_dzeta[k], hit.x, out[kSumGx + k]);
+      out[kSumGy + k] = fma_of(dL_dzeta[k], hit.y, out[kSumGy + k]);
+      out[kSumG0 + k] += dL_dzeta[k];
+    }
+    const auto low_pass = hit.valid & !hit.in_plane;
+    if (any(low_pass))  // few surfels have any, but then at most pixels
+      add_low_pass(hit, splat, keep(low_pass, g.rho), keep(low_pass, g.depth), out);
   }
 
  private:
@@ -230,28 +293,6 @@ struct PixelGradient {
     // Outside `valid` the slope may be infinite.
     out[0] += keep(hit.valid, abs_of(dL_drho * slope.x));
     out[1] += keep(hit.valid, abs_of(dL_drho * slope.y));
-  }
-  // From rho and depth of the hit.
-  GLINT_HD static void add_geometry(
-      const SplatHit<T>& hit, const Splat& splat, T dL_drho, T dL_dz, T* out
-  ) {
-    const auto in_plane = hit.valid & hit.in_plane;
-    const PlaneHit<T> plane{
-        keep(in_plane, hit.plane.u),
-        keep(in_plane, hit.plane.v),
-        keep(in_plane, hit.plane.t),
-        keep(in_plane, hit.plane.inverse)};
-    const T scale = dL_drho + dL_drho;  // rho = u^2 + v^2
-    Vec3<T> dL_dzeta{};
-    intersect_vjp(plane, scale * plane.u, scale * plane.v, dL_dz, dL_dzeta, out[kSumDet]);
-    for (int k = 0; k < 3; ++k) {
-      out[kSumGx + k] = fma_of(dL_dzeta[k], hit.x, out[kSumGx + k]);
-      out[kSumGy + k] = fma_of(dL_dzeta[k], hit.y, out[kSumGy + k]);
-      out[kSumG0 + k] += dL_dzeta[k];
-    }
-    const auto low_pass = hit.valid & !hit.in_plane;
-    if (!kLeavesEarly<T> || any(low_pass))
-      add_low_pass(hit, splat, keep(low_pass, dL_drho), keep(low_pass, dL_dz), out);
   }
   GLINT_HD static void add_low_pass(
       const SplatHit<T>& hit, const Splat& splat, T dL_drho, T dL_dz, T* out

@@ -93,6 +93,11 @@ std::vector<std::uint32_t> count_tiles(const TileLists& lists) {
   return counts;
 }
 
+void list_pair(TileLists& lists, std::uint32_t surfel, std::uint32_t pair, std::uint32_t place) {
+  lists.entries[place] = surfel;
+  lists.places[pair] = place;
+}
+
 // Lists the surfels of the tile rows [row_begin, row_end), front to back. next: where each tile's
 // next entry goes.
 void list_rows(TileLists& lists, int row_begin, int row_end, std::vector<std::uint32_t>& next) {
@@ -103,7 +108,7 @@ void list_rows(TileLists& lists, int row_begin, int row_end, std::vector<std::ui
     std::uint32_t pair = lists.pair_begin[item.index] + (y0 - box.tile_y_min()) * (x1 - x0);
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x)
-        lists.entries[next[y * lists.tiles_x + x]++] = {item.index, pair++};
+        list_pair(lists, item.index, pair++, next[y * lists.tiles_x + x]++);
   }
 }
 
@@ -116,6 +121,7 @@ void list_tiles(TileLists& lists) {
     n = lists.tile_begin.end()[-2];
   }
   lists.entries.resize(lists.tile_begin.back());
+  lists.places.resize(lists.tile_begin.back());
   const int bands = num_threads();
   parallel_for(static_cast<std::size_t>(bands), 1, [&](std::size_t band) {
     const int b = static_cast<int>(band);

@@ -11,19 +11,16 @@
 
 namespace glint {
 
-// A surfel in a tile's list. Pairs are numbered surfel by surfel, so that a surfel's sums run over
-// neighbours in memory.
-struct TileEntry {
-  std::uint32_t surfel, pair;
-};
-
+// (surfel, tile) pairs are listed by tiles, as they are worked on, so that what a tile writes of
+// them lies in a row. Surfels find theirs by `places`.
 struct TileLists {
   int tiles_x = 0, tiles_y = 0;
   std::vector<Splat> splats;              // [N]
   std::vector<PixelBox> boxes;            // [N]
-  std::vector<std::uint32_t> pair_begin;  // [N + 1] first pair of each surfel
+  std::vector<std::uint32_t> pair_begin;  // [N + 1] into `places`, the first of each surfel
+  std::vector<std::uint32_t> places;      // [pairs] into `entries`, of each surfel's pairs
   std::vector<std::uint32_t> tile_begin;  // [tiles + 1] into `entries`
-  std::vector<TileEntry> entries;         // surfels of each tile, front to back
+  std::vector<std::uint32_t> entries;     // [pairs] surfels of each tile, front to back
 
   std::size_t num_tiles() const { return static_cast<std::size_t>(tiles_x) * tiles_y; }
   std::size_t num_pairs() const { return entries.size(); }

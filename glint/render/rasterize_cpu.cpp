@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
-#include <numeric>
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
@@ -18,11 +17,20 @@ struct RasterSaved {
   std::shared_ptr<const TileLists> shared_lists;  // those of this pass or of the first of several
   const TileLists& lists() const { return *shared_lists; }
   KeptMaps<ImageMap> kept;
-  std::vector<float> pair_visibility;  // [pairs]
-  std::vector<float> pair_owned;       // [pairs] pixels of the tile that the surfel owns, or empty
-  // [pairs] blocks of the tile where a pixel has a hit, one bit each: backward looks at no others.
+  // Of each pair, in the order of TileLists::entries.
+  std::vector<float> pair_visibility;
+  std::vector<float> pair_owned;  // pixels of the tile that the surfel owns, or empty
+  // Blocks of the tile where a pixel has a hit, one bit each: backward looks at no others.
   std::vector<std::uint8_t> pair_blocks;
   std::vector<float> pair_gradients;  // [pairs][slot_width]
+
+  // Calls f(place) for the pairs of a surfel.
+  template <class F>
+  void for_pairs(std::size_t surfel, F&& f) const {
+    for (std::uint32_t pair = lists().pair_begin[surfel]; pair < lists().pair_begin[surfel + 1];
+         ++pair)
+      f(lists().places[pair]);
+  }
 };
 
 // ---- forward -----------------------------------------------------------------------------------
@@ -44,14 +52,18 @@ struct ForwardVisitor {
   }
 
   MapChannels has() const { return Code::known(tile.call.maps()); }
-  std::uint64_t groups(TileEntry entry) const {
-    return groups_of_blocks<T>(blocks_of(tile, tile.lists.boxes[entry.surfel]));
+  std::uint64_t groups(std::uint32_t place) const {
+    return groups_of_blocks<T>(blocks_of(tile, tile.lists.boxes[tile.lists.entries[place]]));
   }
-  void begin(TileEntry entry) {
+  void begin(std::uint32_t surfel) {
     visibility = owned = T(0);
     blocks = 0;
-    feature = tile.feature(entry.surfel);
-    splat = &tile.lists.splats[entry.surfel];
+    feature = tile.feature(surfel);
+    splat = &tile.lists.splats[surfel];
+  }
+  SplatHit<T> room_for_hit() const {  // of its own, in registers
+    SplatHit<T> hit;
+    return hit;
   }
   void hit(int g, const SplatHit<T>& hit) {
     visibility += hit.weight;
@@ -60,15 +72,15 @@ struct ForwardVisitor {
     if (has().statistics) owned += keep(owns_pixel(hit), T(1));
     sums[g].add(hit, *splat, feature, has(), range);
   }
-  void end(TileEntry entry) {
-    saved.pair_visibility[entry.pair] = lane_sum(visibility);
-    if (has().statistics) saved.pair_owned[entry.pair] = lane_sum(owned);
-    saved.pair_blocks[entry.pair] = static_cast<std::uint8_t>(blocks);
+  void end(std::uint32_t place) {
+    saved.pair_visibility[place] = lane_sum(visibility);
+    if (has().statistics) saved.pair_owned[place] = lane_sum(owned);
+    saved.pair_blocks[place] = static_cast<std::uint8_t>(blocks);
   }
-  void skip(TileEntry entry) {
-    saved.pair_visibility[entry.pair] = 0;
-    if (has().statistics) saved.pair_owned[entry.pair] = 0;
-    saved.pair_blocks[entry.pair] = 0;
+  void skip(std::uint32_t place) {
+    saved.pair_visibility[place] = 0;
+    if (has().statistics) saved.pair_owned[place] = 0;
+    saved.pair_blocks[place] = 0;
   }
 
   void store(const TilePixels<T>& pixels, RasterOutput& out) {
@@ -113,10 +125,6 @@ struct BackwardVisitor {
   const DistortionRange range;
   RasterSaved& saved;
   PixelGradient<T, Code> pixels[kGroupsPerTile<T>];
-  // Of the current surfel.
-  T sums[Code::kSums];
-  const float* feature;
-  const Splat* splat;
 
   BackwardVisitor(
       const TileContext& tile,
@@ -157,29 +165,72 @@ struct BackwardVisitor {
   }
 
   MapChannels has() const { return Code::known(tile.call.maps()); }
-  std::uint64_t groups(TileEntry entry) const {
-    return groups_of_blocks<T>(saved.pair_blocks[entry.pair]);
+  std::uint64_t groups(std::uint32_t place) const {
+    return groups_of_blocks<T>(saved.pair_blocks[place]);
   }
-  void begin(TileEntry entry) {
+  // Hits wait until there are some, and are then worked on step by step: a step of one hit does not
+  // wait for that of another, as all steps of one do.
+  void begin(std::uint32_t) {}
+  SplatHit<T>& room_for_hit() { return hits[num_hits]; }
+  void hit(int g, const SplatHit<T>&) { groups_of_hits[num_hits++] = g; }
+  void skip(std::uint32_t) {}  // sum_pairs() leaves out pairs without blocks
+  void end(std::uint32_t place) {
+    places[num_places] = place;
+    ends[num_places++] = num_hits;
+    if (num_hits > kRoom - kGroupsPerTile<T>) finish();
+  }
+  // What waits.
+  void finish() {
+    for_waiting([&](std::uint32_t place, int begin, int end) { go_through(place, begin, end); });
+    for_waiting([&](std::uint32_t place, int begin, int end) { sum_up(place, begin, end); });
+    num_hits = num_places = 0;
+  }
+
+ private:
+  using Gradient = PixelGradient<T, Code>;
+
+  // Calls f(place, its first hit, one past its last).
+  template <class F>
+  void for_waiting(F&& f) const {
+    for (int p = 0; p < num_places; ++p) f(places[p], p == 0 ? 0 : ends[p - 1], ends[p]);
+  }
+  const Splat& splat_of(std::uint32_t place) const {
+    return tile.lists.splats[tile.lists.entries[place]];
+  }
+  void go_through(std::uint32_t place, int begin, int end) {
+    const Splat& splat = splat_of(place);
+    const float* feature = tile.feature(tile.lists.entries[place]);
+    for (int i = begin; i < end; ++i)
+      gradients[i] = pixels[groups_of_hits[i]].through(hits[i], splat, feature, has(), range);
+  }
+  void sum_up(std::uint32_t place, int begin, int end) {
+    const Splat& splat = splat_of(place);
+    T sums[Code::kSums];
     std::fill_n(sums, splat_sums(has()), T(0));
-    feature = tile.feature(entry.surfel);
-    splat = &tile.lists.splats[entry.surfel];
+    // A loop for each: their sums stay in registers.
+    for (int i = begin; i < end; ++i)
+      pixels[groups_of_hits[i]].add_attributes(hits[i], splat, has(), sums);
+    for (int i = begin; i < end; ++i)
+      Gradient::add_alpha(hits[i], gradients[i], splat, has(), sums);
+    for (int i = begin; i < end; ++i) Gradient::add_geometry(hits[i], gradients[i], splat, sums);
+    store(place, sums);
   }
-  void hit(int g, const SplatHit<T>& hit) {
-    pixels[g].hit(hit, *splat, feature, has(), range, sums);
-  }
-  float* slot_of(TileEntry entry) const {
-    return &saved.pair_gradients[entry.pair * static_cast<std::size_t>(splat_sums(has()))];
-  }
-  void skip(TileEntry) {}  // sum_pairs() leaves out pairs without blocks
-  void end(TileEntry entry) {
+  void store(std::uint32_t place, const T* sums) {
     const int width = splat_sums(has());
-    float* slot = slot_of(entry);
+    float* slot = &saved.pair_gradients[place * static_cast<std::size_t>(width)];
     if constexpr (kLanesOf<T> == 8)
       for (int i = 0; i < width; i += 8) lane_sums(&sums[i]).store(slot + i);
     else
       for (int i = 0; i < width; ++i) slot[i] = sums[i];
   }
+
+  static constexpr int kRoom = 2 * kGroupsPerTile<T>;
+  int num_hits = 0, num_places = 0;  // that wait
+  SplatHit<T> hits[kRoom];
+  HitGradient<T> gradients[kRoom];
+  int groups_of_hits[kRoom];
+  std::uint32_t places[kRoom];
+  int ends[kRoom];  // of the hits of each place
 };
 
 template <class T, class Code>
@@ -192,6 +243,7 @@ void backward_tile(
   TilePixels<T> pixels(tile);
   BackwardVisitor<T, Code> visitor(tile, saved, out, dL_dout);
   for_each_hit(tile, pixels, visitor);
+  visitor.finish();
 }
 
 // Calls body<T, Code>(tile) for every tile, with the lane type and PassCode of the call.
@@ -212,14 +264,13 @@ void for_each_tile(const RasterCall& call, const TileLists& lists, F&& body) {
 // ---- sums over a surfel's tiles ----------------------------------------------------------------
 
 void sum_pairs(const RasterSaved& saved, std::size_t surfel, int width, float* sums) {
-  const std::vector<std::uint32_t>& pair_begin = saved.lists().pair_begin;
   std::fill_n(sums, width, 0.0f);
-  for (std::uint32_t pair = pair_begin[surfel]; pair < pair_begin[surfel + 1]; ++pair) {
-    if (saved.pair_blocks[pair] == 0) continue;
-    const float* slot = &saved.pair_gradients[static_cast<std::size_t>(pair) * width];
+  saved.for_pairs(surfel, [&](std::uint32_t place) {
+    if (saved.pair_blocks[place] == 0) return;
+    const float* slot = &saved.pair_gradients[static_cast<std::size_t>(place) * width];
     for (int i = 0; i < width; i += 8)
       (Float8::load(sums + i) + Float8::load(slot + i)).store(sums + i);
-  }
+  });
 }
 
 // Surfels without pairs get exact zeros, whatever their parameters (they may not be finite).
@@ -316,8 +367,7 @@ void sum_visibility(const RasterSaved& saved, RasterOutput& output) {
   const TileLists& lists = saved.lists();
   parallel_for(lists.boxes.size(), 2048, [&](std::size_t i) {
     float sum = 0;
-    for (std::uint32_t pair = lists.pair_begin[i]; pair < lists.pair_begin[i + 1]; ++pair)
-      sum += saved.pair_visibility[pair];
+    saved.for_pairs(i, [&](std::uint32_t place) { sum += saved.pair_visibility[place]; });
     output.visibility[i] = sum;
     output.in_view[i] = lists.boxes[i].empty() ? 0 : 1;
   });
@@ -327,11 +377,9 @@ void sum_statistics(const RasterCall& call, const RasterSaved& saved, RasterOutp
   const TileLists& lists = saved.lists();
   const CameraOf<float> camera = camera_of(call);
   parallel_for(output.radii.size(), 2048, [&](std::size_t i) {
-    output.owned_pixels[i] = std::accumulate(
-        saved.pair_owned.begin() + lists.pair_begin[i],
-        saved.pair_owned.begin() + lists.pair_begin[i + 1],
-        0.0f
-    );
+    float owned = 0;
+    saved.for_pairs(i, [&](std::uint32_t place) { owned += saved.pair_owned[place]; });
+    output.owned_pixels[i] = owned;
     output.radii[i] =
         lists.boxes[i].empty()
             ? 0.0f

@@ -50,6 +50,16 @@ struct TileContext {
     return &call.input.features[static_cast<std::size_t>(surfel) * call.input.channels];
   }
 
+  // Of an entry that is soon to come: surfels lie scattered in memory.
+  void prefetch(std::uint32_t place) const {
+    const std::uint32_t surfel = lists.entries[place];
+    const char* splat = reinterpret_cast<const char*>(&lists.splats[surfel]);
+    __builtin_prefetch(splat);
+    __builtin_prefetch(splat + sizeof(Splat) - 1);
+    __builtin_prefetch(feature(surfel));
+    __builtin_prefetch(&lists.boxes[surfel]);
+  }
+
   int x0() const { return tile_x * kTileSize; }
   int y0() const { return tile_y * kTileSize; }
   std::uint32_t list_begin() const { return lists.tile_begin[tile_y * lists.tiles_x + tile_x]; }
@@ -120,7 +130,7 @@ template <class T, class Visitor>
 void visit_group(
     const Splat& splat, const PixelPlaneMap<T>& map, int g, TilePixels<T>& pixels, Visitor& visitor
 ) {
-  SplatHit<T> hit;
+  auto&& hit = visitor.room_for_hit();
   const bool counts = composite_splat(
       splat, map, pixels.x[g], pixels.y[g], pixels.nearest[g], pixels.transmittance[g], hit
   );
@@ -151,9 +161,11 @@ inline unsigned blocks_of(const TileContext& tile, const PixelBox& box) {
 // Entries between two looks at which groups are still live: rarely, because the groups of the next
 // splat would otherwise wait for the transmittance behind the last.
 inline constexpr std::uint32_t kEntriesPerLook = 16;
+inline constexpr std::uint32_t kEntriesAhead = 8;  // that are prefetched
 
-// All hits of a tile, front to back. Visitor: groups(entry), those to look at; begin(entry),
-// hit(group, hit), end(entry); skip(entry) for those without such groups or behind everything.
+// All hits of a tile, front to back. Visitor: groups(place), those to look at; begin(surfel),
+// room_for_hit() and hit(group, hit), end(place); skip(place) for those without such groups or
+// behind everything.
 template <class T, class Visitor>
 void for_each_hit(const TileContext& tile, TilePixels<T>& pixels, Visitor& visitor) {
   const std::uint32_t begin = tile.list_begin(), end = tile.list_end();
@@ -161,20 +173,21 @@ void for_each_hit(const TileContext& tile, TilePixels<T>& pixels, Visitor& visit
   std::uint32_t k = begin;
   for (; k < end; ++k) {
     if ((k - begin) % kEntriesPerLook == 0 && (live = pixels.live_groups()) == 0) break;
-    const TileEntry entry = tile.lists.entries[k];
-    std::uint64_t groups = visitor.groups(entry) & live;
+    const std::uint32_t surfel = tile.lists.entries[k];
+    tile.prefetch(std::min(k + kEntriesAhead, end - 1));
+    std::uint64_t groups = visitor.groups(k) & live;
     if (groups == 0) {
-      visitor.skip(entry);
+      visitor.skip(k);
       continue;
     }
-    visitor.begin(entry);
-    const Splat& splat = tile.lists.splats[entry.surfel];
+    visitor.begin(surfel);
+    const Splat& splat = tile.lists.splats[surfel];
     const PixelPlaneMap<T> map = broadcast_map<T>(splat.map);
     for (; groups != 0; groups &= groups - 1)
       visit_group(splat, map, std::countr_zero(groups), pixels, visitor);
-    visitor.end(entry);
+    visitor.end(k);
   }
-  for (; k < end; ++k) visitor.skip(tile.lists.entries[k]);
+  for (; k < end; ++k) visitor.skip(k);
 }
 
 }  // namespace glint
