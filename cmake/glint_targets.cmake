@@ -92,6 +92,12 @@ function(glint_add_program name)
   set_property(GLOBAL APPEND PROPERTY GLINT_PROGRAMS ${name})  # target `programs` builds them all
 endfunction()
 
+# Seconds; sanitizers make tests up to ten times slower.
+set(GLINT_TEST_TIMEOUT 900)
+if(GLINT_SANITIZE)
+  set(GLINT_TEST_TIMEOUT 9000)
+endif()
+
 # tests/a/b_test.cpp -> program test_a_b, CTest name a/b; LABELS default to "unit".
 function(glint_add_test)
   cmake_parse_arguments(ARG "" "SRC" "LABELS;LINK" ${ARGN})
@@ -111,7 +117,7 @@ function(glint_add_test)
   set_tests_properties(
     ${path}
     PROPERTIES LABELS "${ARG_LABELS}"
-               TIMEOUT 600
+               TIMEOUT ${GLINT_TEST_TIMEOUT}
                # Not what this machine's user has there, such as weights of LPIPS.
                ENVIRONMENT "XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/no_cache"
   )

@@ -11,6 +11,7 @@
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf_volume.h"
+#include "tests/support/child.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -224,6 +225,7 @@ TEST_CASE("Fusion takes the memory that it announces, within a fifth") {
   const double taken = peak_memory_mb() - before;
   INFO(report.memory_mb << " MB announced, " << taken << " MB taken");
   CHECK(report.memory_mb > 200);
+  if (!test::kMemoryIsOurs) return;
   CHECK(taken < 1.2 * report.memory_mb);
   CHECK(taken > 0.8 * report.memory_mb);
 }
