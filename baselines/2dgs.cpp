@@ -100,12 +100,14 @@ class TwoDgs final : public Method {
     sh_degree_ = std::min(3, iteration / windows_.sh_interval);
     settings_.with_distortion =
         config_.lambda_distortion > 0 && iteration >= windows_.distortion_from;
+    settings_.with_surface = geometry_.any_at(iteration);
     const RasterOutput& out = set_.forward(view.camera, sh_degree_, settings_);
     StepStats stats;
     stats.iteration = iteration;
     clear_gradient(view.camera.size(), 3, gradient_);
     add_photometric(view, out, stats);
-    geometry_.add(view, iteration, out, depth_of(out), gradient_, stats, depth_kind_);
+    if (settings_.with_surface)
+      geometry_.add(view, iteration, out, depth_of(out), gradient_, stats, depth_kind_);
     if (settings_.with_distortion) add_distortion(out, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     set_.backward(gradient_);

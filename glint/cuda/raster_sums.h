@@ -173,7 +173,7 @@ struct SurfelVjp {
     for (std::size_t k = 0; k < 4; ++k) out.rotations[4 * i + k] = rotation[k];
     out.opacities[i] = s[kSumOpacity];
     const auto channels = static_cast<std::size_t>(surfels.channels);
-    const float* of_features = s + feature_slot(has.has_extras());
+    const float* of_features = s + feature_slot(has);
     for (std::size_t c = 0; c < channels; ++c) out.features[channels * i + c] = of_features[c];
     out.screen[2 * i] = screen.x;
     out.screen[2 * i + 1] = screen.y;

@@ -16,21 +16,22 @@ inline constexpr int kMaxChannels = 16;
 using ChannelCounts = std::integer_sequence<int, 3, 4, 5>;
 
 // What the code of a pass knows of its call. kFeatures: feature channels; 0: known at run time
-// only. kExtras: false: the call has none (MapChannels::has_extras), and its code nothing of them.
-template <int kFeatures_, bool kExtras_>
+// only. kExtras, kSurface: false: the call has none (MapChannels), and its code nothing of them.
+template <int kFeatures_, bool kExtras_, bool kSurface_>
 struct PassCode {
   static constexpr int kFeatures = kFeatures_;
-  static constexpr bool kExtras = kExtras_;
+  static constexpr bool kExtras = kExtras_, kSurface = kSurface_;
   static constexpr int kMostFeatures = kFeatures > 0 ? kFeatures : kMaxChannels;
-  static constexpr int kFeatureSlot = feature_slot(kExtras);
-  static constexpr int kUsedSums = used_sums(kMostFeatures, kExtras);
-  static constexpr int kSums = splat_sums(kMostFeatures, kExtras);
+  static constexpr int kFeatureSlot = feature_slot(kExtras, kSurface);
+  static constexpr int kUsedSums = kFeatureSlot + kMostFeatures;
+  static constexpr int kSums = in_eights(kUsedSums);
 
   // The same call, what is known of it as constants.
   GLINT_HD static constexpr MapChannels known(MapChannels has) {
     if (kFeatures > 0) has.features = kFeatures;
     has.plane_distance = kExtras && has.plane_distance;
     has.statistics = kExtras && has.statistics;
+    has.surface = kSurface && has.surface;
     return has;
   }
 };
@@ -40,10 +41,11 @@ template <class F>
 void with_pass_code(MapChannels has, F&& body) {
   const auto with_features = [&]<int kFeatures>() {
     if (has.has_extras())
-      body.template operator()<PassCode<kFeatures, true>>();
+      body.template operator()<PassCode<kFeatures, true, true>>();
     else
-      body.template operator()<PassCode<kFeatures, false>>();
+      body.template operator()<PassCode<kFeatures, false, true>>();
   };
+  if (!has.surface) return body.template operator()<PassCode<kColorChannels, false, false>>();
   [&]<int... kCounts>(std::integer_sequence<int, kCounts...>) {
     const bool found =
         ((has.features == kCounts && (with_features.template operator()<kCounts>(), true)) || ...);
@@ -117,8 +119,10 @@ struct PixelSums {
         },
         maps
     );
-    *maps.depth_sum = fma_of(hit.weight, hit.depth, *maps.depth_sum);
-    *maps.depth_median = select(owns_pixel(hit), hit.depth, *maps.depth_median);
+    if (Code::known(has).surface) {
+      *maps.depth_sum = fma_of(hit.weight, hit.depth, *maps.depth_sum);
+      *maps.depth_median = select(owns_pixel(hit), hit.depth, *maps.depth_median);
+    }
     if (range.on) add_moments(hit, range);
   }
   // Behind the last hit.
@@ -156,7 +160,8 @@ struct PixelGradient {
   // From the maps, dL/d(maps) and `kept`; before the first hit.
   GLINT_HD void start(const PixelMaps<T, Code>& maps, MapChannels has) {
     median_behind = max_of(T(0.5f), *kept.transmittance);
-    remaining = *dL.alpha * *maps.alpha + *dL.depth_sum * *maps.depth_sum;
+    remaining = *dL.alpha * *maps.alpha;
+    if (Code::known(has).surface) remaining += *dL.depth_sum * *maps.depth_sum;
     for_each_attribute(
         Splat{},  // no values are looked at
         nullptr,
@@ -194,11 +199,13 @@ struct PixelGradient {
       MapChannels has,
       const DistortionRange& range
   ) {
-    T value = fma_of(*dL.depth_sum, hit.depth, *dL.alpha);
+    has = Code::known(has);
+    T value = *dL.alpha;
+    if (has.surface) value = fma_of(*dL.depth_sum, hit.depth, value);
     for_each_attribute(
         splat,
         feature,
-        Code::known(has),
+        has,
         Code::kFeatureSlot,
         [&](const auto& attribute, int, int width, const auto& gradient) {
           for_channels(gradient, width, [&](int c) {
@@ -207,10 +214,7 @@ struct PixelGradient {
         },
         dL
     );
-    // The last hit in front of which more than half of the light is left.
-    const auto is_median =
-        (hit.transmittance > T(0.5f)) & (hit.transmittance_behind <= median_behind);
-    T dL_dz = fma_of(hit.weight, *dL.depth_sum, keep(is_median, *dL.depth_median));
+    T dL_dz = has.surface ? depth_gradient(hit) : T(0);
     if (range.on) add_distortion(hit, range, value, dL_dz);
     remaining = remaining - hit.weight * value;
     const T dL_dalpha = blend_alpha_vjp(hit.transmittance, hit.alpha.alpha, value, remaining);
@@ -260,7 +264,9 @@ struct PixelGradient {
         keep(in_plane, hit.plane.inverse)};
     const T scale = g.rho + g.rho;  // rho = u^2 + v^2
     Vec3<T> dL_dzeta{};
-    intersect_vjp(plane, scale * plane.u, scale * plane.v, g.depth, dL_dzeta, out[kSumDet]);
+    T dL_ddet(0);
+    intersect_vjp(plane, scale * plane.u, scale * plane.v, g.depth, dL_dzeta, dL_ddet);
+    if (Code::kSurface) out[kSumDet] += dL_ddet;
     for (int k = 0; k < 3; ++k) {
       out[kSumGx + k] = fma_of(dL_dzeta[k], hit.x, out[kSumGx + k]);
       out[kSumGy + k] = fma_of(dL_dzeta[k], hit.y, out[kSumGy + k]);
@@ -272,6 +278,13 @@ struct PixelGradient {
   }
 
  private:
+  // Of its depth in the sum and as the median: the last hit in front of which more than half of the
+  // light is left.
+  GLINT_HD T depth_gradient(const SplatHit<T>& hit) const {
+    const auto is_median =
+        (hit.transmittance > T(0.5f)) & (hit.transmittance_behind <= median_behind);
+    return fma_of(hit.weight, *dL.depth_sum, keep(is_median, *dL.depth_median));
+  }
   GLINT_HD T total_alpha() const { return T(1) - *kept.transmittance; }
   GLINT_HD void add_distortion(
       const SplatHit<T>& hit, const DistortionRange& range, T& value, T& dL_dz
@@ -303,7 +316,7 @@ struct PixelGradient {
     );
     out[kSumCenterX] += -dL_ddx;
     out[kSumCenterY] += -dL_ddy;
-    out[kSumZCenter] += dL_dz;
+    if (Code::kSurface) out[kSumZCenter] += dL_dz;
   }
 };
 

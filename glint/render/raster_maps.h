@@ -19,7 +19,8 @@ template <template <int> class Map, int kFeatures = 0>
 struct RasterMaps {
   Map<kFeatures> features;  // [H][W][C] sum w f; no background is added
   Map<1> alpha;             // [H][W][1] sum w = 1 - transmittance
-  Map<1> depth_sum;         // [H][W][1] sum w z; expected depth = depth_sum / alpha
+  // The next three, of the surface: empty where it was not asked for.
+  Map<1> depth_sum;  // [H][W][1] sum w z; expected depth = depth_sum / alpha
   Map<1>
       depth_median;   // [H][W][1] z of the last contributor met while transmittance > 0.5; 0: none
   Map<3> normal;      // [H][W][3] sum w n in camera space, each n facing the camera; not unit
@@ -29,12 +30,16 @@ struct RasterMaps {
   Map<1> plane_distance;
 };
 
+// Features of passes that may do without a surface, and then have code of their own.
+inline constexpr int kColorChannels = 3;
+
 // Which maps and sums a call has.
 struct MapChannels {
   int features = 3;
   bool distortion = false;
   bool plane_distance = false;
   bool statistics = false;  // of density control
+  bool surface = true;      // depth_sum, depth_median, normal
 
   // Whether surfels get sums back that most calls have no use for.
   GLINT_HD constexpr bool has_extras() const { return plane_distance || statistics; }
@@ -45,9 +50,9 @@ template <class F, class... Maps>
 GLINT_HD void for_each_map(MapChannels has, F&& f, Maps&... maps) {
   f("features", has.features, maps.features...);
   f("alpha", 1, maps.alpha...);
-  f("depth_sum", 1, maps.depth_sum...);
-  f("depth_median", 1, maps.depth_median...);
-  f("normal", 3, maps.normal...);
+  f("depth_sum", has.surface ? 1 : 0, maps.depth_sum...);
+  f("depth_median", has.surface ? 1 : 0, maps.depth_median...);
+  f("normal", has.surface ? 3 : 0, maps.normal...);
   f("distortion", has.distortion ? 1 : 0, maps.distortion...);
   f("plane_distance", has.plane_distance ? 1 : 0, maps.plane_distance...);
 }

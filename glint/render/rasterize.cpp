@@ -117,6 +117,7 @@ void Rasterizer::first_surface(
       call.camera.width,
       call.camera.height
   );
+  GLINT_CHECK(call.maps().surface, kUsage, "first_surface: the pass was without a surface");
   fit(depth, call.camera.size(), 1);
   state_->device().first_surface(call, state_->output, mask, settings, depth);
 }

@@ -27,6 +27,9 @@ struct RasterSettings {
   float distortion_near = 0.2f;  // metres, of the NDC mapping of the distortion loss
   float distortion_far = 100.0f;
   bool with_plane_distance = false;  // also the plane_distance map
+  // false: nobody looks at depth_sum, depth_median and normal. They are left out of passes of three
+  // features and without the maps and sums asked for here, and stay empty.
+  bool with_surface = true;
   // Also owned_pixels and radii of the output and screen_abs of the gradient.
   bool with_statistics = false;
   bool scalar = false;  // on the CPU: without SIMD lanes, the same text (for perf and tests)
@@ -51,11 +54,14 @@ struct RasterCall {
   RasterSettings settings;
 
   MapChannels maps() const {
-    return {
+    MapChannels has{
         input.channels,
         settings.with_distortion,
         settings.with_plane_distance,
         settings.with_statistics};
+    has.surface = settings.with_surface || has.distortion || has.has_extras() ||
+                  has.features != kColorChannels;
+    return has;
   }
 };
 

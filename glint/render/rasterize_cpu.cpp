@@ -117,7 +117,7 @@ void forward_tile(const TileContext& tile, RasterSaved& saved, RasterOutput& out
 
 // ---- backward ----------------------------------------------------------------------------------
 
-constexpr int kMaxSums = splat_sums(kMaxChannels, true);
+constexpr int kMaxSums = in_eights(feature_slot(true, true) + kMaxChannels);
 
 template <class T, class Code>
 struct BackwardVisitor {
@@ -313,7 +313,7 @@ void surfel_vjp_lanes(
   for (int i = 0; i < kLanesOf<T>; ++i) {
     sum_pairs(saved, first + i, width, sums + i * width);
     std::copy_n(
-        sums + i * width + feature_slot(has.has_extras()),
+        sums + i * width + feature_slot(has),
         input.channels,
         &out.features[(first + i) * input.channels]
     );

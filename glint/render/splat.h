@@ -52,27 +52,31 @@ enum SplatSum {
   kSumGx = 0,  // 3: zeta's gradient times X
   kSumGy = 3,  // 3: times Y
   kSumG0 = 6,  // 3
-  kSumDet = 9,
-  kSumOpacity = 10,
-  kSumCenterX = 11,
-  kSumCenterY = 12,
-  kSumZCenter = 13,
-  kSumNormal = 14,  // 3
-  kSumExtras = 17   // ExtraSum, where a call has extras; behind them the features' channels
+  kSumOpacity = 9,
+  kSumCenterX = 10,
+  kSumCenterY = 11,
+  // From here on SurfaceSum and ExtraSum, of calls that have a surface and extras, and behind them
+  // the features' channels.
+  kSumSurface = 12
 };
-enum ExtraSum { kSumPlaneDistance = kSumExtras, kSumScreenAbsX, kSumScreenAbsY, kEndOfExtras };
-GLINT_HD constexpr int feature_slot(bool with_extras) {
-  return with_extras ? int{kEndOfExtras} : int{kSumExtras};
+enum SurfaceSum {
+  kSumDet = kSumSurface,
+  kSumZCenter,
+  kSumNormal,  // 3
+  kEndOfSurface = kSumNormal + 3
+};
+enum ExtraSum { kSumPlaneDistance = kEndOfSurface, kSumScreenAbsX, kSumScreenAbsY, kEndOfExtras };
+GLINT_HD constexpr int feature_slot(bool with_extras, bool with_surface) {
+  if (with_extras) return kEndOfExtras;
+  return with_surface ? int{kEndOfSurface} : int{kSumSurface};
 }
-GLINT_HD constexpr int used_sums(int channels, bool with_extras) {
-  return feature_slot(with_extras) + channels;
+GLINT_HD constexpr int feature_slot(MapChannels has) {
+  return feature_slot(has.has_extras(), has.surface);
 }
 // How many a surfel has, in eights.
-GLINT_HD constexpr int splat_sums(int channels, bool with_extras) {
-  return (used_sums(channels, with_extras) + 7) / 8 * 8;
-}
+GLINT_HD constexpr int in_eights(int sums) { return (sums + 7) / 8 * 8; }
 GLINT_HD constexpr int splat_sums(MapChannels has) {
-  return splat_sums(has.features, has.has_extras());
+  return in_eights(feature_slot(has) + has.features);
 }
 
 // What a splat gives to the maps sum w v, the same v at all its pixels:
@@ -87,7 +91,7 @@ GLINT_HD void for_each_attribute(
     Maps&... maps
 ) {
   f(feature, first_feature, has.features, maps.features...);
-  f(splat.normal, kSumNormal, 3, maps.normal...);
+  if (has.surface) f(splat.normal, kSumNormal, 3, maps.normal...);
   if (has.plane_distance) f(&splat.plane_distance, kSumPlaneDistance, 1, maps.plane_distance...);
 }
 
@@ -96,11 +100,14 @@ template <class T, class Sum>
 GLINT_HD ProjectedSurfel<T> projected_gradient(MapChannels has, const Sum& sum) {
   const auto sum3 = [&](int slot) { return Vec3<T>{sum(slot), sum(slot + 1), sum(slot + 2)}; };
   ProjectedSurfel<T> g{};
-  g.map = {sum3(kSumGx), sum3(kSumGy), sum3(kSumG0), sum(kSumDet)};
+  g.map = {sum3(kSumGx), sum3(kSumGy), sum3(kSumG0), T(0)};
   g.center_x = sum(kSumCenterX);
   g.center_y = sum(kSumCenterY);
-  g.z_center = sum(kSumZCenter);
-  g.normal = sum3(kSumNormal);
+  if (has.surface) {
+    g.map.det = sum(kSumDet);
+    g.z_center = sum(kSumZCenter);
+    g.normal = sum3(kSumNormal);
+  }
   if (has.plane_distance) g.plane_distance = sum(kSumPlaneDistance);
   return g;
 }

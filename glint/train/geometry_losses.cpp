@@ -105,7 +105,7 @@ void GeometryLosses::add_consistency(
     StepStats& stats
 ) {
   const float weight = config_.lambda_consistency;
-  if (weight <= 0 || iteration < config_.consistency_from) return;
+  if (!consistent_at(iteration)) return;
   const Image pixel_weight = config_.near_consistency ? inverse_depth_weight(depth) : Image{};
   const double loss = consistency_.evaluate(
       view.camera, output.normal, depth, output.alpha, weight, dL_dnormal, dL_ddepth, pixel_weight
@@ -117,7 +117,7 @@ void GeometryLosses::add_smoothness(
     const View& view, int iteration, const RasterOutput& output, Image& dL_dnormal, StepStats& stats
 ) {
   const float weight = config_.lambda_smooth;
-  if (weight <= 0 || iteration < config_.smooth_from) return;
+  if (!smooth_at(iteration)) return;
   stats.terms["smooth"] = static_cast<double>(weight) *
                           smoothness_.evaluate(output.normal, view.rgb, weight, dL_dnormal);
 }

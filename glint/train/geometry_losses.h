@@ -72,6 +72,11 @@ class GeometryLosses {
   std::vector<std::string> set_up(
       const GeometryLossConfig& config, const Scene& scene, const std::string& method
   );
+  // Whether any of them looks at the surface in this iteration.
+  bool any_at(int iteration) const {
+    return config_.lambda_depth > 0 || config_.lambda_normal > 0 || consistent_at(iteration) ||
+           smooth_at(iteration);
+  }
   // depth: expected_depth_map() of `output`, or its depth_median. Adds the gradients of the normal
   // image and of those that the depth is made of to dL_doutput, and each weighted loss to
   // stats.terms.
@@ -86,6 +91,12 @@ class GeometryLosses {
   );
 
  private:
+  bool consistent_at(int iteration) const {
+    return config_.lambda_consistency > 0 && iteration >= config_.consistency_from;
+  }
+  bool smooth_at(int iteration) const {
+    return config_.lambda_smooth > 0 && iteration >= config_.smooth_from;
+  }
   void add_depth_prior(const View& view, const Image& depth, Image& dL_ddepth, StepStats& stats);
   void add_normal_prior(
       const View& view,

@@ -25,6 +25,7 @@ struct PageScene {
 
 // In the order of the records, which must outlive the result.
 std::vector<PageScene> page_scenes(const std::vector<Record>& records, const fs::path& folder);
+std::vector<PageScene> page_scenes(std::vector<Record>&& records, const fs::path& folder) = delete;
 
 // Commands that repeat a run: {"what", "command"}; without a spec only the one for the cell.
 Json run_commands(const PageRun& run, const PageOptions& options);

@@ -44,6 +44,7 @@ struct Case {
   ImageSize size;
   int surfels, channels;
   bool distortion, near_limit, plane_distance, statistics;
+  bool surface = true;
 };
 const Case kCases[] = {
     {{1, 1}, 5, 3, false, false, true, true},
@@ -53,6 +54,8 @@ const Case kCases[] = {
     {{33, 31}, 300, 7, false, true, true, true},
     {{20, 41}, 300, 6, true, false, false, false},
     {{70, 40}, 1500, 3, true, false, false, true},
+    {{40, 33}, 400, 3, false, true, false, false, false},
+    {{40, 33}, 400, 4, false, true, false, false, false},
 };
 
 struct Fixture {
@@ -77,6 +80,7 @@ struct Fixture {
     settings.with_distortion = c.distortion;
     settings.with_plane_distance = c.plane_distance;
     settings.with_statistics = c.statistics;
+    settings.with_surface = c.surface;
     settings.scalar = true;
     input = arrays.view();
     if (c.near_limit) input.near_limit = near_limit;

@@ -359,6 +359,50 @@ TEST_CASE("Without output gradients every gradient is zero and has its input's s
   CHECK(gradient.screen == FloatArray(2 * c.surfels.count(), 0.0f));
 }
 
+TEST_CASE("Without a surface, colours and the gradients of all arrays have the same bytes") {
+  for (const bool scalar : {true, false}) {
+    CAPTURE(scalar);
+    RandomSurfels options = smooth_surfels();
+    options.count = 200;
+    options.channels = kColorChannels;
+    options.edge_on = options.at_camera = options.tiny = 0.1;
+    Rng rng(31);
+    Case c;
+    c.camera = random_camera(rng, {24, 18});
+    c.surfels = random_surfels(options, c.camera, rng);
+    c.settings.scalar = scalar;
+    const ImageSize size = c.camera.size();
+    c.dL_doutput.features =
+        random_weights(rng, std::vector<bool>(size.num_pixels(), true), size, kColorChannels);
+    Rasterizer with, without;
+    const RasterOutput& whole = with.forward({c.input(), c.camera, c.settings});
+    c.settings.with_surface = false;
+    const RasterOutput& colors = without.forward({c.input(), c.camera, c.settings});
+    CHECK(std::ranges::equal(colors.features.values(), whole.features.values()));
+    CHECK(std::ranges::equal(colors.alpha.values(), whole.alpha.values()));
+    CHECK(std::ranges::equal(colors.visibility, whole.visibility));
+    for (const Image* map : {&colors.depth_sum, &colors.depth_median, &colors.normal})
+      CHECK(map->empty());
+    const RasterGradient& g = without.backward(c.dL_doutput);
+    RasterGradient::for_each_array(
+        without.call().maps(),
+        [](const char* name, std::size_t, const FloatArray& a, const FloatArray& b) {
+          CAPTURE(name);
+          CHECK(std::ranges::equal(a, b));
+        },
+        g,
+        with.backward(c.dL_doutput)
+    );
+    CHECK_THROWS_WITH(
+        [&] {
+          Image depth;
+          without.first_surface(colors.alpha, {}, depth);
+        }(),
+        Catch::Contains("without a surface")
+    );
+  }
+}
+
 TEST_CASE("A surfel that reaches no tile has exactly zero gradient, even when it is not finite") {
   Case c = random_case(smooth_surfels(), kAll, 3);
   c.surfels.means[0] = std::numeric_limits<float>::quiet_NaN();

@@ -151,7 +151,8 @@ TEST_CASE("commands of a run quote every word and name its settings") {
   const Store store;
   const Record record = record_of("room_1", "fake");
   write_run(store.options.folder, record);
-  const auto scenes = page_scenes({record}, store.options.folder);
+  const std::vector<Record> records{record};
+  const auto scenes = page_scenes(records, store.options.folder);
   const Json commands = run_commands(scenes[0].runs[0], store.options);
   CHECK(
       commands[0]["command"] ==
