@@ -31,7 +31,7 @@ struct PassCode {
     if (kFeatures > 0) has.features = kFeatures;
     has.plane_distance = kExtras && has.plane_distance;
     has.statistics = kExtras && has.statistics;
-    has.surface = kSurface && has.surface;
+    has.surface = kSurface;
     return has;
   }
 };

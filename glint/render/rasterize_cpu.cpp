@@ -51,7 +51,7 @@ struct ForwardVisitor {
     for (auto& group : sums) group.clear();
   }
 
-  MapChannels has() const { return Code::known(tile.call.maps()); }
+  MapChannels has() const { return Code::known(tile.has); }
   std::uint64_t groups(std::uint32_t place) const {
     return groups_of_blocks<T>(blocks_of(tile, tile.lists.boxes[tile.lists.entries[place]]));
   }
@@ -164,7 +164,7 @@ struct BackwardVisitor {
     pixels[g].start(maps, has());
   }
 
-  MapChannels has() const { return Code::known(tile.call.maps()); }
+  MapChannels has() const { return Code::known(tile.has); }
   std::uint64_t groups(std::uint32_t place) const {
     return groups_of_blocks<T>(saved.pair_blocks[place]);
   }
@@ -254,7 +254,12 @@ void for_each_tile(const RasterCall& call, const TileLists& lists, F&& body) {
       parallel_for(lists.num_tiles(), 2, [&](std::size_t i) {
         const int tile = static_cast<int>(i);
         body.template operator()<decltype(lane), Code>(TileContext{
-            call, lists, call.camera.size(), tile % lists.tiles_x, tile / lists.tiles_x});
+            call,
+            lists,
+            call.camera.size(),
+            tile % lists.tiles_x,
+            tile / lists.tiles_x,
+            call.maps()});
       });
     });
   };

@@ -45,6 +45,7 @@ struct TileContext {
   const TileLists& lists;
   ImageSize size;
   int tile_x, tile_y;
+  MapChannels has;  // of the call
 
   const float* feature(std::uint32_t surfel) const {
     return &call.input.features[static_cast<std::size_t>(surfel) * call.input.channels];
@@ -148,7 +149,7 @@ std::uint64_t groups_of_blocks(unsigned blocks) {
 }
 
 // Blocks of a tile that a splat's box overlaps.
-inline unsigned blocks_of(const TileContext& tile, const PixelBox& box) {
+GLINT_SIMD_INLINE unsigned blocks_of(const TileContext& tile, const PixelBox& box) {
   const int x0 = box.x_min - tile.x0(), x1 = box.x_max - tile.x0();
   const int y0 = std::max(0, box.y_min - tile.y0()) / kBlockHeight;
   const int y1 = (std::min(kTileSize, box.y_max - tile.y0()) + kBlockHeight - 1) / kBlockHeight;
