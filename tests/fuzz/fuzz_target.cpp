@@ -15,7 +15,12 @@ namespace glint::fuzz {
 namespace {
 
 constexpr std::size_t kLongestMessage = 16384;  // bytes
-constexpr long kMostMemory = 1 << 20;           // KiB; sanitizers keep what was freed, on top
+// KiB; sanitizers keep what was freed, on top.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr long kMostMemory = 2 << 20;
+#else
+constexpr long kMostMemory = 1 << 20;
+#endif
 constexpr int kCuts = 16, kChanged = 400, kMostChanges = 4;
 
 class InputFolder {
