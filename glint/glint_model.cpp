@@ -35,6 +35,13 @@ void fill_or_empty(ImageSize size, float value, Image& image) {
 const Image& GlintModel::forward(
     const Camera& camera, const GlintConfig& config, const GlintPhase& phase
 ) {
+  return compose(camera, config, phase, false);
+}
+
+// with_behind: with the maps that add_behind_depth() reads.
+const Image& GlintModel::compose(
+    const Camera& camera, const GlintConfig& config, const GlintPhase& phase, bool with_behind
+) {
   camera_ = camera;
   phase_ = phase;
   transport_.set_options(
@@ -48,7 +55,7 @@ const Image& GlintModel::forward(
   const GlassBuffer& buffer = transport_.read_interface(camera, *interface_output_);
   copy_color(interface_output_->features, layers_.interface);
   rasterized_ = phase.transmission && config.transmission != "trace";
-  if (phase.transmission) render_transmission(camera, config);
+  if (phase.transmission) render_transmission(camera, config, with_behind);
   if (phase.reflection)
     copy_color(
         reflection.trace(buffer.reflected, phase.reflection_degree, config.mirror.settings()).color,
@@ -57,7 +64,9 @@ const Image& GlintModel::forward(
   return transport_.compose(layers_);
 }
 
-void GlintModel::render_transmission(const Camera& camera, const GlintConfig& config) {
+void GlintModel::render_transmission(
+    const Camera& camera, const GlintConfig& config, bool with_behind
+) {
   fit(near_limit_, camera.size(), 1);
   const std::size_t pixels = near_limit_.num_pixels();
   run_kernel(
@@ -77,8 +86,10 @@ void GlintModel::render_transmission(const Camera& camera, const GlintConfig& co
     copy_color(out.color, layers_.transmission);
     transmission_alpha_ = &out.alpha;
   } else {
+    RasterSettings settings;
+    settings.with_surface = with_behind;
     const RasterOutput& out =
-        transmission.forward(camera, phase_.transmission_degree, {}, near_limit_);
+        transmission.forward(camera, phase_.transmission_degree, settings, near_limit_);
     copy_color(out.features, layers_.transmission);
     transmission_alpha_ = &out.alpha;
   }
@@ -142,7 +153,7 @@ MapSet GlintModel::render(
     const Camera& camera, const GlintConfig& config, const GlintPhase& phase
 ) {
   MapSet out;
-  out["rgb"] = forward(camera, config, phase);
+  out["rgb"] = compose(camera, config, phase, true);
   out["depth"] = buffer().depth;
   out["normal"] = buffer().normal;
   out["transparency"] = buffer().transparency;

@@ -47,7 +47,10 @@ class GlintModel {
   MapSet render(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
 
  private:
-  void render_transmission(const Camera& camera, const GlintConfig& config);
+  const Image& compose(
+      const Camera& camera, const GlintConfig& config, const GlintPhase& phase, bool with_behind
+  );
+  void render_transmission(const Camera& camera, const GlintConfig& config, bool with_behind);
   void transmission_vjp(const Image& dL_dradiance, float dL_dalpha);
   void add_behind_depth(const Camera& camera, MapSet& out);
   void add_components(MapSet& out) const;

@@ -24,6 +24,20 @@ struct Rasterizer::State {
 
 namespace {
 
+void check_map(const char* name, const BorrowedImage& map, const Camera& camera) {
+  GLINT_CHECK(
+      map.empty() || (map.size() == camera.size() && map.channels() == 1),
+      kUsage,
+      "rasterize: {} is {}x{}x{}, expected the camera's {}x{}x1",
+      name,
+      map.size().width,
+      map.size().height,
+      map.channels(),
+      camera.width,
+      camera.height
+  );
+}
+
 void check_call(const RasterCall& call) {
   const RasterInput& input = call.input;
   GLINT_CHECK(
@@ -38,15 +52,8 @@ void check_call(const RasterCall& call) {
                            input.rotations.size() == 4 * n && input.opacities.size() == n &&
                            input.features.size() == n * input.channels;
   GLINT_CHECK(sizes_agree, kUsage, "rasterize: array sizes do not match {} surfels", n);
-  GLINT_CHECK(
-      input.near_limit.empty() || input.near_limit.size() == call.camera.size(),
-      kUsage,
-      "rasterize: near_limit is {}x{}, the camera {}x{}",
-      input.near_limit.size().width,
-      input.near_limit.size().height,
-      call.camera.width,
-      call.camera.height
-  );
+  check_map("near_limit", input.near_limit, call.camera);
+  check_map("needed", input.needed, call.camera);
 }
 
 void fit_output(const RasterCall& call, RasterOutput& out) {

@@ -45,6 +45,9 @@ struct RasterInput {
   Borrowed<float> opacities;  // [N] in [0, 1]
   Borrowed<float> features;   // [N][C]: colour after SH first, then extra channels
   BorrowedImage near_limit;   // optional [H][W][1]: only hits with z > limit count
+  // Optional [H][W][1]: nobody looks at pixels where it is 0. Whole tiles of them may count as if
+  // they had no surfels (on a GPU, all pixels are made).
+  BorrowedImage needed;
 };
 
 // One rasterisation. Borrowed arrays must stay where and what they are until its backward().

@@ -87,10 +87,10 @@ struct ForwardVisitor {
     for (int g = 0; g < kGroupsPerTile<T>; ++g) {
       sums[g].finish(pixels.final_transmittance(g), range);
       const auto store_map = [&](int width, const T* values, Image& map) {
-        for (int c = 0; c < width; ++c) store_pixels(tile, map, g, c, values[c]);
+        if (width > 0) store_pixels(tile, map.ref(), g, width, values);
       };
       for_each_map(
-          tile.call.maps(),
+          has(),
           [&](const char*, int width, const T* values, Image& map) {
             store_map(width, values, map);
           },
@@ -98,7 +98,7 @@ struct ForwardVisitor {
           out
       );
       for_each_kept_map(
-          tile.call.maps(),
+          has(),
           [&](int width, float, const T* values, Image& map) { store_map(width, values, map); },
           sums[g].kept,
           saved.kept
@@ -137,13 +137,15 @@ struct BackwardVisitor {
   }
 
   void load(const Image& map, int group, int width, float outside, T* values) const {
-    for (int c = 0; c < width; ++c)
-      values[c] = map.empty() ? T(0) : load_pixels<T>(tile, map, group, c, outside);
+    if (map.empty())
+      std::fill_n(values, width, T(0));
+    else if (width > 0)
+      load_pixels(tile, map.view(), group, width, outside, values);
   }
   void load_group(int g, const RasterOutput& out, const RasterOutputGradient& dL_dout) {
     PixelMaps<T, Code> maps;
     for_each_map(
-        tile.call.maps(),
+        has(),
         [&](const char*, int width, T* dL, T* values, const Image& dL_dmap, const Image& map) {
           load(dL_dmap, g, width, 0.0f, dL);
           load(map, g, width, 0.0f, values);
@@ -154,7 +156,7 @@ struct BackwardVisitor {
         out
     );
     for_each_kept_map(
-        tile.call.maps(),
+        has(),
         [&](int width, float empty, T* values, const Image& map) {
           load(map, g, width, empty, values);
         },

@@ -25,12 +25,12 @@ const RasterOutput& SurfelSet::forward(
 }
 
 const RasterOutput& SurfelSet::forward_again(
-    RasterPass& pass, RasterPass& first, const RasterSettings& settings, BorrowedImage near_limit
+    RasterPass& pass, RasterPass& first, const RasterSettings& settings, BorrowedImage needed
 ) const {
   pass.sh_degree = first.sh_degree;
   pass.of_first = &first.used();
   RasterCall call{raster_input(cloud_, pass.used()), first.rasterizer.call().camera, settings};
-  call.input.near_limit = near_limit;
+  call.input.needed = needed;
   return pass.rasterizer.forward(call, &first.rasterizer);
 }
 

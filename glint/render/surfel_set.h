@@ -49,11 +49,12 @@ class SurfelSet {
   // What `first` has just rasterised of this set, which nobody wrote since, once more: seen by the
   // same camera, with the same colours, which are not computed again, nor are the lists of surfels.
   // `first` must rasterise nothing else before this pass's backward().
+  // needed: see RasterInput.
   const RasterOutput& forward_again(
       RasterPass& pass,
       RasterPass& first,
       const RasterSettings& settings = {},
-      BorrowedImage near_limit = {}
+      BorrowedImage needed = {}
   ) const;
   // The same for rays, which must stay as they are until trace_backward().
   const TraceOutput& trace(const Rays& rays, int sh_degree, const TraceSettings& settings = {});

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "glint/core/simd.h"
+#include "glint/render/pixel_pass.h"
 #include "glint/render/raster_tiles.h"
 
 namespace glint {
@@ -63,6 +64,15 @@ struct TileContext {
 
   int x0() const { return tile_x * kTileSize; }
   int y0() const { return tile_y * kTileSize; }
+  // Whether anyone looks at one of its pixels.
+  bool is_needed() const {
+    const ImageView needed = call.input.needed.view();
+    if (needed.empty()) return true;
+    for (int y = y0(); y < std::min(y0() + kTileSize, size.height); ++y)
+      for (int x = x0(); x < std::min(x0() + kTileSize, size.width); ++x)
+        if (needed.at(x, y) != 0) return true;
+    return false;
+  }
   std::uint32_t list_begin() const { return lists.tile_begin[tile_y * lists.tiles_x + tile_x]; }
   std::uint32_t list_end() const { return lists.tile_begin[tile_y * lists.tiles_x + tile_x + 1]; }
 };
@@ -79,20 +89,30 @@ void for_each_lane(const TileContext& tile, int group, F&& f) {
     for (int i = 0; i < across; ++i) f(j * kAcross + i, x + i, y + j);
 }
 
-// Pixels of one group, gathered from and scattered to image rows; lanes outside the image get
-// `fill`.
+// One group's pixels of a map, [channels][lanes], gathered from and scattered to image rows; lanes
+// outside the image get `outside`.
 template <class T>
-T load_pixels(const TileContext& tile, const ImageView& image, int group, int channel, float fill) {
-  alignas(32) float lanes[kLanesOf<T>];
-  std::fill_n(lanes, kLanesOf<T>, fill);
-  for_each_lane<T>(tile, group, [&](int i, int x, int y) { lanes[i] = image.at(x, y, channel); });
-  return load_lanes<T>(lanes);
+void load_pixels(
+    const TileContext& tile, const ImageView& map, int group, int channels, float outside, T* values
+) {
+  alignas(32) float lanes[kMaxChannels][kLanesOf<T>];
+  for (int c = 0; c < channels; ++c) std::fill_n(lanes[c], kLanesOf<T>, outside);
+  for_each_lane<T>(tile, group, [&](int i, int x, int y) {
+    const float* pixel = map.pixel(x, y);
+    for (int c = 0; c < channels; ++c) lanes[c][i] = pixel[c];
+  });
+  for (int c = 0; c < channels; ++c) values[c] = load_lanes<T>(lanes[c]);
 }
 template <class T>
-void store_pixels(const TileContext& tile, Image& image, int group, int channel, T value) {
-  alignas(32) float lanes[kLanesOf<T>];
-  store_lanes(lanes, value);
-  for_each_lane<T>(tile, group, [&](int i, int x, int y) { image.at(x, y, channel) = lanes[i]; });
+void store_pixels(
+    const TileContext& tile, const ImageRef& map, int group, int channels, const T* values
+) {
+  alignas(32) float lanes[kMaxChannels][kLanesOf<T>];
+  for (int c = 0; c < channels; ++c) store_lanes(lanes[c], values[c]);
+  for_each_lane<T>(tile, group, [&](int i, int x, int y) {
+    float* pixel = map.pixel(x, y);
+    for (int c = 0; c < channels; ++c) pixel[c] = lanes[c][i];
+  });
 }
 
 // State of a tile's pixels while it is traversed.
@@ -113,7 +133,10 @@ struct TilePixels {
       transmittance[g] = select(inside, T(1), T(0));
       nearest[g] = T(tile.call.settings.near_plane);
       const ImageView limit = tile.call.input.near_limit.view();
-      if (!limit.empty()) nearest[g] = max_of(nearest[g], load_pixels<T>(tile, limit, g, 0, 0.0f));
+      if (limit.empty()) continue;
+      T behind;
+      load_pixels(tile, limit, g, 1, 0.0f, &behind);
+      nearest[g] = max_of(nearest[g], behind);
     }
   }
   T final_transmittance(int g) const { return abs_of(transmittance[g]); }
@@ -166,13 +189,14 @@ inline constexpr std::uint32_t kEntriesAhead = 8;  // that are prefetched
 
 // All hits of a tile, front to back. Visitor: groups(place), those to look at; begin(surfel),
 // room_for_hit() and hit(group, hit), end(place); skip(place) for those without such groups or
-// behind everything.
+// behind everything, and for all of a tile that nobody needs.
 template <class T, class Visitor>
 void for_each_hit(const TileContext& tile, TilePixels<T>& pixels, Visitor& visitor) {
   const std::uint32_t begin = tile.list_begin(), end = tile.list_end();
+  const std::uint32_t last = tile.is_needed() ? end : begin;
   std::uint64_t live = 0;
   std::uint32_t k = begin;
-  for (; k < end; ++k) {
+  for (; k < last; ++k) {
     if ((k - begin) % kEntriesPerLook == 0 && (live = pixels.live_groups()) == 0) break;
     const std::uint32_t surfel = tile.lists.entries[k];
     tile.prefetch(std::min(k + kEntriesAhead, end - 1));

@@ -86,6 +86,13 @@ TransparencyCues TransmissionLosses::cues(
   return cues;
 }
 
+// Of the set on its own, where nothing but labels looks at it. A GPU makes all of them anyway.
+BorrowedImage TransmissionLosses::needed_depths(const View& view, bool only_labels) {
+  if (!only_labels || on_gpu()) return {};
+  guidance_.mark_needed_depths(view.priors["albedo"], needed_);
+  return needed_;
+}
+
 // The release's plausibility: on opaque pixels, the set seen on its own is the interface.
 void TransmissionLosses::add_plausible(
     const View& view, const RasterOutput& out, const GlassBuffer& buffer, StepStats& stats
@@ -159,9 +166,11 @@ void TransmissionLosses::add(
   const bool guided = config_.lambda_transparency > 0 && iteration >= config_.transparency_from;
   const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
   if (guided || plausible || config_.has_direct()) {
-    const RasterOutput& direct = behind != nullptr
-                                     ? transmission.forward_again(pass_, *behind)
-                                     : transmission.forward(pass_, view.camera, sh_degree);
+    const bool only_labels = !plausible && !config_.has_direct();
+    const RasterOutput& direct =
+        behind != nullptr
+            ? transmission.forward_again(pass_, *behind, {}, needed_depths(view, only_labels))
+            : transmission.forward(pass_, view.camera, sh_degree);
     expected_depth_map(direct, direct_depth_);
     if (guided || plausible) guidance_.label(cues(view, interface, buffer), masks_);
     add_direct(view, iteration, weights, buffer, transmission, stats);

@@ -104,6 +104,7 @@ class TransmissionLosses {
 
  private:
   TransparencyCues cues(const View& view, const RasterOutput& interface, const GlassBuffer& buffer);
+  BorrowedImage needed_depths(const View& view, bool only_labels);
   void add_direct(
       const View& view,
       int iteration,
@@ -131,7 +132,7 @@ class TransmissionLosses {
   RasterPass pass_;
   RasterOutputGradient dL_ddirect_;
   TransparencyMasks masks_;
-  Image direct_depth_, cosine_, dL_ddepth_;
+  Image direct_depth_, cosine_, dL_ddepth_, needed_;
 };
 
 }  // namespace glint

@@ -48,6 +48,17 @@ double mean_bce(
 
 }  // namespace
 
+void TransparencyGuidance::mark_needed_depths(const Image& albedo, Image& needed) const {
+  if (kind != GuidanceKind::kL1 || albedo.empty()) {
+    needed = {};
+    return;
+  }
+  fit(needed, albedo.size(), 1);
+  run_kernel(
+      needed.num_pixels(), kGrain, MarkLowAlbedo{albedo.on_device(), low_albedo, needed.on_device()}
+  );
+}
+
 void TransparencyGuidance::label(const TransparencyCues& cues, TransparencyMasks& masks) const {
   const ImageSize size = cues.interface_depth.size();
   const bool is_bce = kind == GuidanceKind::kBce;

@@ -49,6 +49,8 @@ struct TransparencyGuidance {
   static TransparencyGuidance paper() { return {}; }
   static TransparencyGuidance release() { return {GuidanceKind::kBce, 0.005f}; }
 
+  // [H][W][1] 0 where labels do not depend on depths; empty: they may everywhere.
+  void mark_needed_depths(const Image& albedo, Image& needed) const;
   // Empty masks when a cue that the kind needs is missing.
   void label(const TransparencyCues& cues, TransparencyMasks& masks) const;
   TransparencyMasks masks(const TransparencyCues& cues) const {

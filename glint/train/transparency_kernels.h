@@ -25,6 +25,18 @@ struct LabelMaps {
   }
 };
 
+// 1 where kL1 may look at depths.
+struct MarkLowAlbedo {
+  ImageView albedo;
+  float low_albedo;
+  ImageRef marks;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const int x = static_cast<int>(i) % marks.width, y = static_cast<int>(i) / marks.width;
+    marks.at(x, y) = LabelMaps::mean_rgb(albedo, x, y) < low_albedo ? 1.0f : 0.0f;
+  }
+};
+
 struct LabelL1 {
   LabelMaps maps;
   float depth_threshold, low_albedo;

@@ -52,10 +52,14 @@ View perf_view(const std::string& name, const Vec3d& eye, const PerfOptions& opt
   for (std::size_t i = 0; i < normal.num_pixels(); ++i) normal.data()[3 * i + 2] = -1;
   Image& depth = view.priors["depth"] = Image(width, height, 1);
   for (float& value : depth.values()) value = rng.uniform(0.2f, 0.8f);
-  view.priors["albedo"] = view.priors["basecolor"] = Image(width, height, 3, 0.3f);
+  Image& albedo = view.priors["albedo"] = Image(width, height, 3, 0.3f);
+  view.priors["basecolor"] = albedo;
   Image& glass = view.priors["glass"] = Image(width, height, 1);
   for (int y = 0; y < height; ++y)
-    for (int x = width / 4; x < width - width / 4; ++x) glass.at(x, y) = 1;
+    for (int x = width / 4; x < width - width / 4; ++x) {
+      glass.at(x, y) = 1;
+      std::fill_n(albedo.pixel(x, y), 3, 0.0f);
+    }
   return view;
 }
 

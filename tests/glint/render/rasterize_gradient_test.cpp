@@ -7,10 +7,13 @@
 // width and add terms of both signs, which costs one to two digits.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "glint/render/rasterize.h"
+#include "glint/render/splat_hit.h"
 #include "tests/support/golden_surfel.h"
 #include "tests/support/gradcheck.h"
 
@@ -399,6 +402,62 @@ TEST_CASE("Without a surface, colours and the gradients of all arrays have the s
           without.first_surface(colors.alpha, {}, depth);
         }(),
         Catch::Contains("without a surface")
+    );
+  }
+}
+
+struct PixelAt {
+  int x, y;
+};
+// Pixels of the tiles that these lie in.
+std::vector<bool> pixels_of_tiles(ImageSize size, std::initializer_list<PixelAt> within) {
+  std::vector<bool> pixels(size.num_pixels());
+  for (const PixelAt& p : within)
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x)
+        if (x / kTileSize == p.x / kTileSize && y / kTileSize == p.y / kTileSize)
+          pixels[static_cast<std::size_t>(y) * size.width + x] = true;
+  return pixels;
+}
+
+TEST_CASE("Tiles that nobody needs are empty, all others and their gradients have the same bytes") {
+  const ImageSize size{28, 18};
+  Image needed(size.width, size.height, 1);
+  needed.at(7, 7) = needed.at(8, 17) = needed.at(27, 8) = 1;
+  const std::vector<bool> made = pixels_of_tiles(size, {{7, 7}, {8, 17}, {27, 8}});
+  for (const bool scalar : {true, false}) {
+    CAPTURE(scalar);
+    RandomSurfels options = smooth_surfels();
+    options.count = 200;
+    options.channels = 4;
+    Rng rng(37);
+    Case c;
+    c.camera = random_camera(rng, size);
+    c.surfels = random_surfels(options, c.camera, rng);
+    c.settings.scalar = scalar;
+    c.dL_doutput.features = random_weights(rng, made, size, options.channels);
+    Rasterizer all, some;
+    const RasterOutput& whole = all.forward({c.input(), c.camera, c.settings});
+    RasterInput input = c.input();
+    input.needed = needed;
+    const RasterOutput& parts = some.forward({input, c.camera, c.settings});
+    for_each_map(
+        all.call().maps(),
+        [&](const char* name, int channels, const Image& a, const Image& b) {
+          CAPTURE(name);
+          for (std::size_t i = 0; i < a.values().size(); ++i)
+            CHECK(a.data()[i] == (made[i / channels] ? b.data()[i] : 0.0f));
+        },
+        parts,
+        whole
+    );
+    const FloatArray& gradient = some.backward(c.dL_doutput).features;
+    CHECK(std::ranges::any_of(gradient, [](float g) { return g != 0; }));
+    CHECK(gradient == all.backward(c.dL_doutput).features);
+    input.needed = c.dL_doutput.features;
+    CHECK_THROWS_WITH(
+        some.forward({input, c.camera, c.settings}),
+        Catch::Contains("needed is 28x18x4, expected the camera's 28x18x1")
     );
   }
 }

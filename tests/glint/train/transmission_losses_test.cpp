@@ -104,6 +104,38 @@ TEST_CASE("Guidance draws t to 1 where the layers lie apart, from its iteration 
   CHECK(norm(f.transmission.gradient().means) == 0);  // the depths are constants
 }
 
+TEST_CASE("Guidance is what labels of the whole set make of it, also where few pixels are dark") {
+  Fixture f, whole;
+  for (Fixture* fixture : {&f, &whole})
+    for (int y = 0; y < kSize.height; ++y)
+      for (int x = 2; x < kSize.width; ++x)
+        std::fill_n(fixture->scene.train[0].priors["albedo"].pixel(x, y), 3, 0.5f);
+  const View& view = whole.scene.train[0];
+  const RasterOutput& out = whole.transmission.forward(view.camera, 0);
+  Image depth;
+  expected_depth_map(out, depth);
+  const TransparencyGuidance guidance = TransparencyGuidance::paper();
+  const TransparencyMasks masks =
+      guidance.masks({whole.buffer.depth, depth, view.priors["albedo"], {}, {}});
+  CHECK(masks.transparent.at(1, 4) == 1.0f);
+  CHECK(masks.transparent.at(2, 4) == 0.0f);
+  guidance.evaluate(whole.buffer.transparency, masks, 0.1f, whole.dL_dtransparency);
+  RasterPass& behind = f.transmission.pass();
+  f.transmission.forward(view.camera, 0);
+  f.add(only_guidance(), 10, &behind);
+  CHECK(f.dL_dtransparency.array() == whole.dL_dtransparency.array());
+}
+
+TEST_CASE("Only the paper's labels do without depths, where the albedo is not low") {
+  Image albedo(2, 1, 3, 0.02f), needed;
+  std::fill_n(albedo.pixel(1, 0), 3, 0.05f);
+  TransparencyGuidance::paper().mark_needed_depths(albedo, needed);
+  CHECK(needed.at(0, 0) == 1.0f);
+  CHECK(needed.at(1, 0) == 0.0f);
+  TransparencyGuidance::release().mark_needed_depths(albedo, needed);
+  CHECK(needed.empty());
+}
+
 TEST_CASE("Guidance draws t to 0 where the layers coincide") {
   Fixture f(2);
   f.add(only_guidance(), 10);
