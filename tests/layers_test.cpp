@@ -91,7 +91,7 @@ const std::vector<Layer>& layers() {
       {"reports/provenance/", below_reports({"records", "pictures", "bench", "provenance"})},
       {"reports/page/", below_reports({"records", "tables", "pictures", "page"})},
       {"reports/figures/",
-       below_reports({"records", "tables", "pictures", "bench", "page", "figures"})},
+       below_reports({"records", "tables", "pictures", "bench", "page", "perf", "figures"})},
       {"reports/import/", below_reports({"records", "pictures", "import"})},
       {"reports/perf/", below_reports({"records", "perf"})},
       {"reports/selftest/", below_reports({"records", "bench", "import", "selftest"})},

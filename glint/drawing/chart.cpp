@@ -33,30 +33,46 @@ Range with_room(Range range) {
   return {range.low - room, range.high + room};
 }
 
-bool is_point(const ChartSeries& series, std::size_t i) {
-  return std::isfinite(series.x[i]) && std::isfinite(series.y[i]);
+bool is_point(const Chart& chart, const ChartSeries& series, std::size_t i) {
+  const double x = series.x[i], y = series.y[i];
+  return std::isfinite(x) && std::isfinite(y) && (!chart.logarithmic || (x > 0 && y > 0));
 }
 
-bool has_points(const ChartSeries& series) {
+bool has_points(const Chart& chart, const ChartSeries& series) {
   for (std::size_t i = 0; i < series.x.size(); ++i)
-    if (is_point(series, i)) return true;
+    if (is_point(chart, series, i)) return true;
   return false;
 }
 
 struct Axis {
-  Range range;
+  Range range;  // of places
   std::vector<double> ticks;
   std::vector<std::string> labels;
+  bool logarithmic = false;
+
+  double place(double value) const { return logarithmic ? std::log10(value) : value; }
+  // From 0 at the low end to 1.
+  double share(double value) const { return (place(value) - range.low) / (range.high - range.low); }
 };
+
+// Each with the decimals that it needs itself.
+std::vector<std::string> log_labels(const std::vector<double>& ticks) {
+  std::vector<std::string> labels;
+  for (const double tick : ticks) labels.push_back(tick_labels({tick}).front());
+  return labels;
+}
 
 Axis axis_of(const Chart& chart, std::vector<double> ChartSeries::*values) {
   Axis axis;
+  axis.logarithmic = chart.logarithmic;
   for (const ChartSeries& series : chart.series)
     for (std::size_t i = 0; i < series.x.size(); ++i)
-      if (is_point(series, i)) axis.range.add((series.*values)[i]);
+      if (is_point(chart, series, i)) axis.range.add(axis.place((series.*values)[i]));
   axis.range = with_room(axis.range);
-  axis.ticks = round_ticks(axis.range.low, axis.range.high);
-  axis.labels = tick_labels(axis.ticks);
+  const double low = axis.range.low, high = axis.range.high;
+  axis.ticks =
+      chart.logarithmic ? log_ticks(std::pow(10, low), std::pow(10, high)) : round_ticks(low, high);
+  axis.labels = chart.logarithmic ? log_labels(axis.ticks) : tick_labels(axis.ticks);
   return axis;
 }
 
@@ -93,12 +109,8 @@ class ChartDrawing {
     return widest;
   }
 
-  double column(double x) const {
-    return field_.left + (x - x_.range.low) / (x_.range.high - x_.range.low) * field_.width;
-  }
-  double row(double y) const {
-    return field_.bottom() - (y - y_.range.low) / (y_.range.high - y_.range.low) * field_.height;
-  }
+  double column(double x) const { return field_.left + x_.share(x) * field_.width; }
+  double row(double y) const { return field_.bottom() - y_.share(y) * field_.height; }
 
   void draw_grid() {
     const auto line = [&](Point from, Point to) {
@@ -118,14 +130,14 @@ class ChartDrawing {
       piece.clear();
     };
     for (std::size_t i = 0; i < series.x.size() && !series.points; ++i)
-      if (is_point(series, i))
+      if (is_point(chart_, series, i))
         piece.push_back({column(series.x[i]), row(series.y[i])});
       else
         end_piece();
     end_piece();
     if (!has_dots(series)) return;
     for (std::size_t i = 0; i < series.x.size(); ++i)
-      if (is_point(series, i))
+      if (is_point(chart_, series, i))
         draw_series_dot(canvas_, {column(series.x[i]), row(series.y[i])}, style);
   }
 
@@ -158,8 +170,8 @@ class ChartDrawing {
 }  // namespace
 
 bool has_points(const Chart& chart) {
-  return std::any_of(chart.series.begin(), chart.series.end(), [](const ChartSeries& series) {
-    return has_points(series);
+  return std::any_of(chart.series.begin(), chart.series.end(), [&](const ChartSeries& series) {
+    return has_points(chart, series);
   });
 }
 

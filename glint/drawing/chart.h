@@ -19,6 +19,7 @@ struct ChartSeries {
 struct Chart {
   std::string x_label, y_label;
   std::vector<ChartSeries> series;
+  bool logarithmic = false;  // both axes; values that are not above 0 are left out
 };
 
 bool has_points(const Chart& chart);

@@ -47,6 +47,17 @@ std::vector<double> round_ticks(double low, double high) {
   return ticks;
 }
 
+std::vector<double> log_ticks(double low, double high) {
+  std::vector<double> all, powers;
+  for (double power = std::pow(10.0, std::floor(std::log10(low))); power <= high; power *= 10)
+    for (const double factor : {1.0, 2.0, 5.0})
+      if (const double tick = factor * power; tick >= low && tick <= high) {
+        all.push_back(tick);
+        if (factor == 1.0) powers.push_back(tick);
+      }
+  return powers.size() >= 3 ? powers : all;
+}
+
 std::vector<std::string> tick_labels(const std::vector<double>& ticks) {
   double largest = 0;
   for (const double tick : ticks) largest = std::max(largest, std::abs(tick));

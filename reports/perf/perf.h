@@ -79,6 +79,13 @@ void write_perf_scene(const PerfOptions& options, const fs::path& folder);
 // of the ops: the least of a few, after one to warm up.
 double seconds_of_step(const std::string& method, const Json& config, const PerfOptions& options);
 
+// The same step, and the memory that the method, its scene and its steps take at most, megabytes
+// (10^6 bytes): the process's highest less what it had before. Of the host only.
+struct StepCost {
+  double seconds = 0, memory_mb = 0;
+};
+StepCost cost_of_step(const std::string& method, const PerfOptions& options);
+
 Json perf_setting(const PerfOptions& options);  // with empty "rows"
 Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows);
 std::string perf_to_text(const PerfOptions& options, const std::vector<PerfRow>& rows);

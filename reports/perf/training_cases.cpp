@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <memory>
 
 #include "glint/core/files.h"
+#include "glint/core/machine.h"
 #include "glint/method.h"
 #include "glint/scene/ply.h"
 #include "glint/train/adam.h"
@@ -141,18 +143,36 @@ std::vector<PerfCase> training_cases(const PerfOptions& options) {
 
 }  // namespace
 
-double seconds_of_step(const std::string& method, const Json& config, const PerfOptions& options) {
+namespace {
+
+// The least of the runs, after one to warm up.
+double least_seconds(const PerfCase& timed, int runs) {
   using Clock = std::chrono::steady_clock;
-  const PerfCase timed = step_case(method, method, config, options);
   timed.run();
   double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < options.runs; ++i) {
+  for (int i = 0; i < runs; ++i) {
     const auto start = Clock::now();
     timed.run();
     synchronize();
     least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
   }
   return least;
+}
+
+}  // namespace
+
+double seconds_of_step(const std::string& method, const Json& config, const PerfOptions& options) {
+  return least_seconds(step_case(method, method, config, options), options.runs);
+}
+
+StepCost cost_of_step(const std::string& method, const PerfOptions& options) {
+  ::malloc_trim(0);  // what was freed before is not this method's
+  const double before = static_cast<double>(resident_memory_bytes()) / 1e6;
+  const PerfCase timed = step_case(method, method, Json::object(), options);
+  ::malloc_trim(0);
+  reset_peak_memory();
+  const double seconds = least_seconds(timed, options.runs);
+  return {seconds, peak_memory_mb() - before};
 }
 
 GLINT_REGISTER(PerfCases, {"training", training_cases})

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "reports/perf/perf.h"
+#include "reports/perf/scaling.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -23,12 +24,48 @@ void print_rows(
 struct PerfVerb {
   PerfOptions options;
   bool kernels = false;
-  std::string scene;  // folder to write to
+  std::string scene;    // folder to write to
+  std::string scaling;  // folder to write to
+  std::vector<std::size_t> scaling_surfels = ScalingOptions().surfels;
+  std::vector<std::string> scaling_sizes;  // "160x90"; none: those of ScalingOptions
 };
+
+ImageSize size_of(const std::string& text) {
+  int width = 0, height = 0, read = 0;
+  const int fields = std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &read);
+  GLINT_CHECK(
+      fields == 2 && static_cast<std::size_t>(read) == text.size() && width > 0 && height > 0,
+      kUsage,
+      "--scaling-sizes: '{}', expected WIDTHxHEIGHT in pixels, such as 160x90",
+      text
+  );
+  return {width, height};
+}
+
+// The folder gets scaling.json, and scaling.png where this build draws.
+void run_scaling_verb(const CommonOptions& common, const PerfVerb& verb) {
+  ScalingOptions options;
+  options.base = verb.options;
+  options.surfels = verb.scaling_surfels;
+  if (!verb.scaling_sizes.empty()) options.sizes.clear();
+  for (const std::string& size : verb.scaling_sizes) options.sizes.push_back(size_of(size));
+  const std::vector<ScalingSweep> sweeps = run_scaling(options);
+  GLINT_CHECK(!sweeps.empty(), kUsage, "--op '{}': no method has such an id", options.base.only);
+  const fs::path folder(verb.scaling);
+  const Json json = scaling_to_json(options, sweeps);
+  write_file(folder / "scaling.json", json.dump(2) + "\n");
+  if (draw_scaling.here()) draw_scaling(folder / "scaling.png", sweeps);
+  if (common.json)
+    print_json(json);
+  else
+    print_text(scaling_to_text(options, sweeps));
+}
 
 int run(const CommonOptions& common, const PerfVerb& verb) {
   const PerfOptions& options = verb.options;
-  if (!verb.scene.empty())
+  if (!verb.scaling.empty())
+    run_scaling_verb(common, verb);
+  else if (!verb.scene.empty())
     write_perf_scene(options, verb.scene);
   else if (verb.kernels)
     print_rows(common, options, run_kernel_times(options), kernels_to_json, kernels_to_text);
@@ -59,6 +96,16 @@ void add_perf_verb(CommandLine& line) {
       "--op", options->only, "only ops whose name matches a glob, or one of several: '2dgs*|glint*'"
   );
   verb->add_flag("--kernels", chosen->kernels, "time each kernel of the ops");
+  verb->add_option(
+      "--scaling",
+      chosen->scaling,
+      "only time steps of every method (or, with --op, of those whose ids match) against surfels "
+      "and "
+      "pixels; tables and picture into a folder"
+  );
+  verb->add_option("--scaling-surfels", chosen->scaling_surfels, "surfels of a set")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--scaling-sizes", chosen->scaling_sizes, "pixels, such as 160x90");
   verb->add_option("--write-scene", chosen->scene, "only write surfels and camera to a folder");
 }
 

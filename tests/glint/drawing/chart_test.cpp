@@ -49,6 +49,28 @@ Image grey(const Image& color) {
 
 }  // namespace
 
+TEST_CASE("on axes of logarithms, factors are distances, and nothing lies at or below 0") {
+  const auto sheet = [](const ChartSeries& series) {
+    ChartSheet log = sheet_of(series);
+    log.rows[0].charts[0].logarithmic = true;
+    return log;
+  };
+  CHECK(draw_charts(sheet({0, {-1, 0, 1}, {1, 1, 0}})).empty());
+  // The same dots for the same factors; numbers under the axis differ.
+  const Image a = draw_image(draw_charts(sheet({0, {1, 10, 1000}, {1, 10, 100}, true})));
+  const Image b = draw_image(draw_charts(sheet({0, {2, 20, 2000}, {1, 10, 100}, true})));
+  const Image with_zero =
+      draw_image(draw_charts(sheet({0, {1, 10, 1000, 0}, {1, 10, 100, 50}, true})));
+  REQUIRE(a.size() == b.size());
+  CHECK(count_blue(a) > 0);
+  for (int y = 0; y < a.height() / 2; ++y)
+    for (int x = 0; x < a.width(); ++x) {
+      const bool blue = a.at(x, y, 0) < 0.02f && a.at(x, y, 2) > 0.5f;
+      if (blue) CHECK(b.at(x, y, 0) < 0.1f);
+    }
+  CHECK(count_differing(a, with_zero) == 0);
+}
+
 TEST_CASE("a sheet without a finite point is empty, rows without one are left out") {
   CHECK(draw_charts({}).empty());
   CHECK(draw_charts(sheet_of({0, {1, kNan}, {kNan, 2}})).empty());

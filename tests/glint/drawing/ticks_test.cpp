@@ -26,6 +26,16 @@ TEST_CASE("there are two to seven ticks, whatever the range") {
     }
 }
 
+TEST_CASE("ticks of logarithms are powers of ten, or a few more where there are few of them") {
+  CHECK(log_ticks(900, 1.2e6) == std::vector<double>{1000, 10000, 100000, 1000000});
+  CHECK(log_ticks(8, 60) == std::vector<double>{10, 20, 50});
+  CHECK(log_ticks(1, 10) == std::vector<double>{1, 2, 5, 10});
+  CHECK(log_ticks(1.1, 1.9).empty());
+  const std::vector<double> small = log_ticks(0.0009, 0.3);
+  REQUIRE(small.size() == 3);
+  CHECK(small[0] == Approx(0.001));
+}
+
 TEST_CASE("labels of an axis have the same decimals") {
   CHECK(tick_labels({0, 0.5, 1, 1.5}) == Labels{"0.0", "0.5", "1.0", "1.5"});
   CHECK(tick_labels({18, 20, 22}) == Labels{"18", "20", "22"});
