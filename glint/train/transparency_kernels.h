@@ -156,6 +156,7 @@ struct TransparencyPriorAt {
 };
 
 using TransparencyKernels = KernelList<
+    MarkLowAlbedo,
     LabelL1,
     LabelBce,
     ErodeAndWeigh,

@@ -354,7 +354,8 @@ TEST_CASE("the colour bar has the colours of the pictures") {
     for (const int step : {1, 100, 255}) {
       const Image value(1, 1, 1, low + (high - low) * static_cast<float>(step) / 255);
       std::string hex = "#";
-      for (const float channel : layer_picture(*it, value, scale).values())
+      const Image color = layer_picture(*it, value, scale);
+      for (const float channel : color.values())
         hex += fmt::format("{:02x}", static_cast<int>(std::lround(channel * 255)));
       CHECK(layer["colors"][static_cast<std::size_t>(step)] == hex);
     }
