@@ -272,6 +272,16 @@ GLINT_REGISTER(
 GLINT_REGISTER(
     MethodSpec,
     glint_spec(
+        "glint/linear",
+        "GLINT (linear light)",
+        "",
+        "beyond the paper: the sets' light is added as linear values",
+        {{"linear_light", true}}
+    )
+)
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
         "glint/no-trans",
         "w/o G_trans",
         "w/o G_trans",

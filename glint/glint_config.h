@@ -21,6 +21,7 @@ struct GlintConfig {
   bool with_transmission = true, with_reflection = true;
   std::string transmission = "raster";
   float f0 = 0.04f;
+  bool linear_light = false;  // beyond the paper
   bool detach_origins = true;
   float secondary_near = 0;
   MirrorCutoffs mirror;
@@ -64,6 +65,7 @@ struct GlintConfig {
     v("with_reflection", with_reflection, "false: k_s counts as 0");
     v("transmission", transmission, "raster or trace");
     v("f0", f0, "reflectance at normal incidence");
+    v("linear_light", linear_light, "layers are added as linear, not as displayed values");
     v("detach_origins", detach_origins, "no gradient from reflections to the interface's depth");
     v("secondary_near", secondary_near, "metres behind the interface where transmission starts");
     mirror.visit(v);

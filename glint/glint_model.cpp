@@ -13,11 +13,17 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;  // pixels a block
 
-Image scaled_by_pixel(const Image& color, const Image& factor) {
-  Image result = color;
-  for (std::size_t i = 0; i < result.values().size(); ++i)
-    result.values()[i] *= factor.data()[i / 3];
-  return result;
+// The part of the picture that is `layer` times its weight by pixel.
+Image part_of_picture(
+    const Image& picture, const Image& layer, const Image& weight, bool linear_light
+) {
+  Image part = layer;
+  for (std::size_t i = 0; i < part.values().size(); ++i) {
+    const float w = weight.data()[i / 3];
+    float& value = part.values()[i];
+    value = linear_light ? displayed_part(picture.data()[i], value, w) : value * w;
+  }
+  return part;
 }
 
 // One value everywhere; 0 is an empty image, which counts as zero.
@@ -49,7 +55,8 @@ const Image& GlintModel::compose(
        .f0 = config.f0,
        .transmission = phase.transmission,
        .reflection = phase.reflection,
-       .detach_origins = config.detach_origins}
+       .detach_origins = config.detach_origins,
+       .linear_light = config.linear_light}
   );
   interface_output_ = &interface.forward(camera, phase.interface_degree);
   const GlassBuffer& buffer = transport_.read_interface(camera, *interface_output_);
@@ -140,13 +147,15 @@ void GlintModel::add_behind_depth(const Camera& camera, MapSet& out) {
 }
 
 // The shares of a pixel's radiance that came through the interface and that it mirrored.
-void GlintModel::add_components(MapSet& out) const {
+void GlintModel::add_components(bool linear_light, MapSet& out) const {
   Image through = buffer().transparency;
   for (std::size_t i = 0; i < through.num_pixels(); ++i)
     through.data()[i] *= 1 - buffer().specularity.data()[i];
-  if (phase_.transmission) out["transmitted"] = scaled_by_pixel(layers_.transmission, through);
-  if (phase_.reflection)
-    out["reflected"] = scaled_by_pixel(layers_.reflection, buffer().specularity);
+  const auto add = [&](MapId name, const Image& layer, const Image& weight) {
+    out[name] = part_of_picture(out["rgb"], layer, weight, linear_light);
+  };
+  if (phase_.transmission) add("transmitted", layers_.transmission, through);
+  if (phase_.reflection) add("reflected", layers_.reflection, buffer().specularity);
 }
 
 MapSet GlintModel::render(
@@ -165,7 +174,7 @@ MapSet GlintModel::render(
   else
     add_depth_estimates(*interface_output_, out);
   if (phase.reflection) out["reflection"] = layers_.reflection;
-  add_components(out);
+  add_components(config.linear_light, out);
   return out;
 }
 

@@ -53,7 +53,7 @@ class GlintModel {
   void render_transmission(const Camera& camera, const GlintConfig& config, bool with_behind);
   void transmission_vjp(const Image& dL_dradiance, float dL_dalpha);
   void add_behind_depth(const Camera& camera, MapSet& out);
-  void add_components(MapSet& out) const;
+  void add_components(bool linear_light, MapSet& out) const;
 
   Camera camera_;  // of the last forward call, as is the phase
   GlintPhase phase_;

@@ -25,6 +25,7 @@ struct GlassOptions {
   bool reflection = true;       // off: k_s counts as 0
   bool detach_origins = false;  // no gradient from reflections to the interface's depth
   bool fresnel = true;          // off: k_s = s, for methods without it
+  bool linear_light = false;    // layers are added as linear values, not as displayed ones
 };
 
 // Zero where there is no such map.
@@ -112,8 +113,12 @@ struct GlassInputs {
 
 struct ComposeGlass {
   GlassInputs in;
+  bool linear_light;
   float* image;
-  GLINT_HD void operator()(std::size_t i) const { put3(image, i, outgoing_radiance(in.at(i))); }
+  GLINT_HD void operator()(std::size_t i) const {
+    const GlassRadiance<float> p = in.at(i);
+    put3(image, i, linear_light ? outgoing_displayed(p) : outgoing_radiance(p));
+  }
 };
 
 struct ComposeGlassVjp {
@@ -123,7 +128,10 @@ struct ComposeGlassVjp {
   float *dL_dinterface, *dL_dtransmission, *dL_dreflection, *dL_dtransparency, *dL_dmirrored;
 
   GLINT_HD void operator()(std::size_t i) const {
-    const GlassRadiance<float> g = outgoing_radiance_vjp(in.at(i), map3(dL_dimage, i));
+    const GlassRadiance<float> p = in.at(i);
+    const Vec3f dL_dpixel = map3(dL_dimage, i);
+    const GlassRadiance<float> g = options.linear_light ? outgoing_displayed_vjp(p, dL_dpixel)
+                                                        : outgoing_radiance_vjp(p, dL_dpixel);
     put3(dL_dinterface, i, g.interface);
     put3(dL_dtransmission, i, g.transmission);
     put3(dL_dreflection, i, g.reflection);

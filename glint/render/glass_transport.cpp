@@ -87,7 +87,11 @@ GlassInputs GlassTransport::inputs(const GlassLayers& layers) const {
 
 const Image& GlassTransport::compose(const GlassLayers& layers) {
   fit(image_, buffer_.depth.size(), 3);
-  run_kernel(image_.num_pixels(), kGrain, ComposeGlass{inputs(layers), image_.on_device()});
+  run_kernel(
+      image_.num_pixels(),
+      kGrain,
+      ComposeGlass{inputs(layers), options_.linear_light, image_.on_device()}
+  );
   return image_;
 }
 

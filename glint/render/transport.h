@@ -4,6 +4,7 @@
 #pragma once
 
 #include "glint/core/vec.h"
+#include "glint/render/tone.h"
 
 namespace glint {
 
@@ -65,6 +66,41 @@ GLINT_HD GlassRadiance<T> outgoing_radiance_vjp(const GlassRadiance<T>& p, Vec3<
       p.mirrored * g,
       through * dot(g, p.transmission - p.interface),
       dot(g, p.reflection - base)};
+}
+
+// Beyond the paper: layers and picture are values as displayed (sRGB), and the layers' light is
+// added where light adds, in linear values. Where t and k_s are 0 nothing changes.
+template <class T>
+GLINT_HD GlassRadiance<T> in_linear_light(const GlassRadiance<T>& p) {
+  return {
+      linear_of_srgb(p.interface),
+      linear_of_srgb(p.transmission),
+      linear_of_srgb(p.reflection),
+      p.transparency,
+      p.mirrored};
+}
+template <class T>
+GLINT_HD Vec3<T> outgoing_displayed(const GlassRadiance<T>& p) {
+  return srgb_of_linear(outgoing_radiance(in_linear_light(p)));
+}
+template <class T>
+GLINT_HD GlassRadiance<T> outgoing_displayed_vjp(const GlassRadiance<T>& p, Vec3<T> g) {
+  const GlassRadiance<T> linear = in_linear_light(p);
+  const GlassRadiance<T> dL_dlinear =
+      outgoing_radiance_vjp(linear, srgb_of_linear_vjp(outgoing_radiance(linear), g));
+  return {
+      linear_of_srgb_vjp(p.interface, dL_dlinear.interface),
+      linear_of_srgb_vjp(p.transmission, dL_dlinear.transmission),
+      linear_of_srgb_vjp(p.reflection, dL_dlinear.reflection),
+      dL_dlinear.transparency,
+      dL_dlinear.mirrored};
+}
+// A layer's part of a displayed value, when its light has this weight in the sum (the metrics'
+// true components are made so, docs/RECORDS.md); 0 where the picture is black.
+template <class T>
+GLINT_HD T displayed_part(T picture, T layer, T weight) {
+  const T sum = linear_of_srgb(picture);
+  return sum > T(0) ? picture * (weight * linear_of_srgb(layer) / sum) : T(0);
 }
 
 }  // namespace glint

@@ -199,6 +199,22 @@ TEST_CASE("The picture is the sum of what the maps say of it") {
   CHECK(largest_difference(sum, out["rgb"]) < 1e-5f);
 }
 
+TEST_CASE("In linear light the parts of the picture are in the ratio of their light") {
+  const auto method = started({{"linear_light", true}});
+  for (int i = 0; i < kIterations; ++i) method->step(i);
+  const MapSet out = method->render(small_room().test.front().camera);
+  float worst = 0;
+  for (std::size_t i = 0; i < out["rgb"].values().size(); ++i) {
+    const float t = out["transparency"].values()[i / 3];
+    const float k = out["specularity"].values()[i / 3];
+    const float picture = out["rgb"].values()[i];
+    const float opaque = displayed_part(picture, out["interface"].values()[i], (1 - k) * (1 - t));
+    const float sum = opaque + out["transmitted"].values()[i] + out["reflected"].values()[i];
+    worst = std::max(worst, std::abs(sum - std::max(picture, 0.0f)));
+  }
+  CHECK(worst < 1e-4f);
+}
+
 TEST_CASE("Ablated sets leave no map behind") {
   const std::pair<const char*, MapId> ablations[] = {
       {"glint/no-trans", MapId("transmission")}, {"glint/no-refl", MapId("reflection")}};

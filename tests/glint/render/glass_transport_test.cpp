@@ -130,6 +130,15 @@ TEST_CASE("gradients reach colour, t, s, depth, alpha and normal of the interfac
   }
 }
 
+TEST_CASE("gradients reach them in linear light, too") {
+  Fixture f(7);
+  f.options.linear_light = true;
+  const RasterOutputGradient g = f.gradient();
+  f.check(&RasterOutput::features, g.features, "features");
+  f.check(&RasterOutput::depth_sum, g.depth_sum, "depth_sum");
+  f.check(&RasterOutput::normal, g.normal, "normal");
+}
+
 TEST_CASE("detached origins leave depth without gradient, and only that") {
   Fixture f(4);
   f.options.detach_origins = true;

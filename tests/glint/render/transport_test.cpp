@@ -73,10 +73,76 @@ TEST_CASE("mirrored_direction_vjp matches central differences") {
   );
 }
 
+namespace {
+
+GlassRadiance<double> unpack(const Vector& x) {
+  return {vec3(x, 0), vec3(x, 3), vec3(x, 6), x[9], x[10]};
+}
+Vector packed(const GlassRadiance<double>& r) {
+  Vector y;
+  for (const Vec3d& v : {r.interface, r.transmission, r.reflection}) push(y, v);
+  y.push_back(r.transparency);
+  y.push_back(r.mirrored);
+  return y;
+}
+
+}  // namespace
+
+TEST_CASE("the sRGB curve without a clamp is its inverse's inverse, and goes on beyond [0, 1]") {
+  for (const double value : {-0.3, 0.0, 0.02, 0.04, 0.2, 0.5, 1.0, 1.7})
+    CHECK(srgb_of_linear(linear_of_srgb(value)) == Approx(value).margin(1e-12));
+  CHECK(linear_of_srgb(0.5) == Approx(0.214041).epsilon(1e-5));  // [IEC 61966-2-1]
+  CHECK(linear_of_srgb(1.0) == Approx(1));
+  for (const double value : {-0.3, 0.02, 0.2, 0.7, 1.3}) {
+    check_vjp(
+        {value},
+        [](const Vector& x) { return Vector{srgb_of_linear(x[0])}; },
+        [](const Vector& x, const Vector& g) { return Vector{srgb_of_linear_vjp(x[0], g[0])}; }
+    );
+    check_vjp(
+        {value},
+        [](const Vector& x) { return Vector{linear_of_srgb(x[0])}; },
+        [](const Vector& x, const Vector& g) { return Vector{linear_of_srgb_vjp(x[0], g[0])}; }
+    );
+  }
+}
+
+TEST_CASE("in linear light a half of white is .735 as displayed, and a sheer pane changes nothing"
+) {
+  const GlassRadiance<double> half{{0, 0, 0}, {1, 1, 1}, {}, 0.5, 0};
+  CHECK(outgoing_displayed(half).x == Approx(0.735357).epsilon(1e-5));
+  const GlassRadiance<double> opaque{{0.2, 0.4, 0.9}, {0.9, 0.1, 0.3}, {0.5, 0.7, 0.2}, 0, 0};
+  CHECK(length(outgoing_displayed(opaque) - opaque.interface) == Approx(0).margin(1e-12));
+}
+
+TEST_CASE("parts of a displayed value are in the ratio of their light and add up to it") {
+  const GlassRadiance<double> p{{0.2, 0.4, 0.6}, {0.9, 0.1, 0.3}, {0.5, 0.7, 0.2}, 0.3, 0.15};
+  const double picture = outgoing_displayed(p).y;
+  const double opaque = displayed_part(picture, p.interface.y, 0.85 * 0.7);
+  const double through = displayed_part(picture, p.transmission.y, 0.85 * 0.3);
+  const double mirrored = displayed_part(picture, p.reflection.y, 0.15);
+  CHECK(opaque + through + mirrored == Approx(picture));
+  CHECK(
+      through / mirrored == Approx(0.85 * 0.3 * linear_of_srgb(0.1) / (0.15 * linear_of_srgb(0.7)))
+  );
+  CHECK(displayed_part(0.0, 0.0, 0.5) == 0.0);
+}
+
+TEST_CASE("outgoing_displayed_vjp matches central differences") {
+  check_vjp(
+      random_inputs(11, 0.1, 1, 4),
+      [&](const Vector& x) {
+        Vector y;
+        push(y, outgoing_displayed(unpack(x)));
+        return y;
+      },
+      [&](const Vector& x, const Vector& g) {
+        return packed(outgoing_displayed_vjp(unpack(x), vec3(g, 0)));
+      }
+  );
+}
+
 TEST_CASE("outgoing_radiance_vjp matches central differences") {
-  const auto unpack = [](const Vector& x) {
-    return GlassRadiance<double>{vec3(x, 0), vec3(x, 3), vec3(x, 6), x[9], x[10]};
-  };
   check_vjp(
       random_inputs(11, 0, 1, 3),
       [&](const Vector& x) {
@@ -85,12 +151,7 @@ TEST_CASE("outgoing_radiance_vjp matches central differences") {
         return y;
       },
       [&](const Vector& x, const Vector& g) {
-        const GlassRadiance<double> r = outgoing_radiance_vjp(unpack(x), vec3(g, 0));
-        Vector y;
-        for (const Vec3d& v : {r.interface, r.transmission, r.reflection}) push(y, v);
-        y.push_back(r.transparency);
-        y.push_back(r.mirrored);
-        return y;
+        return packed(outgoing_radiance_vjp(unpack(x), vec3(g, 0)));
       }
   );
 }

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# A profile on a real Slurm of one node, started here and stopped in the end: slurm_test.sh GLINT_BENCH
+# A profile on a real Slurm of one node, started here and stopped in the end:
+#   slurm_test.sh GLINT_BENCH [iterations (250) [patience (1)]]     patience: factor of how long is waited
 # One worker is killed with -9 in the middle, one task is told that its time is over and goes back into the
 # queue; trained files and scores are those of a run without a cluster. With slurmdbd and mariadbd jobs are
 # accounted, and `status` asks sacct, else squeue. 77: no Slurm here, or not root.
 set -euo pipefail
-bench=$(readlink -f "$1")
+bench=$(readlink -f "$1") iterations=${2:-250} patience=${3:-1}
 for program in slurmctld slurmd munged sbatch; do
   PATH=$PATH:/usr/sbin command -v $program >/dev/null || { echo "no $program: skipped"; exit 77; }
 done
@@ -106,7 +107,7 @@ for _ in $(seq 100); do sinfo -h -o %T 2>/dev/null | grep -q idle && break; slee
 daemons+=("$(cat "$folder/slurmd.pid")" "$(cat "$folder/slurmctld.pid")")
 sinfo -h -o %T | grep -q idle || skip "the node is not idle"
 
-common=(--profile smoke --methods "2dgs,envgs,glint,pgsr" --iterations 250 --device cpu --data "$folder/data"
+common=(--profile smoke --methods "2dgs,envgs,glint,pgsr" --iterations "$iterations" --device cpu --data "$folder/data"
   --checkpoint-seconds 0.5 --quiet)
 echo "== without a cluster"
 "$bench" all "${common[@]}" --out "$folder/local" >"$folder/local.out"
@@ -120,7 +121,7 @@ cat "$jobs"
 
 worker_of() { pgrep -f -- "run --executor inline .*--out $folder/slurm .*--cell room_1/$1/0 " | head -n 1; }
 wait_for() {  # METHOD: until it has a checkpoint; its worker
-  for _ in $(seq 600); do
+  for _ in $(seq $((600 * patience))); do
     if [ -f "$folder/slurm/smoke/runs/room_1/$1/0/checkpoint/state.safetensors" ] && [ -n "$(worker_of "$1")" ]; then
       worker_of "$1"
       return
@@ -141,7 +142,7 @@ done
 # Slurm keeps what was requeued back for two minutes, so that the end of the first try does not meet the second;
 # here five seconds will do.
 declare -A since
-for _ in $(seq 1800); do
+for _ in $(seq $((1800 * patience))); do
   [ -n "$(squeue -h)" ] || break
   for task in $(squeue -h -r -t PENDING -o '%i %r' | awk '$2 == "BeginTime" { print $1 }'); do
     since[$task]=${since[$task]:-$SECONDS}
