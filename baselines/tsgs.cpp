@@ -7,9 +7,9 @@
 // is that of the first surface instead of the last one before half the light is gone.
 //
 // Given: masks of the glass (prior folder diffrens/glass, else the dataset's truth), de-lighted
-// photos (diffrens/delight) and normals (diffrens/normal). Without one of them its part is off, and
-// warnings and notes say so. Test views are given their masks, too, as published: render_view()
-// looks at nothing else of a view. render() of a camera has no mask.
+// photos (diffrens/delight) and normals (diffrens/normal). At views without one of them its part is
+// off, and warnings and notes say so. Test views are given their masks, too, as published:
+// render_view() looks at nothing else of a view. render() of a camera has no mask.
 //
 // Deviations: those of PGSR here; the window of the first surface is in scene units like all else;
 // only glass is masked, not the background, which rooms have not: no loss on alpha; features of
@@ -156,7 +156,8 @@ class Tsgs final : public Method {
       start_lobes(config_.lobes);
     const View& view = model_.forward(iteration, stats);
     model_.add_losses(target_of(view, iteration), stats);
-    if (windows_.lambda_normal > 0 && iteration < windows_.normal_until)
+    if (windows_.lambda_normal > 0 && iteration < windows_.normal_until &&
+        view.priors.has("normal"))
       add_normal_prior(view, iteration, stats);
     model_.backward(stats);
     if (lobes_) lobes_->step(iteration, options_.iterations);
@@ -241,9 +242,9 @@ class Tsgs final : public Method {
 
   // The photo; in the first stage de-lighted on glass.
   const Image& target_of(const View& view, int iteration) {
-    const Image& mask = glass_mask(view);
-    if (!windows_.delighted || mask.empty() || iteration >= windows_.photo_from) return view.rgb;
-    const Image& delighted = view.priors[config_.delighted_map()];
+    const Image &mask = glass_mask(view), &delighted = view.priors[config_.delighted_map()];
+    const bool in_time = windows_.delighted && iteration < windows_.photo_from;
+    if (!in_time || mask.empty() || delighted.empty()) return view.rgb;
     check_fits("glass mask", mask, view.rgb.size(), 1);
     check_fits("de-lighted photo", delighted, view.rgb.size(), 3);
     fit(target_, view.rgb.size(), 3);

@@ -22,6 +22,21 @@ void find_side_maps(const fs::path& folder, ViewSource& view) {
   }
 }
 
+// Priors of the named views that are not there are none; of other views they are missing files.
+void leave_out_priors(std::set<std::string> names, const std::string& where, SceneIndex& index) {
+  for (ViewSource& view : index.views) {
+    if (names.erase(view.name) == 0) continue;
+    view.priors.for_each([](const MapRow&, fs::path& file) {
+      std::error_code code;
+      if (!fs::exists(file, code)) file.clear();
+    });
+  }
+  const std::string unknown = names.empty() ? "" : *names.begin();
+  GLINT_CHECK(
+      unknown.empty(), kBadReference, "{}: without_priors: no view is called {}", where, unknown
+  );
+}
+
 void split_by_names(const Json& test_views, const std::string& where, SceneIndex& index) {
   const std::string unknown = hold_out(test_views.get<std::set<std::string>>(), index.views);
   GLINT_CHECK(
@@ -56,6 +71,8 @@ void read_scene_json(const fs::path& folder, SceneIndex& index) {
     if (json.contains("test_views")) split_by_names(json["test_views"], path.string(), index);
     if (json.value("side_maps", false))
       for (ViewSource& view : index.views) find_side_maps(folder, view);
+    if (json.contains("without_priors"))
+      leave_out_priors(json["without_priors"], path.string(), index);
   } catch (const nlohmann::json::exception& error) {
     throw Error(
         ExitCode::kBadReference, fmt::format("{}: {}; write it again", path.string(), error.what())

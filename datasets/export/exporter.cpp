@@ -51,6 +51,22 @@ void check_folder(const fs::path& folder, bool force) {
   GLINT_CHECK(force, kUsage, "{}: holds an earlier export; --force replaces it", folder.string());
 }
 
+// Names of the views that lack a prior which another one has.
+std::vector<std::string> without_priors(const std::vector<ExportView>& views) {
+  std::vector<std::string> names;
+  const auto someone_has = [&](const MapRow& row) {
+    return std::any_of(views.begin(), views.end(), [&](const ExportView& view) {
+      return view.view->priors.has(row);
+    });
+  };
+  for (const ExportView& view : views)
+    if (std::any_of(maps().begin(), maps().end(), [&](const MapRow& row) {
+          return !view.view->priors.has(row) && someone_has(row);
+        }))
+      names.push_back(view.name);
+  return names;
+}
+
 void write_scene_json(
     const ExportInput& input, const ExporterSpec& exporter, const fs::path& folder
 ) {
@@ -59,6 +75,7 @@ void write_scene_json(
       {"name", scene.name},
       {"dataset", scene.dataset},
       {"simulated_priors", scene.simulated_priors},
+      {"without_priors", without_priors(input.views)},
       {"exported_by", kExportedBy},
       {"format", exporter.id},
       {"hash_of_source", scene.spec_hash},

@@ -2,6 +2,7 @@
 #include "datasets/glassroom/glassroom.h"
 
 #include <algorithm>
+#include <set>
 
 #include "datasets/glassroom/contact_sheet.h"
 #include "datasets/glassroom/glassroom_scene.h"
@@ -86,7 +87,7 @@ Image albedo_behind(const PathTracer& tracer, const Camera& camera) {
 // The options; of assets the content counts, not where they lie.
 Json spec_json(GlassRoomOptions options) {
   if (!options.assets.empty()) options.assets = asset_hash(options.assets);
-  return config_to_json(options);
+  return glassroom_json(options);
 }
 
 Json vector_json(Vec3f v) { return Json::array({v.x, v.y, v.z}); }
@@ -165,13 +166,15 @@ class SceneMaker {
             options.views,
             kSheetColumns,
             {kSheetTileWidth, std::max(1, kSheetTileWidth * options.height / options.width)}
-        ) {
+        ),
+        prior_model_(prior_level(options.priors)) {
     std::vector<Camera> train;
     for (int view = 0; view < options.views; ++view) {
       if (is_test_view(view)) continue;
       train.push_back(scene_->cameras[static_cast<std::size_t>(view)]);
       train_views_.push_back(view);
     }
+    choose_missing_priors();
     points_ = sfm_points(*scene_->tracer, train, sfm_model_, seed_);
     if (points_.size() < kFewestPoints) points_.clear();
     cloud_.positions.resize(points_.size());
@@ -193,14 +196,34 @@ class SceneMaker {
   }
 
  private:
+  // Their share is that of training views, and that of test views.
+  void choose_missing_priors() {
+    std::vector<int> test_views;
+    for (int view = 0; view < options_.views; ++view)
+      if (is_test_view(view)) test_views.push_back(view);
+    std::uint64_t stream = 0;
+    for (const std::vector<int>* views : {&train_views_, &test_views}) {
+      const int count = static_cast<int>(views->size());
+      for (const int i : views_without_priors(prior_model_, count, seed_, stream))
+        without_priors_.insert((*views)[static_cast<std::size_t>(i)]);
+      ++stream;
+    }
+  }
+
+  MapSet priors_of(int view, const PathTracerOutput& truth) const {
+    if (without_priors_.contains(view)) return {};
+    const Image behind =
+        albedo_behind(*scene_->tracer, scene_->cameras[static_cast<std::size_t>(view)]);
+    return simulate_priors(truth, behind, prior_model_, seed_, static_cast<std::uint64_t>(view));
+  }
+
   void make_view(int view) {
     const Camera& camera = scene_->cameras[static_cast<std::size_t>(view)];
     const auto stream = static_cast<std::uint64_t>(view);
     const int spp = options_.spp * (is_test_view(view) ? kTestSampleFactor : 1);
     const PathTracerOutput truth =
         scene_->tracer->render(camera, {.spp = spp, .seed = seed_, .view = stream});
-    const MapSet priors =
-        simulate_priors(truth, albedo_behind(*scene_->tracer, camera), prior_model_, seed_, stream);
+    const MapSet priors = priors_of(view, truth);
     write_view(folder_, view, truth, priors, exposure_);
     sheet_.add(view, truth, priors, exposure_);
     color_points(view, display_image(truth.radiance, exposure_));
@@ -217,9 +240,10 @@ class SceneMaker {
   }
 
   Json description() const {
-    std::vector<std::string> train, test;
+    std::vector<std::string> train, test, without_priors;
     for (int view = 0; view < options_.views; ++view)
       (is_test_view(view) ? test : train).push_back(view_name(view));
+    for (const int view : without_priors_) without_priors.push_back(view_name(view));
     return {
         {"name", options_.scene},
         {"dataset", "glassroom"},
@@ -231,7 +255,9 @@ class SceneMaker {
         {"render_seed", seed_},
         {"simulated_priors", true},
         {"priors_label", "simulated priors"},
+        {"prior_level", options_.priors},
         {"prior_model", config_to_json(prior_model_)},
+        {"without_priors", without_priors},
         {"sfm_model", config_to_json(sfm_model_)},
         {"num_points", points_.size()},
         {"exposure", exposure_},
@@ -256,6 +282,7 @@ class SceneMaker {
   PriorModel prior_model_;
   SfmModel sfm_model_;
   std::vector<int> train_views_;
+  std::set<int> without_priors_;  // views
   std::vector<SfmPoint> points_;
   PointCloud cloud_;
 };

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "datasets/glassroom/prior_levels.h"
 #include "glint/core/config.h"
 #include "glint/core/files.h"
 #include "glint/core/service.h"
@@ -21,6 +22,7 @@ struct GlassRoomOptions {
   int spp = 64;
   std::uint64_t seed = 0;  // varies the layout of the same recipe
   std::string assets;      // optional folder with glTF furniture; empty: procedural only
+  std::string priors = kDefaultPriorLevel;  // how good the simulated priors are (priors.h)
 
   template <class V>
   void visit(V&& v) {
@@ -31,11 +33,20 @@ struct GlassRoomOptions {
     v("spp", spp, "samples a pixel of a training view; test views get four times as many");
     v("seed", seed, "varies the layout");
     v("assets", assets, "folder with glTF furniture");
+    v("priors", priors, "perfect, good, default, poor, bad: how good the simulated priors are");
   }
 };
 
 inline constexpr const char* kGlassRoomElsewhere =
     "make and pack the scene with the full build (glint-bench dataset make, dataset pack)";
+
+// The options as keys and scene.json have them. Default priors are not named, as before there were
+// others.
+inline Json glassroom_json(const GlassRoomOptions& options) {
+  Json json = config_to_json(options);
+  if (options.priors == kDefaultPriorLevel) json.erase("priors");
+  return json;
+}
 
 // Hash of the options and of the generator's version: the cache key, written to scene.json.
 inline constinit Service<std::string(const GlassRoomOptions&)> glassroom_hash{

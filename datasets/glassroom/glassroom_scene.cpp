@@ -34,6 +34,7 @@ void check_options(const GlassRoomOptions& o) {
   in_range("height", o.height, 8, 8192);
   in_range("views", o.views, 2, 9999);
   in_range("spp", o.spp, 1, 1 << 20);
+  check_prior_level(o.priors, "glassroom");
 }
 
 Bounds container_bounds(const ContainerShape& shape, const Pose& pose) {

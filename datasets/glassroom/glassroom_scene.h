@@ -25,8 +25,8 @@ struct GlassRoomScene {
 
 // Layouts are tried one after the other, each from its own seed, until one settles upright and
 // gives a camera path with a glass share within [0.15, 0.40]. The scene is built in place because
-// the tracer refers to it. Errors (kUsage): unknown scene name, sizes out of range; (kEnvironment):
-// no layout in 16 worked.
+// the tracer refers to it. Errors (kUsage): unknown scene name or prior level, sizes out of range;
+// (kEnvironment): no layout in 16 worked.
 std::unique_ptr<GlassRoomScene> build_glassroom_scene(const GlassRoomOptions& options);
 
 // Radiance factor that brings the median luminance to `kMiddle`, lowered until at most

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "glint/core/rng.h"
@@ -54,8 +55,16 @@ float normal_quantile_above(float rate) {
   return static_cast<float>(low);
 }
 
+Image without_invalid(Image image, const std::vector<char>& valid) {
+  const auto channels = static_cast<std::size_t>(image.channels());
+  for (std::size_t i = 0; i < image.values().size(); ++i)
+    if (!valid[i / channels]) image.values()[i] = 0;
+  return image;
+}
+
 // Separable Gaussian; pixels where `valid` is false neither give nor get anything.
 Image blurred(const Image& image, float sigma, const std::vector<char>& valid) {
+  if (sigma == 0) return without_invalid(image, valid);
   const int radius = std::max(1, static_cast<int>(std::ceil(2.5f * sigma)));
   const auto pass = [&](const Image& in, bool horizontal) {
     Image out(in.width(), in.height(), in.channels());
@@ -101,13 +110,14 @@ class Simulation {
         rng_(seed, view),
         width_(truth.maps["depth"].width()),
         height_(truth.maps["depth"].height()),
-        sigma_(std::max(0.5f, model.blur * static_cast<float>(width_))) {
+        sigma_(model.blur > 0 ? std::max(0.5f, model.blur * static_cast<float>(width_)) : 0) {
     const SmoothField field = smooth_field(0.12f);
     const float threshold = normal_quantile_above(model.failure_rate);
     for_each_pixel([&](int x, int y) {
       valid_.push_back(truth.maps["depth"].at(x, y) > 0);
-      fails_.push_back(truth.maps["glass"].at(x, y) != 0 && field(x, y) > threshold);
+      fails_.push_back(is_glass(x, y) && field(x, y) > threshold);
     });
+    find_leaks(Rng(seed ^ hash_name("leaks of priors"), view));
   }
 
   Image normal() {
@@ -142,14 +152,38 @@ class Simulation {
     return z;
   }
 
-  Image color(const Image& first, float glass_low, float glass_high) {
+  Image albedo() {
+    return color(truth_.maps["albedo"], [&](int x, int y) -> std::optional<Tone> {
+      const bool leaks = leaks_[index(x, y)];
+      if (is_glass(x, y)) return leaks ? kPane : kDark;
+      return leaks ? std::optional(kDark) : std::nullopt;
+    });
+  }
+  Image basecolor() {
+    return color(truth_.maps["basecolor"], [&](int x, int y) {
+      return is_glass(x, y) ? std::optional(kBright) : std::nullopt;
+    });
+  }
+
+ private:
+  // Greys in the stored encoding.
+  struct Tone {
+    float low, high;
+  };
+  static constexpr Tone kDark{0, 0.036f}, kBright{0.82f, 0.93f}, kPane{0.3f, 0.8f};
+
+  // `tone_at`: what stands in for the colour of a pixel that does not fail; nothing: the colour
+  // stays.
+  template <class ToneAt>
+  Image color(const Image& first, ToneAt&& tone_at) {
     Image chosen = choose(first, behind_albedo_);
-    const SmoothField glass_tone = smooth_field(0.3f);
+    const SmoothField tone_field = smooth_field(0.3f);
     for_each_pixel([&](int x, int y) {
-      if (truth_.maps["glass"].at(x, y) == 0 || fails_[index(x, y)]) return;
-      const float t = std::clamp(0.5f + 0.25f * glass_tone(x, y), 0.0f, 1.0f);
-      const float tone = srgb_decode(std::lerp(glass_low, glass_high, t));
-      set_rgb(chosen, x, y, {tone, tone, tone});
+      const std::optional<Tone> tone = tone_at(x, y);
+      if (!tone || fails_[index(x, y)]) return;
+      const float t = std::clamp(0.5f + 0.25f * tone_field(x, y), 0.0f, 1.0f);
+      const float grey = srgb_decode(std::lerp(tone->low, tone->high, t));
+      set_rgb(chosen, x, y, {grey, grey, grey});
     });
     Image smooth = blurred(chosen, sigma_, valid_);
     const SmoothField error = smooth_field(0.15f);
@@ -166,14 +200,28 @@ class Simulation {
     return smooth;
   }
 
- private:
   template <class F>
   void for_each_pixel(F&& f) const {
     for (int y = 0; y < height_; ++y)
       for (int x = 0; x < width_; ++x) f(x, y);
   }
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * width_ + x); }
-  SmoothField smooth_field(float share) { return {share * static_cast<float>(width_), rng_}; }
+  SmoothField smooth_field(float share) { return smooth_field(share, rng_); }
+  SmoothField smooth_field(float share, Rng& rng) const {
+    return {share * static_cast<float>(width_), rng};
+  }
+  bool is_glass(int x, int y) const { return truth_.maps["glass"].at(x, y) != 0; }
+
+  void find_leaks(Rng rng) {
+    const SmoothField dark = smooth_field(0.12f, rng), bright = smooth_field(0.12f, rng);
+    const float dark_threshold = normal_quantile_above(model_.dark_leak);
+    const float bright_threshold = normal_quantile_above(model_.bright_leak);
+    for_each_pixel([&](int x, int y) {
+      leaks_.push_back(
+          is_glass(x, y) ? bright(x, y) > bright_threshold : dark(x, y) > dark_threshold
+      );
+    });
+  }
 
   // The first surface, or the one behind where the predictor fails.
   Image choose(ImageView first, ImageView behind) const {
@@ -209,10 +257,59 @@ class Simulation {
   Rng rng_;
   int width_, height_;
   float sigma_;
-  std::vector<char> valid_, fails_;
+  std::vector<char> valid_, fails_, leaks_;
 };
 
+PriorModel scaled_model(float noise, float failure_rate) {
+  PriorModel model;
+  for (float* error :
+       {&model.blur,
+        &model.sigma_normal_deg,
+        &model.sigma_scale,
+        &model.sigma_shift,
+        &model.bend,
+        &model.sigma_depth,
+        &model.sigma_color,
+        &model.sigma_pixel})
+    *error *= noise;
+  model.failure_rate = failure_rate;
+  return model;
+}
+
+struct LevelRates {
+  float noise, failure, missing = 0, dark_leak = 0, bright_leak = 0;
+};
+
+// In the order of kPriorLevels.
+constexpr std::array<LevelRates, kPriorLevels.size()> kLevelRates{
+    {{0, 0}, {0.5f, 0.05f}, {1, 0.1f}, {2, 0.2f, 0.1f, 0.02f, 0.1f}, {4, 0.4f, 0.3f, 0.1f, 0.3f}}};
+
 }  // namespace
+
+PriorModel prior_level(const std::string& name) {
+  check_prior_level(name, "glassroom");
+  const auto place = std::find(kPriorLevels.begin(), kPriorLevels.end(), name);
+  const LevelRates& rates = kLevelRates[static_cast<std::size_t>(place - kPriorLevels.begin())];
+  PriorModel model = scaled_model(rates.noise, rates.failure);
+  model.missing_rate = rates.missing;
+  model.dark_leak = rates.dark_leak;
+  model.bright_leak = rates.bright_leak;
+  return model;
+}
+
+std::vector<int> views_without_priors(
+    const PriorModel& model, int count, std::uint64_t seed, std::uint64_t stream
+) {
+  Rng rng(seed ^ hash_name("missing priors"), stream);
+  const double wanted = std::round(static_cast<double>(model.missing_rate) * count);
+  const int missing = std::clamp(static_cast<int>(wanted), 0, std::max(0, count - 1));
+  std::vector<int> views;
+  for (int i = 0; i < missing; ++i) {
+    const int begin = i * count / missing, end = (i + 1) * count / missing;
+    views.push_back(begin + static_cast<int>(rng.below(static_cast<std::uint32_t>(end - begin))));
+  }
+  return views;
+}
 
 MapSet simulate_priors(
     const PathTracerOutput& truth,
@@ -225,8 +322,8 @@ MapSet simulate_priors(
   MapSet priors;
   priors["normal"] = simulation.normal();
   priors["depth"] = simulation.depth();
-  priors["albedo"] = simulation.color(truth.maps["albedo"], 0.0f, 0.036f);
-  priors["basecolor"] = simulation.color(truth.maps["basecolor"], 0.82f, 0.93f);
+  priors["albedo"] = simulation.albedo();
+  priors["basecolor"] = simulation.basecolor();
   return priors;
 }
 

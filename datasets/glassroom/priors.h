@@ -4,7 +4,8 @@
 // "simulated_priors").
 //
 // The model, per view, with S(r) a smooth random field of wavelength r x image width, about
-// standard normal, and B a Gaussian blur of sigma = blur x image width (at least 0.5 pixels):
+// standard normal, and B a Gaussian blur of sigma = blur x image width (at least 0.5 pixels; none
+// where blur is 0):
 //   failures    patches of glass where the predictor looks through the pane: the field S(0.12)
 //   above
 //               the threshold that covers `failure_rate` of an infinite pane. In a patch all four
@@ -18,12 +19,28 @@
 //   albedo      B(albedo) * (1 + sigma_color S(0.15)) + sigma_pixel N per pixel; glass is nearly
 //               black, a value below 0.04.
 //   basecolor   the same on the base colour; glass is bright, 0.8 to 0.95.
-// Colours are stored as sRGB-encoded values.
+//   leaks       of the albedo alone, in patches S(0.12): opaque surface is as black as glass
+//               (`dark_leak` of it), glass is as bright as an opaque pane, 0.3 to 0.8
+//               (`bright_leak` of the glass that does not fail).
+//   missing     views of which nothing was predicted (`missing_rate` of them).
+// Colours are stored as sRGB-encoded values. Leaks and missing views draw random numbers of their
+// own, so that models without them give the same bytes as before there were any.
+//
+// Levels, by the factor of all noise (blur, sigmas, bend) and the rates:
+//             noise  failure  missing  dark_leak  bright_leak
+//   perfect     0      0        0        0          0          the truth but for glass and affine
+//   good        0.5    0.05     0        0          0
+//   default     1      0.1      0        0          0
+//   poor        2      0.2      0.1      0.02       0.1
+//   bad         4      0.4      0.3      0.1        0.3
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "datasets/glassroom/path_tracer.h"
+#include "datasets/glassroom/prior_levels.h"
 #include "glint/core/config.h"
 #include "glint/scene/scene.h"
 
@@ -35,6 +52,7 @@ struct PriorModel {
   float sigma_normal_deg = 5;
   float sigma_scale = 0.25f, sigma_shift = 0.3f, bend = 0.12f, sigma_depth = 0.012f;
   float sigma_color = 0.06f, sigma_pixel = 0.012f;
+  float missing_rate = 0, dark_leak = 0, bright_leak = 0;
 
   template <class V>
   void visit(V&& v) {
@@ -47,11 +65,24 @@ struct PriorModel {
     v("sigma_depth", sigma_depth, "relative smooth error of depth");
     v("sigma_color", sigma_color, "relative smooth error of albedo and base colour");
     v("sigma_pixel", sigma_pixel, "noise per pixel of albedo and base colour");
+    v("missing_rate", missing_rate, "share of views of which nothing was predicted");
+    v("dark_leak", dark_leak, "share of opaque surface whose albedo is as black as glass");
+    v("bright_leak", bright_leak, "share of glass whose albedo is that of an opaque pane");
   }
 };
 
-// `behind_albedo` [H][W][3]: linear albedo of the first opaque surface. Deterministic in (seed,
-// view). Sizes as in `truth`; normals are zero and depth is 0 where no surface was hit.
+// Of one of kPriorLevels. Errors: check_prior_level()'s.
+PriorModel prior_level(const std::string& name);
+
+// Which of `count` views the predictor left out, ascending: missing_rate of them, rounded, one in
+// each of as many stretches of equal length, and never all. Deterministic in (seed, stream).
+std::vector<int> views_without_priors(
+    const PriorModel& model, int count, std::uint64_t seed, std::uint64_t stream
+);
+
+// Of a view that is not missing. `behind_albedo` [H][W][3]: linear albedo of the first opaque
+// surface. Deterministic in (seed, view). Sizes as in `truth`; normals are zero and depth is 0
+// where no surface was hit.
 MapSet simulate_priors(
     const PathTracerOutput& truth,
     ImageView behind_albedo,

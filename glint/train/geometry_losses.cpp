@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "glint/render/map_ops.h"
 #include "glint/train/trainer.h"
@@ -28,15 +29,17 @@ void require_prior(
   const auto lacks = [&](const View& view) { return !view.priors.has(prior); };
   const auto missing = std::count_if(scene.train.begin(), scene.train.end(), lacks);
   if (weight == 0 || missing == 0) return;
-  weight = 0;
+  const bool all = missing == std::ssize(scene.train);
+  if (all) weight = 0;
   warnings.push_back(fmt::format(
-      "{}: {} has no {} prior for {} of {} training views; {} is off",
+      "{}: {} has no {} prior for {} of {} training views; {} is off{}",
       method,
       scene.name,
       prior.row().id,
       missing,
       scene.train.size(),
-      loss_name
+      loss_name,
+      all ? "" : " there"
   ));
 }
 
@@ -71,7 +74,7 @@ void GeometryLosses::add_depth_prior(
     const View& view, const Image& depth, Image& dL_ddepth, StepStats& stats
 ) {
   const float weight = config_.lambda_depth;
-  if (weight <= 0) return;
+  if (weight <= 0 || !view.priors.has("depth")) return;
   stats.terms["depth"] = static_cast<double>(weight) *
                          depth_prior_.evaluate(depth, view.priors["depth"], {}, weight, dL_ddepth);
 }
@@ -85,7 +88,7 @@ void GeometryLosses::add_normal_prior(
     StepStats& stats
 ) {
   const float weight = config_.lambda_normal;
-  if (weight <= 0) return;
+  if (weight <= 0 || !view.priors.has("normal")) return;
   normal_prior_.min_cosine =
       iteration >= config_.gate_from ? config_.min_cosine : NormalPriorLoss::kNoGate;
   const Image pixel_weight = config_.near_first ? inverse_depth_weight(depth) : Image{};

@@ -67,8 +67,8 @@ std::string prior_input(MapId prior);
 
 class GeometryLosses {
  public:
-  // `config` with windows of this run. A loss is off when a training view lacks its prior; returns
-  // a warning for each.
+  // `config` with windows of this run. A loss is off at views that lack its prior; returns a
+  // warning for each prior that a training view lacks.
   std::vector<std::string> set_up(
       const GeometryLossConfig& config, const Scene& scene, const std::string& method
   );
@@ -135,7 +135,7 @@ class GeometryLosses {
 // same losses, weights and gate, at the same share of the run.
 Json prior_control(int published_iterations);
 
-// Warns, and sets `weight` to 0, where it is not 0 and a training view lacks the prior.
+// Warns where `weight` is not 0 and training views lack the prior; sets it to 0 where all do.
 void require_prior(
     const Scene& scene,
     MapId prior,

@@ -72,6 +72,11 @@ float TransmissionLosses::add_opacity(int iteration, const Image& alpha, StepSta
   return -weight / static_cast<float>(alpha.num_pixels());
 }
 
+bool TransmissionLosses::has_cues(const View& view) const {
+  const bool needs_basecolor = guidance_.kind == GuidanceKind::kBce;
+  return view.priors.has("albedo") && (!needs_basecolor || view.priors.has("basecolor"));
+}
+
 TransparencyCues TransmissionLosses::cues(
     const View& view, const RasterOutput& interface, const GlassBuffer& buffer
 ) {
@@ -163,7 +168,8 @@ void TransmissionLosses::add(
     Image& dL_dtransparency,
     StepStats& stats
 ) {
-  const bool guided = config_.lambda_transparency > 0 && iteration >= config_.transparency_from;
+  const bool guided =
+      config_.lambda_transparency > 0 && iteration >= config_.transparency_from && has_cues(view);
   const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
   if (guided || plausible || config_.has_direct()) {
     const bool only_labels = !plausible && !config_.has_direct();

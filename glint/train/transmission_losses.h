@@ -75,7 +75,7 @@ struct TransmissionLossConfig {
 class TransmissionLosses {
  public:
   // `config` with windows of this run. Errors (kUsage): unknown kind of guidance. Guidance is off
-  // when a training view lacks the prior it needs; returns a warning for it.
+  // at views that lack a prior it needs; returns a warning where training views do.
   std::vector<std::string> set_up(
       const TransmissionLossConfig& config, const Scene& scene, const std::string& method
   );
@@ -103,6 +103,8 @@ class TransmissionLosses {
   );
 
  private:
+  // Whether the view has the priors that labels are made from.
+  bool has_cues(const View& view) const;
   TransparencyCues cues(const View& view, const RasterOutput& interface, const GlassBuffer& buffer);
   BorrowedImage needed_depths(const View& view, bool only_labels);
   void add_direct(

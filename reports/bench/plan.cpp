@@ -25,12 +25,13 @@ std::vector<PlanCell> make_plan(
     const Profile& profile, const CellFilter& filter, const std::vector<std::string>& assignments
 ) {
   const auto methods = planned_methods(profile.methods, filter.methods);
+  const CellFilter of_profile{.skip = profile.leave_out};
   std::vector<PlanCell> plan;
   for (const SceneSource& source : profile.sources())
     for (const std::string& method : methods)
       for (const std::uint64_t seed : profile.seeds) {
         PlanCell cell{{source.scene, method, seed}, source, {}};
-        if (!filter_accepts(filter, cell.cell)) continue;
+        if (!filter_accepts(filter, cell.cell) || !filter_accepts(of_profile, cell.cell)) continue;
         cell.config = method_overrides(profile, method, assignments);
         create_method(method, cell.config);  // unknown methods and fields stop here
         plan.push_back(std::move(cell));

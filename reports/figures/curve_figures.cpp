@@ -39,28 +39,6 @@ SceneRecords finished_runs(const std::vector<Record>& records, const MethodChoic
   return scenes;
 }
 
-// The index of a method, which is its place among those of the store.
-class Methods {
- public:
-  explicit Methods(const std::vector<Record>& records) : ids_(figure_methods(records)) {}
-  std::size_t index_of(const std::string& id) const {
-    return static_cast<std::size_t>(std::find(ids_.begin(), ids_.end(), id) - ids_.begin());
-  }
-  std::vector<std::string> titles() const {
-    std::vector<std::string> titles;
-    for (const std::string& id : ids_) titles.push_back(method_title(id));
-    return titles;
-  }
-
- private:
-  std::vector<std::string> ids_;
-};
-
-double metric_of(const Record& record, const std::string& id) {
-  const auto it = record.metrics.find(id);
-  return it == record.metrics.end() ? std::nan("") : it->second;
-}
-
 std::vector<double> numbers_of(const Json& array) {
   std::vector<double> numbers;
   for (const Json& value : array)
@@ -68,7 +46,9 @@ std::vector<double> numbers_of(const Json& array) {
   return numbers;
 }
 
-Chart training_chart(const MethodRecords& methods, const fs::path& folder, const Methods& all) {
+Chart training_chart(
+    const MethodRecords& methods, const fs::path& folder, const ChartMethods& all
+) {
   Chart chart{"iteration", "PSNR of training views (dB)", {}};
   for (const auto& [method, runs] : methods) {
     const fs::path log = run_folder(folder, runs.front()->cell) / "log.jsonl";
@@ -85,7 +65,7 @@ Chart scatter_chart(
     const MethodRecords& methods,
     const std::string& x_metric,
     const std::string& x_label,
-    const Methods& all
+    const ChartMethods& all
 ) {
   Chart chart{x_label, "PSNR of test views (dB)", {}};
   for (const auto& [method, runs] : methods) {
@@ -115,7 +95,7 @@ ChartSeries f1_series(const RecordPointers& runs, const char* prefix) {
   return series;
 }
 
-Chart f1_chart(const MethodRecords& methods, const char* prefix, const Methods& all) {
+Chart f1_chart(const MethodRecords& methods, const char* prefix, const ChartMethods& all) {
   Chart chart{"distance (cm)", "F1", {}};
   for (const auto& [method, runs] : methods)
     if (ChartSeries series = f1_series(runs, prefix); series.x.size() >= 2) {
@@ -130,7 +110,7 @@ Chart f1_chart(const MethodRecords& methods, const char* prefix, const Methods& 
 Drawing curves_figure(
     const std::vector<Record>& records, const fs::path& folder, const MethodChoice& choice
 ) {
-  const Methods all(records);
+  const ChartMethods all(records);
   ChartSheet sheet{{"training", "quality and time", "quality and size"}, {}, all.titles()};
   for (const auto& [scene, methods] : finished_runs(records, choice))
     sheet.rows.push_back(
@@ -143,7 +123,7 @@ Drawing curves_figure(
 }
 
 Drawing f1_figure(const std::vector<Record>& records, const MethodChoice& choice) {
-  const Methods all(records);
+  const ChartMethods all(records);
   ChartSheet sheet{{"mesh", "mesh behind glass"}, {}, all.titles()};
   for (const auto& [scene, methods] : finished_runs(records, choice))
     sheet.rows.push_back({scene, {f1_chart(methods, "", all), f1_chart(methods, kBehindMesh, all)}}

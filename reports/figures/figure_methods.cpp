@@ -2,6 +2,7 @@
 #include "reports/figures/figure_methods.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "reports/tables/tables.h"
@@ -38,6 +39,10 @@ bool MethodChoice::in_curves(const std::string& id) const {
   return globs.empty() ? !ablations.contains(id) : any_matches(globs, id);
 }
 
+bool MethodChoice::in_studies(const std::string& id) const {
+  return globs.empty() || any_matches(globs, id);
+}
+
 std::vector<std::string> figure_methods(const std::vector<Record>& records) {
   std::set<std::pair<bool, std::string>> methods;
   for (const Record& record : records)
@@ -45,6 +50,21 @@ std::vector<std::string> figure_methods(const std::vector<Record>& records) {
   std::vector<std::string> ids;
   for (const auto& [variant, id] : methods) ids.push_back(id);
   return ids;
+}
+
+std::size_t ChartMethods::index_of(const std::string& id) const {
+  return static_cast<std::size_t>(std::find(ids_.begin(), ids_.end(), id) - ids_.begin());
+}
+
+std::vector<std::string> ChartMethods::titles() const {
+  std::vector<std::string> titles;
+  for (const std::string& id : ids_) titles.push_back(method_title(id));
+  return titles;
+}
+
+double metric_of(const Record& record, const std::string& id) {
+  const auto it = record.metrics.find(id);
+  return it == record.metrics.end() ? std::nan("") : it->second;
 }
 
 }  // namespace glint

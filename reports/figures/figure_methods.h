@@ -18,10 +18,27 @@ struct MethodChoice {
 
   bool in_pictures(const std::string& id) const;
   bool in_curves(const std::string& id) const;
+  bool in_studies(const std::string& id) const;  // without globs: all that there are
 };
 
 // Every method with a finished record: methods, then variants, each by id. The place in the list is
 // the index of series_style().
 std::vector<std::string> figure_methods(const std::vector<Record>& records);
+
+// These, for charts.
+class ChartMethods {
+ public:
+  explicit ChartMethods(const std::vector<Record>& records) : ids_(figure_methods(records)) {}
+  const std::vector<std::string>& ids() const { return ids_; }
+  // Of series_style() and of ChartSheet::names.
+  std::size_t index_of(const std::string& id) const;
+  std::vector<std::string> titles() const;
+
+ private:
+  std::vector<std::string> ids_;
+};
+
+// Not a number: the record has none.
+double metric_of(const Record& record, const std::string& id);
 
 }  // namespace glint

@@ -7,6 +7,7 @@
 #include "reports/figures/figure_methods.h"
 #include "reports/figures/map_figures.h"
 #include "reports/figures/mesh_figure.h"
+#include "reports/figures/priors_figure.h"
 
 namespace glint {
 
@@ -22,6 +23,15 @@ void keep(const fs::path& png, const Drawing& drawing, std::vector<fs::path>& wr
   }
   write_drawing(png, drawing);
   written.push_back(png);
+}
+
+// The numbers of a figure, with it or not at all.
+void keep_numbers(const fs::path& file, const Json& numbers) {
+  std::error_code code;
+  if (numbers.is_null())
+    fs::remove(file, code);
+  else
+    write_file(file, numbers.dump(1) + "\n");
 }
 
 // With the methods for pictures only.
@@ -48,6 +58,8 @@ std::vector<fs::path> draw_figures(const FigureOptions& options) {
   keep(folder / "ablation.png", draw_grid(ablation_figure(all_scenes)), written);
   keep(folder / "curves.png", curves_figure(records, options.folder, choice), written);
   keep(folder / "f1.png", f1_figure(records, choice), written);
+  keep(folder / "priors.png", priors_figure(records, choice), written);
+  keep_numbers(folder / "priors.json", priors_table(records, choice));
   keep(folder / "meshes.png", draw_grid(meshes_figure(scenes)), written);
   return written;
 }

@@ -28,7 +28,8 @@ struct FigureOptions {
 };
 
 // FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves, f1,
-// meshes}.png, each with a PDF beside it; returns the PNGs of those that have something to show.
+// priors, meshes}.png, each with a PDF beside it; returns the PNGs of those that have something to
+// show. Beside priors.png lie its numbers, priors.json.
 // What is absent inside a figure says "missing"; scenes without data are left out of figures with
 // maps, with a warning.
 // Errors: those of read_records(), kUsage (no such scene or test view, a crop outside the view),

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/glassroom/prior_levels.h"
 #include "glint/core/config.h"
 #include "metrics/fusion/tsdf.h"
 #include "metrics/mesh/mesh_protocol.h"
@@ -23,6 +24,8 @@ struct SceneSource {
   int width = 160, height = 90, views = 64, spp = 128;  // glassroom
   std::uint64_t seed = 0;                               // glassroom: varies the layout
   std::string assets;                                   // glassroom: folder with glTF furniture
+  std::string room;                                     // glassroom; empty: `scene`
+  std::string priors = kDefaultPriorLevel;              // glassroom: one of kPriorLevels
 
   bool made() const { return folder.empty(); }
 
@@ -39,13 +42,16 @@ struct SceneSource {
     v("spp", spp, "samples a pixel");
     v("seed", seed, "varies the layout of a room");
     v("assets", assets, "folder with glTF furniture");
+    v("room", room, "room that is made, where the scene is called otherwise");
+    v("priors", priors, "how good simulated priors are: perfect, good, default, poor, bad");
   }
 };
 
 struct Profile {
   std::string name, description;
-  int iterations = 1000;             // of every method
-  std::vector<std::string> methods;  // ids
+  int iterations = 1000;               // of every method
+  std::vector<std::string> methods;    // ids
+  std::vector<std::string> leave_out;  // globs of cells, as of --skip, that are none of its
   std::vector<std::uint64_t> seeds{0};
   int timing_frames = 50, timing_warmup = 5;
   int gpus = 0;                        // that a cell asks a cluster for
@@ -60,6 +66,7 @@ struct Profile {
     v("description", description, "one line");
     v("iterations", iterations, "training steps");
     v("methods", methods, "method ids");
+    v("leave_out", leave_out, "globs of cells that it does not have, as of --skip");
     v("seeds", seeds, "seeds of training");
     v("timing_frames", timing_frames, "frames timed for FPS");
     v("timing_warmup", timing_warmup, "frames before the clock starts");
@@ -75,7 +82,7 @@ struct Profile {
   TsdfOptions tsdf_options() const;
   MeshProtocol mesh_protocol() const;
 
-  // Errors (kUsage): a scene without a name, an unknown field, a name twice.
+  // Errors (kUsage): a scene without a name, an unknown field or level of priors, a name twice.
   std::vector<SceneSource> sources() const;
 };
 

@@ -17,20 +17,22 @@ namespace {
 
 GlassRoomOptions glassroom_options(const SceneSource& source) {
   GlassRoomOptions options;
-  options.scene = source.scene;
+  options.scene = source.room.empty() ? source.scene : source.room;
   options.width = source.width;
   options.height = source.height;
   options.views = source.views;
   options.spp = source.spp;
   options.seed = source.seed;
   options.assets = source.assets;
+  options.priors = source.priors;
   return options;
 }
 
 // Named by its options alone: what other code makes of them takes its place.
 fs::path made_folder(const SceneSource& source, const fs::path& data_folder) {
-  const std::string hash = glassroom_hash(glassroom_options(source)).substr(0, 8);
-  return data_folder / source.dataset / fmt::format("{}-{}", source.scene, hash);
+  const GlassRoomOptions options = glassroom_options(source);
+  const std::string hash = glassroom_hash(options).substr(0, 8);
+  return data_folder / source.dataset / fmt::format("{}-{}", options.scene, hash);
 }
 
 fs::path folder_of(const SceneSource& source, const fs::path& data_folder) {
@@ -41,7 +43,7 @@ fs::path hash_cache(const fs::path& data_folder) { return data_folder / ".hashes
 
 // The options of a room. Of assets the content counts, not where they lie.
 Json room_json(const SceneSource& source, const fs::path& data_folder) {
-  Json json = config_to_json(glassroom_options(source));
+  Json json = glassroom_json(glassroom_options(source));
   if (!source.assets.empty()) json["assets"] = content_hash(source.assets, hash_cache(data_folder));
   return json;
 }

@@ -206,6 +206,10 @@ void add_make(CommandLine& line, CLI::App& dataset) {
   make.add_option("--views", room.views, "views along the camera path")->capture_default_str();
   make.add_option("--spp", room.spp, "samples a pixel")->capture_default_str();
   make.add_option("--assets", room.assets, "folder with glTF furniture");
+  make.add_option(
+          "--priors", room.priors, "how good simulated priors are: " + comma_list(prior_levels())
+  )
+      ->capture_default_str();
 }
 
 using FolderAction = int (*)(const CommonOptions&, const FolderOptions&);

@@ -161,6 +161,31 @@ TEST_CASE("scene.json names the dataset and the hash, and says that priors are s
   CHECK_THAT(folder.load_error(), Contains("scene.json"));
 }
 
+TEST_CASE("views may lack priors where scene.json says so, and nowhere else") {
+  const RoomFolder folder;
+  fs::remove_all(folder / "diffrens/normal/0003");
+  fs::remove_all(folder / "diffrens/depth/0003");
+  fs::remove_all(folder / "diffrens/depth/0004");
+  CHECK_THAT(folder.load_error(), Contains("0003"));
+  CHECK(check_dataset(folder.path()).size() == 3);
+  write_file(folder / "scene.json", R"({"without_priors": ["0003"]})");
+  CHECK_THAT(folder.load_error(), Contains("diffrens/depth/0004"));
+  write_file(folder / "scene.json", R"({"without_priors": ["0003", "0004", "0005"]})");
+  const Scene scene = load_scene(folder.path(), {});
+  REQUIRE(scene.train.size() == 8);
+  CHECK(scene.train[2].priors.empty());  // 0003
+  CHECK(scene.train[3].priors.has("normal"));
+  CHECK_FALSE(scene.train[3].priors.has("depth"));
+  CHECK(scene.train[4].priors.has("depth"));  // what is there is read
+  CHECK(scene.train[2].truth.has("depth"));
+  CHECK_THAT(describe_scene(scene), Contains("depth (6 views), normal (7 views)"));
+  CHECK(check_dataset(folder.path()).empty());
+  write_file(folder / "scene.json", R"({"without_priors": ["0042"]})");
+  CHECK_THAT(folder.load_error(), Contains("without_priors: no view is called 0042"));
+  write_file(folder / "scene.json", R"({"without_priors": 3})");
+  CHECK_THAT(folder.load_error(), Contains("scene.json"));
+}
+
 TEST_CASE("the hash of a scene changes with its cameras and is stable otherwise") {
   const RoomFolder folder;
   const std::string hash = load_scene(folder.path(), {}).spec_hash;

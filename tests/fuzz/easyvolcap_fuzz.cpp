@@ -54,7 +54,8 @@ std::vector<FuzzInput> scene_json_seeds() {
   return {
       {"split",
        R"({"name": "room_1", "dataset": "glassroom", "hash": "ab", "test_views": ["0001"]})"},
-      {"maps", R"({"name": "room_1", "simulated_priors": true, "side_maps": true})"}};
+      {"maps", R"({"name": "room_1", "simulated_priors": true, "side_maps": true})"},
+      {"no priors", R"({"simulated_priors": true, "without_priors": ["0000"]})"}};
 }
 
 }  // namespace

@@ -312,6 +312,19 @@ TEST_CASE("a scene without points and maps is exported without them") {
   }
 }
 
+TEST_CASE("a scene of which some views lack priors comes back as it is") {
+  Scene scene = room();
+  scene.train[2].priors = {};
+  scene.train[5].priors["depth"] = {};
+  scene.test[1].priors = {};
+  for (const auto& [id, exporter] : Registry<ExporterSpec>::all()) {
+    INFO(id);
+    const Exported exported(id, scene);
+    check_scene(scene, load_scene(exported.folder, {}), exporter);
+    CHECK(check_dataset(exported.folder).empty());
+  }
+}
+
 TEST_CASE("nerfstudio's file names depth where all views have it, and lists every split") {
   Scene scene = room();
   const auto transforms = [](const Exported& exported) {

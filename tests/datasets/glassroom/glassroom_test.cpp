@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <set>
@@ -179,6 +180,56 @@ TEST_CASE("The cache key follows the options and the assets' content") {
   const std::string first = glassroom_hash(options);
   write_file(temporary.path() / "assets" / "sofa.gltf", "{ }");
   CHECK(glassroom_hash(options) != first);
+}
+
+TEST_CASE("Priors count in the cache key, but for those that there have always been") {
+  GlassRoomOptions options = kTiny;
+  CHECK(glassroom_hash(options) == "816623b7038bb6f4");  // from before there was the option
+  CHECK_FALSE(glassroom_json(options).contains("priors"));
+  options.priors = "poor";
+  CHECK(glassroom_hash(options) != "816623b7038bb6f4");
+  CHECK(glassroom_json(options).at("priors") == "poor");
+}
+
+TEST_CASE("A room with worse priors is the same room, and loads without those that are missing") {
+  const QuietFolder temporary;
+  const fs::path usual = temporary.path() / "usual", bad = temporary.path() / "bad";
+  GlassRoomOptions options = kTiny;
+  make_glassroom(options, usual, false);
+  options.priors = "bad";
+  make_glassroom(options, bad, false);
+  const Json json = Json::parse(read_file(bad / "scene.json"));
+  CHECK(json["simulated_priors"] == true);
+  CHECK(json["prior_level"] == "bad");
+  CHECK(json["prior_model"]["missing_rate"].get<float>() == 0.3f);
+  REQUIRE(json["without_priors"].size() == 2);  // of seven training views, and of one test view
+  CHECK(check_dataset(bad).empty());
+  const Scene scene = load_scene(bad, {}), as_ever = load_scene(usual, {});
+  std::size_t missing = 0;
+  for (std::size_t i = 0; i < scene.train.size(); ++i) {
+    const View &view = scene.train[i], &same = as_ever.train[i];
+    CHECK(std::ranges::equal(view.rgb.values(), same.rgb.values()));
+    CHECK(std::ranges::equal(view.truth["depth"].values(), same.truth["depth"].values()));
+    CHECK_FALSE(same.priors.empty());
+    missing += view.priors.empty();
+    for (const MapId id : {MapId("normal"), MapId("depth"), MapId("albedo"), MapId("basecolor")})
+      CHECK(view.priors.has(id) == !view.priors.empty());
+  }
+  CHECK(missing == 2);
+}
+
+TEST_CASE("A level of priors that there is not is an error of the option") {
+  const QuietFolder temporary;
+  GlassRoomOptions options = kTiny;
+  options.priors = "worst";
+  try {
+    make_glassroom(options, temporary.path() / "x", false);
+    FAIL("made a room with such priors");
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::kUsage);
+    CHECK_THAT(error.what(), Catch::Contains("priors is 'worst'") && Catch::Contains("poor, bad"));
+  }
+  CHECK(num_entries(temporary.path()) == 0);
 }
 
 TEST_CASE("glTF furniture replaces the procedural pieces") {

@@ -8,9 +8,12 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/map_files.h"
+#include "glint/core/error.h"
 #include "glint/scene/image_files.h"
 
 using namespace glint;
@@ -49,7 +52,34 @@ struct Fake {
   MapSet priors(std::uint64_t view, const PriorModel& model = {}) const {
     return simulate_priors(truth, behind_albedo, model, 7, view);
   }
+  bool is_glass(int x, int y) const { return truth.maps["glass"].at(x, y) != 0; }
 };
+
+bool same_bytes(const Image& a, const Image& b) {
+  return a.size() == b.size() && a.values().size() == b.values().size() &&
+         std::memcmp(a.data(), b.data(), a.values().size() * sizeof(float)) == 0;
+}
+
+// Shares of pixels, of several views, whose albedo is black off glass and bright on it; away from
+// where blur mixes both kinds.
+struct Leaks {
+  double dark = 0, bright = 0;
+};
+Leaks leaks_of(const PriorModel& model, std::uint64_t num_views) {
+  const Fake fake;
+  int counts[2] = {0, 0}, totals[2] = {0, 0};
+  for (std::uint64_t view = 0; view < num_views; ++view) {
+    const Image albedo = fake.priors(view, model)["albedo"];
+    for (int y = 10; y < kHeight - 10; y += 5)
+      for (int x = 5; x < kWidth - 5; x += 5) {
+        const bool glass = fake.is_glass(x, y);
+        if (fake.is_glass(x - 5, y) != glass || fake.is_glass(x + 5, y) != glass) continue;
+        counts[glass] += glass ? albedo.at(x, y) > 0.25f : albedo.at(x, y) < 0.45f;
+        ++totals[glass];
+      }
+  }
+  return {static_cast<double>(counts[0]) / totals[0], static_cast<double>(counts[1]) / totals[1]};
+}
 
 double angle_deg(const Image& a, const Image& b, int x, int y) {
   double d = 0;
@@ -160,4 +190,124 @@ TEST_CASE("Priors are a function of seed and view") {
               c = fake.priors(3)["normal"];
   CHECK(std::equal(a.values().begin(), a.values().end(), b.values().begin()));
   CHECK_FALSE(std::equal(a.values().begin(), a.values().end(), c.values().begin()));
+}
+
+TEST_CASE("The default level is the default model, with the bytes that it has always had") {
+  CHECK(config_to_json(prior_level("default")) == config_to_json(PriorModel{}));
+  const Fake fake;
+  const MapSet now = fake.priors(5), level = fake.priors(5, prior_level("default"));
+  now.for_each([&](const MapRow& row, const Image& map) { CHECK(same_bytes(map, level[row])); });
+  // Sums of what was simulated before there were levels.
+  const auto sum = [&](MapId id) {
+    double total = 0;
+    for (const float value : now[id].values()) total += static_cast<double>(value);
+    return total;
+  };
+  CHECK(sum("normal") == Approx(-32541.67).epsilon(1e-6));
+  CHECK(sum("depth") == Approx(13649.106).epsilon(1e-6));
+  CHECK(sum("albedo") == Approx(38538.364).epsilon(1e-6));
+  CHECK(sum("basecolor") == Approx(72811.698).epsilon(1e-6));
+}
+
+TEST_CASE("Leaks of the albedo change nothing else") {
+  const Fake fake;
+  PriorModel model;
+  model.dark_leak = model.bright_leak = 0.5f;
+  const MapSet without = fake.priors(4), with = fake.priors(4, model);
+  without.for_each([&](const MapRow& row, const Image& map) {
+    INFO(row.id);
+    CHECK(same_bytes(map, with[row]) == (row.id != "albedo"));
+  });
+}
+
+TEST_CASE("Perfect priors are the truth but for the tones of glass and an affine depth") {
+  const Fake fake;
+  const MapSet priors = fake.priors(3, prior_level("perfect"));
+  const Image &z = fake.truth.maps["depth"], &prior = priors["depth"];
+  const auto [low, high] = [&] {
+    float least = 1e9f, most = 0;
+    for (const float value : z.values())
+      if (value > 0) least = std::min(least, value), most = std::max(most, value);
+    return std::pair(least, most);
+  }();
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const bool valid = z.at(x, y) > 0;
+      const float affine = 0.05f + 0.9f * (z.at(x, y) - low) / (high - low);
+      REQUIRE(prior.at(x, y) == Approx(valid ? affine : 0.0f).margin(1e-5));
+      for (int c = 0; c < 3; ++c) {
+        REQUIRE(
+            priors["normal"].at(x, y, c) ==
+            Approx(fake.truth.maps["normal"].at(x, y, c)).margin(1e-6)
+        );
+        for (const MapId id : {MapId("albedo"), MapId("basecolor")})
+          if (!fake.is_glass(x, y))
+            REQUIRE(
+                priors[id].at(x, y, c) ==
+                Approx(srgb_encode(fake.truth.maps[id].at(x, y, c))).margin(1e-5)
+            );
+      }
+      if (fake.is_glass(x, y)) REQUIRE(priors["albedo"].at(x, y) < 0.04f);
+    }
+}
+
+TEST_CASE("Levels are in order of their errors, and one that there is not is named") {
+  REQUIRE(prior_levels() == std::vector<std::string>{"perfect", "good", "default", "poor", "bad"});
+  Json before;
+  for (const std::string& name : prior_levels()) {
+    const Json model = config_to_json(prior_level(name));
+    for (const auto& [field, value] : model.items()) {
+      INFO(name << " " << field);
+      if (!before.is_null()) CHECK(value.get<float>() >= before.at(field).get<float>());
+      if (name == "perfect") CHECK(value.get<float>() == 0);
+    }
+    before = model;
+  }
+  CHECK(prior_level("good").sigma_normal_deg == 2.5f);
+  CHECK(prior_level("bad").bend == 4 * PriorModel{}.bend);
+  try {
+    prior_level("prefect");
+    FAIL("took a level that there is not");
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::kUsage);
+    CHECK_THAT(
+        error.what(),
+        Catch::Contains("priors is 'prefect'") && Catch::Contains("did you mean 'perfect'") &&
+            Catch::Contains("perfect, good, default, poor, bad")
+    );
+  }
+}
+
+TEST_CASE("Albedo leaks at the stated rates, to black off glass and to bright on it") {
+  PriorModel model;
+  model.failure_rate = 0;
+  const Leaks none = leaks_of(model, 2);
+  CHECK(none.dark == 0);
+  CHECK(none.bright == 0);
+  model.dark_leak = 0.1f;
+  model.bright_leak = 0.3f;
+  const Leaks some = leaks_of(model, 24);
+  CHECK(some.dark == Approx(0.1).margin(0.03));
+  CHECK(some.bright == Approx(0.3).margin(0.05));
+}
+
+TEST_CASE("As many views are missing as the model says, spread over the path, and never all") {
+  PriorModel model;
+  CHECK(views_without_priors(model, 42, 7, 0).empty());
+  model.missing_rate = 0.3f;
+  const std::vector<int> views = views_without_priors(model, 42, 7, 0);
+  CHECK(views == views_without_priors(model, 42, 7, 0));
+  CHECK(views != views_without_priors(model, 42, 8, 0));
+  CHECK(views != views_without_priors(model, 42, 7, 1));
+  REQUIRE(views.size() == 13);
+  CHECK(views.front() >= 0);
+  CHECK(views.back() < 42);
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    CHECK(views[i] > views[i - 1]);
+    CHECK(views[i] - views[i - 1] <= 7);
+  }
+  model.missing_rate = 1;
+  CHECK(views_without_priors(model, 6, 7, 0).size() == 5);
+  CHECK(views_without_priors(model, 1, 7, 0).empty());
+  CHECK(views_without_priors(model, 0, 7, 0).empty());
 }

@@ -286,6 +286,34 @@ TEST_CASE("The prior on t needs no rasterisation of the set") {
   CHECK(stats.terms.at("transparency prior") == Approx(std::log(2.0) + 0.5));
 }
 
+TEST_CASE("A view without priors guides nothing, and others go on") {
+  Fixture f;
+  f.scene.train.push_back(f.scene.train[0]);
+  f.scene.train[0].priors = {};
+  TransmissionLosses losses;
+  CHECK(losses.set_up(only_guidance(), f.scene, "test").size() == 1);
+  const auto terms_of = [&](const View& view) {
+    StepStats stats;
+    losses.add(
+        view,
+        10,
+        0,
+        kWeights,
+        f.interface,
+        f.buffer,
+        f.transmission,
+        nullptr,
+        f.dL_dtransparency,
+        stats
+    );
+    return stats.terms;
+  };
+  CHECK(terms_of(f.scene.train[0]).empty());
+  CHECK(norm(f.dL_dtransparency.values()) == 0);
+  CHECK(terms_of(f.scene.train[1]).contains("transparency"));
+  CHECK(norm(f.dL_dtransparency.values()) > 0);
+}
+
 TEST_CASE("Guidance is off, with a warning, where a view lacks the prior it needs") {
   Fixture f;
   TransmissionLossConfig config;
@@ -294,6 +322,12 @@ TEST_CASE("Guidance is off, with a warning, where a view lacks the prior it need
   const auto warnings = losses.set_up(config, f.scene, "test");
   REQUIRE(warnings.size() == 1);
   CHECK_THAT(warnings[0], Catch::Contains("no basecolor prior"));
+  f.scene.train.push_back(f.scene.train[0]);
+  f.scene.train.back().priors["basecolor"] = constant(3, 0.5f);
+  CHECK_THAT(
+      losses.set_up(config, f.scene, "test").at(0),
+      Catch::Contains("no basecolor prior for 1 of 2 training views; L_trans is off there")
+  );
   config.guidance = "sideways";
   CHECK_THROWS_WITH(losses.set_up(config, f.scene, "test"), Catch::Contains("sideways"));
 }

@@ -74,6 +74,19 @@ TEST_CASE("time is estimated for the stages to do, from finished cells of the sa
   CHECK(!estimated_seconds(cell, {b}, {"train"}));
 }
 
+TEST_CASE("a profile may do without some of its cells, also when they are asked for") {
+  Profile profile = fake_profile();
+  const std::size_t all = make_plan(profile, {}, {}).size();
+  profile.leave_out = {"room_1/fake/*"};
+  const auto plan = make_plan(profile, {}, {});
+  CHECK(plan.size() < all);
+  for (const PlanCell& cell : plan)
+    CHECK_FALSE((cell.cell.scene == "room_1" && cell.cell.method == "fake"));
+  CHECK_THROWS_WITH(
+      make_plan(profile, {{"room_1/fake/0"}, {}}, {}), Catch::Contains("no cell left")
+  );
+}
+
 TEST_CASE("every built-in profile is valid") {
   for (const std::string& name : embedded_names("profiles")) {
     const Profile profile = load_profile(name);
@@ -81,6 +94,16 @@ TEST_CASE("every built-in profile is valid") {
     CHECK_FALSE(profile.methods.empty());
     CHECK_FALSE(profile.description.empty());
   }
+}
+
+TEST_CASE("the profile of priors has each level of one room, under its name") {
+  std::vector<std::string> levels;
+  for (const SceneSource& source : load_profile("priors").sources()) {
+    CHECK(source.room == "room_4");
+    CHECK(source.priors == source.scene);
+    levels.push_back(source.priors);
+  }
+  CHECK(levels == prior_levels());
 }
 
 TEST_CASE("a profile file of the user's is read, and its mistakes are named") {
@@ -93,7 +116,12 @@ TEST_CASE("a profile file of the user's is read, and its mistakes are named") {
   CHECK_THROWS_WITH(load_profile(file.string()), Catch::Contains("no field 'method'"));
   write_file(file, "scenes = ['a', 'a']\n");
   CHECK_THROWS_WITH(load_profile(file.string()), Catch::Contains("stands there twice"));
+  write_file(file, "scenes = [{scene = 'a', priors = 'porr'}]\n");
+  CHECK_THROWS_WITH(
+      load_profile(file.string()),
+      Catch::Contains("scene 'a': priors is 'porr'") && Catch::Contains("did you mean 'poor'")
+  );
   write_file(file, "scenes = [\n");
   CHECK_THROWS_WITH(load_profile(file.string()), Catch::Contains("mine.toml:"));
-  CHECK_THROWS_WITH(load_profile("nope"), Catch::Contains("ci, paper, small, smoke"));
+  CHECK_THROWS_WITH(load_profile("nope"), Catch::Contains("ci, paper, priors, small, smoke"));
 }

@@ -130,6 +130,7 @@ TEST_CASE("every field of a profile changes the keys that go by it and no other"
       {"description", {[](Profile& p) { p.description = "other"; }, kNone, ""}},
       {"iterations", {[](Profile& p) { p.iterations += 1; }, kTrain, "iterations"}},
       {"methods", {[](Profile& p) { p.methods.push_back("fake/other"); }, kNone, ""}},
+      {"leave_out", {[](Profile& p) { p.leave_out = {"room_9"}; }, kNone, ""}},
       {"seeds", {[](Profile& p) { p.seeds = {1}; }, kTrain, "seed"}},
       {"timing_frames", {[](Profile& p) { p.timing_frames += 1; }, kScore, "timing_frames"}},
       {"timing_warmup", {[](Profile& p) { p.timing_warmup += 1; }, kScore, "timing_warmup"}},
@@ -218,7 +219,9 @@ TEST_CASE("every field of a room counts, where it lies and what it is called do 
       {"views", {65, true}},
       {"spp", {129, true}},
       {"seed", {1, true}},
-      {"assets", {(data.path() / "furniture").string(), true}}};
+      {"assets", {(data.path() / "furniture").string(), true}},
+      {"room", {"room_2", true}},
+      {"priors", {"poor", true}}};
   SceneSource base;
   base.dataset = "glassroom";
   base.scene = "room_1";
@@ -232,8 +235,23 @@ TEST_CASE("every field of a room counts, where it lies and what it is called do 
     config_from_json(changed, {{name, value}}, "test");
     const auto lines = stage_differences(before, identify_source(changed, data.path()).document);
     CHECK(lines.size() == (counts ? 1 : 0));
-    if (counts && !lines.empty()) CHECK(lines[0].starts_with("scene." + name + " "));
+    // The room is what it is made from, whatever the scene is called.
+    const std::string field = name == "room" ? "scene" : name;
+    if (counts && !lines.empty()) CHECK(lines[0].starts_with("scene." + field + " "));
   });
+}
+
+TEST_CASE("a room under another name, with the priors there have always been, is that room") {
+  const test::TempFolder data;
+  SceneSource base;
+  base.dataset = "glassroom";
+  base.scene = "room_1";
+  const Json before = identify_source(base, data.path()).document;
+  CHECK_FALSE(before.at("scene").contains("priors"));
+  SceneSource variant = base;
+  variant.scene = "default";
+  variant.room = "room_1";
+  CHECK(identify_source(variant, data.path()).document == before);
 }
 
 TEST_CASE("of a folder its files count, not its name") {

@@ -58,6 +58,34 @@ TEST_CASE("an export needs a folder, a format and a scene") {
   CHECK_FALSE(fs::exists(out));
 }
 
+TEST_CASE("dataset make takes a level of priors, and no other word") {
+  const TempFolder folder;
+  const auto make = [&](const std::string& priors) {
+    return run(
+        {"dataset",
+         "make",
+         "glassroom",
+         "--out",
+         folder / priors,
+         "--priors",
+         priors,
+         "--quiet",
+         "--width",
+         "32",
+         "--height",
+         "18",
+         "--views",
+         "8",
+         "--spp",
+         "1"}
+    );
+  };
+  CHECK(make("awful") == 1);
+  CHECK_FALSE(fs::exists(folder / "awful"));
+  REQUIRE(make("poor") == 0);
+  CHECK(Json::parse(read_file(folder / "poor/scene.json"))["prior_level"] == "poor");
+}
+
 TEST_CASE("dataset info says the format, the split's rule and the test views") {
   const std::string room = small_room_folder().string();
   CHECK_THAT(

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Names of the strengths of GlassRoom's simulated priors. priors.h says what they stand for.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "glint/core/error.h"
+#include "glint/core/nearest.h"
+
+namespace glint {
+
+inline constexpr const char* kDefaultPriorLevel = "default";
+// From the strongest priors to the weakest.
+inline constexpr std::array kPriorLevels{"perfect", "good", kDefaultPriorLevel, "poor", "bad"};
+
+inline std::vector<std::string> prior_levels() {
+  return {kPriorLevels.begin(), kPriorLevels.end()};
+}
+
+// Errors (kUsage): no such level; `where` and the field open the message, which lists the levels.
+inline void check_prior_level(const std::string& name, const std::string& where) {
+  const std::vector<std::string> known = prior_levels();
+  GLINT_CHECK(
+      std::find(known.begin(), known.end(), name) != known.end(),
+      kUsage,
+      "{}: priors is '{}'; {}expected one of {}",
+      where,
+      name,
+      did_you_mean(name, known),
+      comma_list(known)
+  );
+}
+
+}  // namespace glint
