@@ -25,8 +25,12 @@ records=${records:-docs/results/$name.jsonl}
 mkdir -p "$work" "$(dirname "$records")"
 touch "$records"
 work=$(readlink -f "$work")
-cp "$bench" "$work/glint-bench.new" && mv "$work/glint-bench.new" "$work/glint-bench"  # not what is built meanwhile
-bench=$work/glint-bench
+# Not what is built meanwhile; lib/ has the module that makes the meshes.
+rm -rf "$work/bin" "$work/lib"
+mkdir -p "$work/bin" "$work/lib"
+cp "$bench" "$work/bin/"
+cp "$(dirname "$bench")"/../lib/*.so "$work/lib/" || { echo "no meshes without $(dirname "$bench")/../lib: build with Open3D" >&2; exit 6; }
+bench=$work/bin/glint-bench
 common=(--profile "$profile" --out "$work/out" --data "$work/data")
 
 # has FILE CELL [TEXT]: FILE has a record of scene/method/seed, with TEXT.

@@ -12,6 +12,7 @@
 #include "glint/cuda/require_gpu.h"
 #include "glint/drawing/canvas.h"
 #include "metrics/feature_net.h"
+#include "metrics/fusion/tsdf_volume.h"
 #include "metrics/lpips_weights.h"
 #include "reports/figures/figures.h"
 #include "reports/provenance/examine_machine.h"
@@ -88,6 +89,17 @@ Checked lpips_weights() {
   return {"lpips", CheckState::kNote, text, "not the published weights: values stand alone"};
 }
 
+// The module that fuses depth into meshes lies in lib/ beside the program's folder; a program that
+// was copied alone has none.
+Checked meshes() {
+  if (has_tsdf_volume()) return good("meshes", "Open3D");
+  return {
+      "meshes",
+      CheckState::kNote,
+      "no lib/libglint_tsdf.so beside the program's folder: mesh columns will say 'no Open3D'",
+      "install libopen3d-dev and build again, or copy lib/ with bin/"};
+}
+
 // Of figures. Another font is no failure: only their look differs.
 Checked font() {
   const std::string found = figures_font.here() ? figures_font() : "";
@@ -130,6 +142,7 @@ std::vector<Checked> examine(const CommonOptions& common) {
       cuda(),
       good("networks", feature_net_libraries()),
       lpips_weights(),
+      meshes(),
       font(),
       good("revision", git_revision())};
 }
