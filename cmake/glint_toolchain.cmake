@@ -8,8 +8,8 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
-# One instruction set for the whole project (no function is compiled twice with different flags):
-# AVX2 + FMA. No contraction: forward and backward passes must round alike. No -ffast-math.
+# One instruction set for the whole project, but for one file that is chosen at run time
+# (glint/render/raster_wide.cpp): AVX2 + FMA. No contraction: forward and backward passes must round alike. No -ffast-math.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-march=x86-64-v3>)
 endif()

@@ -42,13 +42,13 @@ void project_lanes(
 }
 
 void project_all(
-    const RasterInput& input, const CameraOf<float>& camera, bool scalar, TileLists& lists
+    const RasterInput& input, const CameraOf<float>& camera, bool with_lanes, TileLists& lists
 ) {
   lists.splats.resize(input.count);
   lists.boxes.resize(input.count);
   parallel_for_blocks(input.count, kGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t i = begin;
-    if (!scalar)
+    if (with_lanes)
       for (; i + 8 <= end; i += 8) project_lanes<Float8>(input, camera, i, lists);
     for (; i < end; ++i) project_lanes<float>(input, camera, i, lists);
   });
@@ -162,7 +162,7 @@ template SurfelGeometry<Float8> load_geometry(const RasterInput&, std::size_t);
 void build_tile_lists(const RasterCall& call, TileLists& lists) {
   lists.tiles_x = (call.camera.width + kTileSize - 1) / kTileSize;
   lists.tiles_y = (call.camera.height + kTileSize - 1) / kTileSize;
-  project_all(call.input, camera_of(call), call.settings.scalar, lists);
+  project_all(call.input, camera_of(call), call.settings.lanes > 1, lists);
   sort_by_depth(lists);
   list_tiles(lists);
 }

@@ -32,7 +32,9 @@ struct RasterSettings {
   bool with_surface = true;
   // Also owned_pixels and radii of the output and screen_abs of the gradient.
   bool with_statistics = false;
-  bool scalar = false;  // on the CPU: without SIMD lanes, the same text (for perf and tests)
+  // On the CPU: at most so many pixels at once, of the widths that there are (16 with AVX-512, 8,
+  // 1: without SIMD); the same text, and the same bytes with 8 and 16. For perf and tests.
+  int lanes = 16;
 };
 
 // Activated surfels, structure of arrays; borrowed. N surfels, C feature channels (1..16).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // CPU rasterisation, second half: the loop over one tile's hits. Forward and backward run the same
-// traversal with different visitors, so they cannot drift. T: Float8 (a block of a tile) or float.
+// traversal with different visitors, so they cannot drift. T: Float16, Float8 or float.
 #pragma once
 
 #include <bit>
@@ -12,11 +12,11 @@
 namespace glint {
 
 // A tile's pixels in blocks of 4x2 that are culled together: squarer than a row of eight, so small
-// splats fill more lanes. A group is what one T holds: a block's eight lanes, or one pixel of it.
-inline constexpr int kBlockWidth = 4, kBlockHeight = 2;
+// splats fill more lanes. The second half of the blocks lie below those of the first. A group is
+// what one T holds: a block and the one below it, a block, or one pixel of it.
+inline constexpr int kBlockWidth = 4, kBlockHeight = 2, kBlockPixels = kBlockWidth* kBlockHeight;
 inline constexpr int kBlocksAcross = kTileSize / kBlockWidth;
-template <class T>
-inline constexpr int kGroupsPerBlock = kBlockWidth* kBlockHeight / kLanesOf<T>;
+inline constexpr int kBlocksPerHalf = kTileSize* kTileSize / kBlockPixels / 2;
 template <class T>
 inline constexpr int kGroupsPerTile = kTileSize* kTileSize / kLanesOf<T>;
 
@@ -26,19 +26,44 @@ struct PixelOffset {
 // Place of a lane of a group within its tile.
 template <class T>
 constexpr PixelOffset pixel_of(int group, int lane) {
-  const int block = group / kGroupsPerBlock<T>;
-  const int pixel = group % kGroupsPerBlock<T> * kLanesOf<T> + lane;
+  const int first = kLanesOf<T> > kBlockPixels ? group * kBlockPixels : group * kLanesOf<T>;
+  const int block = first / kBlockPixels;
+  const int pixel = first % kBlockPixels + lane;  // beyond a block: in the one below
+  const int row = block % kBlocksPerHalf / kBlocksAcross * 2 + block / kBlocksPerHalf;
   return {
       block % kBlocksAcross * kBlockWidth + pixel % kBlockWidth,
-      block / kBlocksAcross * kBlockHeight + pixel / kBlockWidth};
+      row * kBlockHeight + pixel / kBlockWidth};
 }
 // Offsets of a group's lanes from its first.
 template <class T>
 Vec2<T> lane_offsets() {
-  if constexpr (kLanesOf<T> == 1)
-    return {T(0), T(0)};
+  alignas(64) static constexpr float kX[] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+  alignas(64) static constexpr float kY[] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+  return {load_lanes<T>(kX), load_lanes<T>(kY)};
+}
+
+// Halves of a tile that are summed apart, so that every width adds in the same order: lanes 8 to 15
+// of a Float16 are those of the second half's blocks.
+template <class T>
+inline constexpr int kHalves = kLanesOf<T> == kBlockPixels ? 2 : 1;
+template <class T>
+constexpr int half_of(int group) {
+  return kHalves<T> == 1 ? 0 : group / kBlocksPerHalf;
+}
+// Both halves of what lies `stride` apart, as eight lanes.
+template <class T>
+GLINT_SIMD_INLINE Float8 both_halves(const T* sums, int stride) {
+  if constexpr (kHalves<T> == 1)
+    return sum_of_halves(*sums);
   else
-    return {Float8::Lanes{0, 1, 2, 3, 0, 1, 2, 3}, Float8::Lanes{0, 0, 0, 0, 1, 1, 1, 1}};
+    return sums[0] + sums[stride];
+}
+template <class T>
+GLINT_SIMD_INLINE float tile_sum(const T* halves) {
+  if constexpr (kLanesOf<T> == 1)
+    return *halves;
+  else
+    return lane_sum(both_halves(halves, 1));
 }
 
 struct TileContext {
@@ -46,7 +71,8 @@ struct TileContext {
   const TileLists& lists;
   ImageSize size;
   int tile_x, tile_y;
-  MapChannels has;  // of the call
+  MapChannels has;        // of the call
+  ImageView near_limit;  // too
 
   const float* feature(std::uint32_t surfel) const {
     return &call.input.features[static_cast<std::size_t>(surfel) * call.input.channels];
@@ -64,15 +90,7 @@ struct TileContext {
 
   int x0() const { return tile_x * kTileSize; }
   int y0() const { return tile_y * kTileSize; }
-  // Whether anyone looks at one of its pixels.
-  bool is_needed() const {
-    const ImageView needed = call.input.needed.view();
-    if (needed.empty()) return true;
-    for (int y = y0(); y < std::min(y0() + kTileSize, size.height); ++y)
-      for (int x = x0(); x < std::min(x0() + kTileSize, size.width); ++x)
-        if (needed.at(x, y) != 0) return true;
-    return false;
-  }
+  bool is_needed() const;  // whether anyone looks at one of its pixels
   std::uint32_t list_begin() const { return lists.tile_begin[tile_y * lists.tiles_x + tile_x]; }
   std::uint32_t list_end() const { return lists.tile_begin[tile_y * lists.tiles_x + tile_x + 1]; }
 };
@@ -95,7 +113,7 @@ template <class T>
 void load_pixels(
     const TileContext& tile, const ImageView& map, int group, int channels, float outside, T* values
 ) {
-  alignas(32) float lanes[kMaxChannels][kLanesOf<T>];
+  alignas(64) float lanes[kMaxChannels][kLanesOf<T>];
   for (int c = 0; c < channels; ++c) std::fill_n(lanes[c], kLanesOf<T>, outside);
   for_each_lane<T>(tile, group, [&](int i, int x, int y) {
     const float* pixel = map.pixel(x, y);
@@ -107,7 +125,7 @@ template <class T>
 void store_pixels(
     const TileContext& tile, const ImageRef& map, int group, int channels, const T* values
 ) {
-  alignas(32) float lanes[kMaxChannels][kLanesOf<T>];
+  alignas(64) float lanes[kMaxChannels][kLanesOf<T>];
   for (int c = 0; c < channels; ++c) store_lanes(lanes[c], values[c]);
   for_each_lane<T>(tile, group, [&](int i, int x, int y) {
     float* pixel = map.pixel(x, y);
@@ -132,10 +150,9 @@ struct TilePixels {
                           (y[g] < T(static_cast<float>(tile.size.height)));
       transmittance[g] = select(inside, T(1), T(0));
       nearest[g] = T(tile.call.settings.near_plane);
-      const ImageView limit = tile.call.input.near_limit.view();
-      if (limit.empty()) continue;
+      if (tile.near_limit.empty()) continue;
       T behind;
-      load_pixels(tile, limit, g, 1, 0.0f, &behind);
+      load_pixels(tile, tile.near_limit, g, 1, 0.0f, &behind);
       nearest[g] = max_of(nearest[g], behind);
     }
   }
@@ -164,22 +181,30 @@ void visit_group(
 // The groups of some of a tile's blocks; one bit each, as the blocks have.
 template <class T>
 std::uint64_t groups_of_blocks(unsigned blocks) {
-  if constexpr (kGroupsPerBlock<T> == 1) return blocks;
+  if constexpr (kLanesOf<T> == kBlockPixels) return blocks;
+  if constexpr (kLanesOf<T> > kBlockPixels)
+    return (blocks | blocks >> kBlocksPerHalf) & ((1u << kBlocksPerHalf) - 1);
   std::uint64_t groups = 0;
-  for (int block = 0; block < kTileSize; ++block)
-    groups |= (std::uint64_t{blocks} >> block & 1) * 0xff << (block * kGroupsPerBlock<T>);
+  for (int block = 0; block < 2 * kBlocksPerHalf; ++block)
+    groups |= (std::uint64_t{blocks} >> block & 1) * 0xff << (block * kBlockPixels);
   return groups;
+}
+// Of a group's first block; where it has two, either stands for both.
+template <class T>
+constexpr int block_of(int group) {
+  return kLanesOf<T> > kBlockPixels ? group : group * kLanesOf<T> / kBlockPixels;
 }
 
 // Blocks of a tile that a splat's box overlaps.
 GLINT_SIMD_INLINE unsigned blocks_of(const TileContext& tile, const PixelBox& box) {
+  // Of the blocks' rows from the first on, none to all.
+  constexpr unsigned kRows[] = {0, 0x03, 0x33, 0x3f, 0xff};
   const int x0 = box.x_min - tile.x0(), x1 = box.x_max - tile.x0();
   const int y0 = std::max(0, box.y_min - tile.y0()) / kBlockHeight;
   const int y1 = (std::min(kTileSize, box.y_max - tile.y0()) + kBlockHeight - 1) / kBlockHeight;
-  static_assert(kBlocksAcross == 2);
+  static_assert(kBlocksAcross == 2 && kBlocksPerHalf == 4);
   const unsigned columns = (x0 < kBlockWidth ? 0x55u : 0u) | (x1 > kBlockWidth ? 0xaau : 0u);
-  const unsigned rows = (1u << (2 * y1)) - (1u << (2 * y0));
-  return columns & rows;
+  return columns & kRows[y1] & ~kRows[y0];
 }
 
 // Entries between two looks at which groups are still live: rarely, because the groups of the next

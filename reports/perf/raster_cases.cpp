@@ -35,7 +35,7 @@ struct RasterState {
   }
   void forward(bool scalar) {
     RasterSettings settings;
-    settings.scalar = scalar;
+    if (scalar) settings.lanes = 1;
     rasterizer.forward({input, view.camera, settings});
   }
   void backward() { gradient = &rasterizer.backward(dL_doutput); }

@@ -81,7 +81,7 @@ struct Fixture {
     settings.with_plane_distance = c.plane_distance;
     settings.with_statistics = c.statistics;
     settings.with_surface = c.surface;
-    settings.scalar = true;
+    settings.lanes = 1;
     input = arrays.view();
     if (c.near_limit) input.near_limit = near_limit;
   }

@@ -22,7 +22,8 @@ const LargeScene& scene() {
 
 RasterCall call_of(const LargeScene& scene) {
   RasterSettings settings;
-  settings.with_distortion = settings.with_statistics = settings.scalar = true;
+  settings.with_distortion = settings.with_statistics = true;
+  settings.lanes = 1;
   return {scene.arrays.view(), scene.camera, settings};
 }
 

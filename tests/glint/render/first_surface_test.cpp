@@ -149,7 +149,7 @@ TEST_CASE("SIMD lanes or not, first surfaces are the same") {
   const SurfelArrays surfels = random_surfels({.count = 200, .max_opacity = 0.4}, camera, rng);
   const Image mask(kSize.width, kSize.height, 1, 1.0f);
   const Image lanes = first_surface(surfels, camera, mask);
-  const Image scalar = first_surface(surfels, camera, mask, {}, {.scalar = true});
+  const Image scalar = first_surface(surfels, camera, mask, {}, {.lanes = 1});
   for (std::size_t i = 0; i < lanes.values().size(); ++i)
     CHECK(lanes.values()[i] == Approx(scalar.values()[i]).epsilon(1e-6));
 }

@@ -363,8 +363,8 @@ TEST_CASE("Without output gradients every gradient is zero and has its input's s
 }
 
 TEST_CASE("Without a surface, colours and the gradients of all arrays have the same bytes") {
-  for (const bool scalar : {true, false}) {
-    CAPTURE(scalar);
+  for (const int lanes : {1, 8, 16}) {
+    CAPTURE(lanes);
     RandomSurfels options = smooth_surfels();
     options.count = 200;
     options.channels = kColorChannels;
@@ -373,7 +373,7 @@ TEST_CASE("Without a surface, colours and the gradients of all arrays have the s
     Case c;
     c.camera = random_camera(rng, {24, 18});
     c.surfels = random_surfels(options, c.camera, rng);
-    c.settings.scalar = scalar;
+    c.settings.lanes = lanes;
     const ImageSize size = c.camera.size();
     c.dL_doutput.features =
         random_weights(rng, std::vector<bool>(size.num_pixels(), true), size, kColorChannels);
@@ -425,8 +425,8 @@ TEST_CASE("Tiles that nobody needs are empty, all others and their gradients hav
   Image needed(size.width, size.height, 1);
   needed.at(7, 7) = needed.at(8, 17) = needed.at(27, 8) = 1;
   const std::vector<bool> made = pixels_of_tiles(size, {{7, 7}, {8, 17}, {27, 8}});
-  for (const bool scalar : {true, false}) {
-    CAPTURE(scalar);
+  for (const int lanes : {1, 8, 16}) {
+    CAPTURE(lanes);
     RandomSurfels options = smooth_surfels();
     options.count = 200;
     options.channels = 4;
@@ -434,7 +434,7 @@ TEST_CASE("Tiles that nobody needs are empty, all others and their gradients hav
     Case c;
     c.camera = random_camera(rng, size);
     c.surfels = random_surfels(options, c.camera, rng);
-    c.settings.scalar = scalar;
+    c.settings.lanes = lanes;
     c.dL_doutput.features = random_weights(rng, made, size, options.channels);
     Rasterizer all, some;
     const RasterOutput& whole = all.forward({c.input(), c.camera, c.settings});

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "glint/core/parallel.h"
+#include "glint/render/raster_wide.h"
 #include "tests/support/compare_render.h"
 #include "tests/support/golden_surfel.h"
 
@@ -24,8 +25,8 @@ constexpr double kTolerance = 1e-3;
 // Where planes are seen under angles down to 0.05 degrees, that angle multiplies every rounding.
 constexpr double kGrazingTolerance = 1e-2;
 
-RasterSettings with_scalar(RasterSettings settings, bool scalar) {
-  settings.scalar = scalar;
+RasterSettings with_lanes(RasterSettings settings, int lanes) {
+  settings.lanes = lanes;
   return settings;
 }
 
@@ -33,10 +34,10 @@ RasterOutput rasterize(
     const RasterInput& input,
     const Camera& camera,
     const RasterSettings& settings = {},
-    bool scalar = false
+    int lanes = 16
 ) {
   Rasterizer rasterizer;
-  return rasterizer.forward({input, camera, with_scalar(settings, scalar)});
+  return rasterizer.forward({input, camera, with_lanes(settings, lanes)});
 }
 
 RasterOutput rasterize(const SurfelArrays& surfels, const Camera& camera) {
@@ -115,14 +116,14 @@ struct ForwardBackward {
 
 // The loss is the sum of all maps.
 ForwardBackward forward_backward(
-    Rasterizer& rasterizer, const SurfelArrays& surfels, const Camera& camera, bool scalar = false
+    Rasterizer& rasterizer, const SurfelArrays& surfels, const Camera& camera, int lanes = 16
 ) {
   ForwardBackward result;
   const Image one(camera.width, camera.height, 1, 1.0f),
       three(camera.width, camera.height, 3, 1.0f);
   const RasterOutputGradient ones{
       Image(camera.width, camera.height, surfels.channels, 1.0f), one, one, one, three, one, one};
-  result.output = rasterizer.forward({surfels.view(), camera, with_scalar(kAllMaps, scalar)});
+  result.output = rasterizer.forward({surfels.view(), camera, with_lanes(kAllMaps, lanes)});
   result.gradient = rasterizer.backward(ones);
   return result;
 }
@@ -283,7 +284,7 @@ TEST_CASE("Without surfels the maps are zero and have the image's size") {
 TEST_CASE("Maps and statistics beyond the usual are made only when asked for, and change no other"
 ) {
   const int channels = GENERATE(3, 5, 7);
-  const bool scalar = GENERATE(false, true);
+  const int lanes = GENERATE(16, 8, 1);
   Rng rng(13);
   const Camera camera = random_camera(rng, {33, 17});
   const SurfelArrays surfels =
@@ -293,7 +294,7 @@ TEST_CASE("Maps and statistics beyond the usual are made only when asked for, an
   const auto run = [&](const RasterSettings& settings) {
     Rasterizer rasterizer;
     ForwardBackward result;
-    result.output = rasterizer.forward({surfels.view(), camera, with_scalar(settings, scalar)});
+    result.output = rasterizer.forward({surfels.view(), camera, with_lanes(settings, lanes)});
     result.gradient = rasterizer.backward(ones);
     return result;
   };
@@ -530,7 +531,7 @@ TEST_CASE("The scalar instantiation gives what the SIMD one gives, within roundi
   const SurfelArrays surfels = random_surfels(all_kinds(), camera, rng);
   Rasterizer rasterizer;
   const ForwardBackward simd = forward_backward(rasterizer, surfels, camera);
-  const ForwardBackward scalar = forward_backward(rasterizer, surfels, camera, true);
+  const ForwardBackward scalar = forward_backward(rasterizer, surfels, camera, 1);
   // The same operations on every lane: maps agree to the last bits, so no cut-off can flip.
   const auto check = [](std::span<const float> a, std::span<const float> b, float tolerance) {
     REQUIRE(a.size() == b.size());
@@ -555,6 +556,26 @@ TEST_CASE("The scalar instantiation gives what the SIMD one gives, within roundi
   check(simd.gradient.opacities, scalar.gradient.opacities, 1e-5f);
   check(simd.gradient.features, scalar.gradient.features, 1e-5f);
   check(simd.gradient.screen_abs, scalar.gradient.screen_abs, 1e-5f);
+}
+
+TEST_CASE("Eight and sixteen lanes give the same bytes") {
+  if (!has_wide_tiles()) {
+    WARN("this processor, or this build, has no sixteen lanes: not compared");
+    return;
+  }
+  const auto [width, height] = GENERATE(table<int, int>({{1, 1}, {33, 17}, {100, 75}}));
+  const int channels = GENERATE(3, 5, 7);
+  Rng rng(10);
+  const Camera camera = random_camera(rng, {width, height});
+  RandomSurfels options = all_kinds();
+  options.channels = channels;
+  options.count = 400;  // so many that pixels stop
+  const SurfelArrays surfels = random_surfels(options, camera, rng);
+  Rasterizer rasterizer;
+  const ForwardBackward eight = forward_backward(rasterizer, surfels, camera, 8);
+  const ForwardBackward sixteen = forward_backward(rasterizer, surfels, camera, 16);
+  check_same_bytes(eight.output, sixteen.output);
+  check_same_bytes(eight.gradient, sixteen.gradient);
 }
 
 TEST_CASE("Bytes do not depend on the number of threads or on repetition") {
