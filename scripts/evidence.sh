@@ -3,8 +3,8 @@
 # run again. So days of work are done in pieces, on one machine after the other:
 #   scripts/evidence.sh [--profile NAME (small)] [--minutes N (60)] [--jobs N (all cores)] [--records FILE] [--work DIR (out/evidence)]
 #     [--bench GLINT_BENCH] [options of `glint-bench run`, as --methods 2dgs,glint]
-# Seed by seed, so that at any time what is there can be compared. A cell that began before the time was over is finished. Surfels,
-# renders and meshes go when the cell is recorded. Failed cells are recorded, too, and tried again by the next call. Exit 5: some failed.
+# Scene by scene, so that a machine makes few of them, and seed by seed within. A cell that began before the time was over is finished.
+# Surfels, renders and meshes go when the cell is recorded. Failed cells are recorded, too, and tried again by the next call. Exit 5: some failed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -38,10 +38,10 @@ has() {
   local scene=${2%%/*} rest=${2#*/}
   grep -F "\"scene\":\"$scene\",\"method\":\"${rest%/*}\",\"seed\":${rest##*/}," "$1" 2>/dev/null | grep -qF -- "${3:-}"
 }
-# Cells to do, seed by seed, otherwise in the profile's order.
+# Cells to do, scene by scene and seed by seed, otherwise in the profile's order.
 pending() {
   "$bench" plan --tasks "${common[@]}" "${options[@]}" --quiet |
-    awk -F/ '{ print $NF, NR, $0 }' | sort -n -k1,1 -k2,2 | cut -d' ' -f3- |
+    awk -F/ '{ print $1, $NF, NR, $0 }' | sort -k1,1 -k2,2n -k3,3n | cut -d' ' -f4- |
     while read -r cell; do has "$records" "$cell" '"status":"ok"' || echo "$cell"; done
 }
 # The cell's last record, behind those that are there.
