@@ -23,11 +23,10 @@
 #include "glint/scene/ply.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/initial_points.h"
-#include "glint/train/mirror_cutoffs.h"
+#include "glint/train/mirrored_layer.h"
 #include "glint/train/perceptual.h"
 #include "glint/train/photometric.h"
 #include "glint/train/reflection_bootstrap.h"
-#include "glint/train/trainable_set.h"
 #include "glint/train/trainer.h"
 #include "glint/train/training_state.h"
 
@@ -163,7 +162,7 @@ class EnvGs final : public Method {
     base_degree_ = std::min(3, iteration / windows_.sh_interval);
     environment_degree_ =
         std::clamp((iteration - windows_.environment_from) / windows_.sh_interval, 0, 3);
-    const Image& image = forward(view.camera);
+    const Image& image = forward(view.camera, iteration);
     clear_gradient(view.camera.size(), base_output_->features.channels(), dL_dbase_);
     clear_image(dL_dimage_, view.camera.size(), 3);
     const PhotometricWeights weights{1 - config_.lambda_ssim, config_.lambda_ssim};
@@ -257,7 +256,8 @@ class EnvGs final : public Method {
     warn_without_points(*scene_, "envgs", warnings_);
   }
 
-  const Image& forward(const Camera& camera) {
+  // step: of training, or none.
+  const Image& forward(const Camera& camera, std::optional<int> step = {}) {
     GlassOptions options;
     options.channels = interface_channels(base_.cloud());
     options.transmission = options.fresnel = false;
@@ -267,20 +267,16 @@ class EnvGs final : public Method {
     const GlassBuffer& buffer = transport_.read_interface(camera, *base_output_);
     copy_color(base_output_->features, layers_.interface);
     if (with_environment_)
-      copy_color(
-          environment_.trace(buffer.reflected, environment_degree_, config_.mirror.settings())
-              .color,
-          layers_.reflection
+      mirrored_.trace(
+          buffer, environment_, environment_degree_, config_.mirror, step, layers_.reflection
       );
     return transport_.compose(layers_);
   }
   void backward(const Camera& camera) {
     const GlassLayers& dL_dlayers = transport_.compose_vjp(layers_, dL_dimage_);
     const Rays* dL_drays = nullptr;
-    if (with_environment_) {
-      copy_color(dL_dlayers.reflection, dL_dtrace_.color);
-      dL_drays = &environment_.trace_backward(dL_dtrace_);
-    }
+    if (with_environment_)
+      dL_drays = &mirrored_.trace_backward(environment_, dL_dlayers.reflection);
     transport_.interface_vjp(camera, *base_output_, dL_drays, {}, dL_dbase_);
     base_.backward(dL_dbase_);
   }
@@ -301,7 +297,7 @@ class EnvGs final : public Method {
   GeometryLosses geometry_;
   Image dL_dimage_;
   RasterOutputGradient dL_dbase_;
-  TraceOutputGradient dL_dtrace_;
+  MirroredLayer mirrored_;
 };
 
 MethodSpec envgs_spec() {

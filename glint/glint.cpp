@@ -73,7 +73,9 @@ class Glint final : public Method {
     StepStats stats;
     stats.iteration = iteration;
     set_phase(iteration);
+    phase_.step = iteration;
     const Image& image = model_.forward(view.camera, config_, phase_);
+    phase_.step.reset();
     clear_gradients(view.camera.size());
     const PhotometricWeights weights{config_.l1_weight, config_.ssim_weight};
     const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);

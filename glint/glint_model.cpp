@@ -64,9 +64,8 @@ const Image& GlintModel::compose(
   rasterized_ = phase.transmission && config.transmission != "trace";
   if (phase.transmission) render_transmission(camera, config, with_behind);
   if (phase.reflection)
-    copy_color(
-        reflection.trace(buffer.reflected, phase.reflection_degree, config.mirror.settings()).color,
-        layers_.reflection
+    mirrored_.trace(
+        buffer, reflection, phase.reflection_degree, config.mirror, phase.step, layers_.reflection
     );
   return transport_.compose(layers_);
 }
@@ -123,10 +122,7 @@ void GlintModel::backward(
 ) {
   const GlassLayers& dL_dlayers = transport_.compose_vjp(layers_, dL_dimage);
   const Rays* dL_drays = nullptr;
-  if (phase_.reflection) {
-    copy_color(dL_dlayers.reflection, dL_dtrace_.color);
-    dL_drays = &reflection.trace_backward(dL_dtrace_);
-  }
+  if (phase_.reflection) dL_drays = &mirrored_.trace_backward(reflection, dL_dlayers.reflection);
   if (phase_.transmission) transmission_vjp(dL_dlayers.transmission, dL_dalpha);
   if (!interface_too) return;
   transport_.interface_vjp(camera_, *interface_output_, dL_drays, dL_dtransparency, dL_dinterface);

@@ -4,9 +4,12 @@
 // along mirrored rays.
 #pragma once
 
+#include <optional>
+
 #include "glint/glint_config.h"
 #include "glint/method.h"
 #include "glint/render/glass_transport.h"
+#include "glint/train/mirrored_layer.h"
 #include "glint/train/trainable_set.h"
 
 namespace glint {
@@ -15,6 +18,7 @@ namespace glint {
 struct GlintPhase {
   bool transmission = true, reflection = true;
   int interface_degree = 3, transmission_degree = 3, reflection_degree = 3;
+  std::optional<int> step;  // of training; none: a picture for someone
 };
 
 class GlintModel {
@@ -66,7 +70,8 @@ class GlintModel {
   Rays through_;
   RasterPass behind_pass_;
   RasterOutputGradient dL_dtransmission_;
-  TraceOutputGradient dL_dtrace_, dL_dthrough_;  // of reflection; of transmission
+  MirroredLayer mirrored_;
+  TraceOutputGradient dL_dthrough_;  // of the transmission set
 };
 
 }  // namespace glint

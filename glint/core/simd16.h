@@ -26,9 +26,7 @@ struct Float16 {
   static GLINT_SIMD_INLINE Float16 load(const float* p) { return Lanes(_mm512_loadu_ps(p)); }
   GLINT_SIMD_INLINE void store(float* p) const { _mm512_storeu_ps(p, lanes); }
   GLINT_SIMD_INLINE Float8 low() const { return Float8::Lanes(_mm512_castps512_ps256(lanes)); }
-  GLINT_SIMD_INLINE Float8 high() const {
-    return Float8::Lanes(_mm512_extractf32x8_ps(lanes, 1));
-  }
+  GLINT_SIMD_INLINE Float8 high() const { return Float8::Lanes(_mm512_extractf32x8_ps(lanes, 1)); }
 };
 
 template <>
@@ -80,9 +78,8 @@ GLINT_SIMD_INLINE Float16 fma_of(Float16 a, Float16 b, Float16 c) {
 }
 GLINT_SIMD_INLINE Float16 times_exp2(Float16 p, Float16 shifted) {
   const __m512i exponent = _mm512_slli_epi32(_mm512_castps_si512(shifted.lanes), 23);
-  return Float16::Lanes(
-      _mm512_castsi512_ps(_mm512_add_epi32(_mm512_castps_si512(p.lanes), exponent))
-  );
+  return Float16::Lanes(_mm512_castsi512_ps(_mm512_add_epi32(_mm512_castps_si512(p.lanes), exponent)
+  ));
 }
 
 GLINT_SIMD_INLINE Float8 sum_of_halves(Float16 v) { return v.low() + v.high(); }

@@ -8,12 +8,11 @@ namespace glint {
 
 struct WideTiles {
   void (*forward)(const TileContext& tile, RasterSaved& saved, RasterOutput& out);
-  void (*backward)(
-      const TileContext& tile,
-      RasterSaved& saved,
-      const RasterOutput& out,
-      const RasterOutputGradient& dL_dout
-  );
+  void (*backward
+  )(const TileContext& tile,
+    RasterSaved& saved,
+    const RasterOutput& out,
+    const RasterOutputGradient& dL_dout);
 };
 // Empty in programs that were compiled for no such processor.
 extern const WideTiles kWideTiles;

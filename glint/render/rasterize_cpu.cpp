@@ -39,9 +39,7 @@ void for_each_tile(const RasterCall& call, const TileLists& lists, Wide&& wide, 
   };
   const auto with_lanes = [&](auto lane) {
     with_pass_code(call.maps(), [&]<class Code>() {
-      run([&](const TileContext& tile) {
-        body.template operator()<decltype(lane), Code>(tile);
-      });
+      run([&](const TileContext& tile) { body.template operator()<decltype(lane), Code>(tile); });
     });
   };
   const int lanes = lanes_of(call.settings);

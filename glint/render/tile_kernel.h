@@ -14,9 +14,9 @@ namespace glint {
 // A tile's pixels in blocks of 4x2 that are culled together: squarer than a row of eight, so small
 // splats fill more lanes. The second half of the blocks lie below those of the first. A group is
 // what one T holds: a block and the one below it, a block, or one pixel of it.
-inline constexpr int kBlockWidth = 4, kBlockHeight = 2, kBlockPixels = kBlockWidth* kBlockHeight;
+inline constexpr int kBlockWidth = 4, kBlockHeight = 2, kBlockPixels = kBlockWidth * kBlockHeight;
 inline constexpr int kBlocksAcross = kTileSize / kBlockWidth;
-inline constexpr int kBlocksPerHalf = kTileSize* kTileSize / kBlockPixels / 2;
+inline constexpr int kBlocksPerHalf = kTileSize * kTileSize / kBlockPixels / 2;
 template <class T>
 inline constexpr int kGroupsPerTile = kTileSize* kTileSize / kLanesOf<T>;
 
@@ -71,7 +71,7 @@ struct TileContext {
   const TileLists& lists;
   ImageSize size;
   int tile_x, tile_y;
-  MapChannels has;        // of the call
+  MapChannels has;       // of the call
   ImageView near_limit;  // too
 
   const float* feature(std::uint32_t surfel) const {
@@ -182,7 +182,7 @@ void visit_group(
 template <class T>
 std::uint64_t groups_of_blocks(unsigned blocks) {
   if constexpr (kLanesOf<T> == kBlockPixels) return blocks;
-  if constexpr (kLanesOf<T> > kBlockPixels)
+  if constexpr (kLanesOf < T >> kBlockPixels)
     return (blocks | blocks >> kBlocksPerHalf) & ((1u << kBlocksPerHalf) - 1);
   std::uint64_t groups = 0;
   for (int block = 0; block < 2 * kBlocksPerHalf; ++block)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where mirrored rays stop.
+// Where mirrored rays stop, and which of them are traced.
 #pragma once
 
 #include "glint/render/trace.h"
@@ -13,11 +13,15 @@ struct MirrorCutoffs {
   float transmittance = 0.02f;
   int hits = 64;
   float near = 0;
+  float share_below = 0;  // of training; SharedRays
 
   template <class V>
   void visit(V&& v) {
     v("mirror_transmittance", transmittance, "transmittance at which mirrored rays stop");
     v("mirror_hits", hits, "most surfels a mirrored ray meets");
+    v("mirror_share_below",
+      share_below,
+      "k_s below which 2x2 pixels share a mirrored ray in training; 0: none do");
     v("mirror_near", near, "metres that a mirrored ray passes before it meets any");
   }
   TraceSettings settings() const {

@@ -110,6 +110,8 @@ TEST_CASE("every metric of the protocol is registered once, with direction and p
         "behind-coverage-expected",
         "behind-absrel-median",
         "behind-coverage-median",
+        "behind-absrel-content",
+        "behind-absrel-beyond",
         "normal-mae-background",
         "trans-psnr",
         "refl-psnr"})
@@ -173,6 +175,30 @@ TEST_CASE("behind glass, each estimate of depth is scored by itself, holes count
   CHECK(scores.at("behind-coverage-expected") == 100);
   CHECK(scores.at("behind-absrel-median") == 0.5);
   CHECK(scores.at("behind-coverage-median") == 50);
+}
+
+TEST_CASE("depth behind glass is scored apart within 1.25 m of the pane and beyond") {
+  const Maps maps;
+  ViewPair pair = maps.pair();
+  Image first(kWidth, kHeight, 1, 2.0f), behind(kWidth, kHeight, 1, 3.0f);
+  Image rendered(kWidth, kHeight, 1, 3.3f);
+  for (int y = 10; y < 15; ++y)
+    for (int x = 10; x < 20; ++x) {  // half of the glass
+      behind.at(x, y) = 4;
+      rendered.at(x, y) = 5;
+    }
+  pair.truth["depth"] = first;
+  pair.truth["behind_depth"] = behind;
+  pair.rendered["behind_depth"] = rendered;
+  auto scores = evaluate_view(pair);
+  CHECK(scores.at("behind-absrel-content") == Approx(0.1).epsilon(1e-6));
+  CHECK(scores.at("behind-absrel-beyond") == 0.25);
+  CHECK(scores.at("behind-absrel") == Approx(0.175).epsilon(1e-6));
+  CHECK(scores.count("behind-absrel-content@glass") == 0);
+  behind.array().fill(3);  // all of it content
+  scores = evaluate_view(pair);
+  CHECK(scores.count("behind-absrel-beyond") == 0);
+  CHECK(scores.count("behind-absrel-content") == 1);
 }
 
 TEST_CASE("glass may be found in a specularity, where there is no transparency") {

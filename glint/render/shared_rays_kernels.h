@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// SharedRays, pixel by pixel.
+#pragma once
+
+#include <cstdint>
+
+#include "glint/core/kernel.h"
+#include "glint/core/vec.h"
+
+namespace glint {
+
+inline constexpr int kShareBlock = 2;  // pixels, across and down, of which one has the ray of all
+
+// Which pixels can do with a neighbour's mirrored ray.
+struct RaySharing {
+  float below = 0;  // k_s; 0: none
+  float max_transparency = 0.5f;
+  float min_cosine = 0.95f;  // between their normals
+
+  GLINT_HD bool is_weak(float mirrored, float transparency) const {
+    return mirrored < below && transparency < max_transparency;
+  }
+};
+
+// The pixel of a block whose ray the others take.
+struct LeaderOfBlock {
+  int width, height;
+  int x, y;  // its place in the block
+  GLINT_HD std::uint32_t of(std::uint32_t i) const {
+    const int column = static_cast<int>(i) % width / kShareBlock * kShareBlock + x;
+    const int row = static_cast<int>(i) / width / kShareBlock * kShareBlock + y;
+    return static_cast<std::uint32_t>(
+        (row < height ? row : height - 1) * width + (column < width ? column : width - 1)
+    );
+  }
+};
+
+// source: of each pixel the one whose ray it takes, perhaps itself; others have no direction.
+struct ShareRays {
+  LeaderOfBlock leader;
+  RaySharing sharing;
+  const float *mirrored, *transparency, *normal, *directions;  // of a GlassBuffer
+  std::uint32_t* source;
+  float* shared;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const std::uint32_t other = leader.of(static_cast<std::uint32_t>(i));
+    const bool alike = dot(get3(normal, i), get3(normal, other)) >= sharing.min_cosine;
+    const bool takes = other != i && alike && sharing.is_weak(mirrored[i], transparency[i]);
+    source[i] = takes ? other : static_cast<std::uint32_t>(i);
+    put3(shared, i, takes ? Vec3f{} : get3(directions, i));
+  }
+};
+
+struct SpreadColor {
+  const std::uint32_t* source;
+  const float* traced;
+  float* color;
+  GLINT_HD void operator()(std::size_t i) const { put3(color, i, get3(traced, source[i])); }
+};
+// A pixel's own ray gets what all that took it are due.
+struct SpreadColorVjp {
+  int width, height;
+  const std::uint32_t* source;
+  const float* dL_dcolor;
+  float* dL_dtraced;
+  GLINT_HD void operator()(std::size_t i) const {
+    Vec3f sum{};
+    const int left = static_cast<int>(i) % width / kShareBlock * kShareBlock;
+    const int top = static_cast<int>(i) / width / kShareBlock * kShareBlock;
+    for (int y = top; y < top + kShareBlock && y < height; ++y)
+      for (int x = left; x < left + kShareBlock && x < width; ++x) {
+        const auto from = static_cast<std::uint32_t>(y * width + x);
+        if (source[from] == i) sum += get3(dL_dcolor, from);
+      }
+    put3(dL_dtraced, i, sum);
+  }
+};
+
+using SharedRaysKernels = KernelList<ShareRays, SpreadColor, SpreadColorVjp>;
+
+}  // namespace glint

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "glint/train/mirrored_layer.h"
+
+#include "glint/render/map_ops.h"
+
+namespace glint {
+
+void MirroredLayer::trace(
+    const GlassBuffer& buffer,
+    TrainableSet& set,
+    int sh_degree,
+    const MirrorCutoffs& mirror,
+    std::optional<int> step,
+    Image& layer
+) {
+  shares_ = step && mirror.share_below > 0;
+  const Rays& rays =
+      shares_ ? shared_.choose(buffer, {.below = mirror.share_below}, *step) : buffer.reflected;
+  const Image& color = set.trace(rays, sh_degree, mirror.settings()).color;
+  if (shares_)
+    shared_.spread(color, layer);
+  else
+    copy_color(color, layer);
+}
+
+const Rays& MirroredLayer::trace_backward(TrainableSet& set, const Image& dL_dlayer) {
+  if (shares_)
+    shared_.spread_vjp(dL_dlayer, dL_dtrace_.color);
+  else
+    copy_color(dL_dlayer, dL_dtrace_.color);
+  return set.trace_backward(dL_dtrace_);
+}
+
+}  // namespace glint

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// What a set of surfels shows in the mirrored rays of an interface, and the way back.
+#pragma once
+
+#include <optional>
+
+#include "glint/render/shared_rays.h"
+#include "glint/train/mirror_cutoffs.h"
+#include "glint/train/trainable_set.h"
+
+namespace glint {
+
+class MirroredLayer {
+ public:
+  // Fills `layer` [H][W][3]. step: of training, in which pixels may share rays; none: each pixel
+  // has its own.
+  void trace(
+      const GlassBuffer& buffer,
+      TrainableSet& set,
+      int sh_degree,
+      const MirrorCutoffs& mirror,
+      std::optional<int> step,
+      Image& layer
+  );
+  // Back through the last trace() to the set. Returns the gradient of the pixels' rays.
+  const Rays& trace_backward(TrainableSet& set, const Image& dL_dlayer);
+
+ private:
+  SharedRays shared_;
+  bool shares_ = false;
+  TraceOutputGradient dL_dtrace_;
+};
+
+}  // namespace glint
