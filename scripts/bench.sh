@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# From nothing to the tables: set-up, build, `glint-bench all --profile ci`. Arguments go to glint-bench,
-# for example: scripts/bench.sh --profile small
+# From nothing to the tables: set-up, build, `glint-bench all --profile ci`, a cell on each core. Arguments go to
+# glint-bench, for example: scripts/bench.sh --profile small --jobs 1
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh
@@ -8,4 +8,8 @@ scripts/build.sh release programs
 if [ $# -eq 0 ]; then
   set -- --profile ci
 fi
+case " $* " in
+  *" --jobs"* | *" --executor inline"*) ;;
+  *) set -- "$@" --jobs "$(nproc)" ;;
+esac
 exec build/release/bin/glint-bench all "$@"
