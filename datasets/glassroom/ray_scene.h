@@ -5,6 +5,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -15,13 +16,17 @@
 
 namespace glint::path_tracing {
 
-struct Triangle {
+// All that a hit needs, in two cache lines: the first for the plane, the second for the vertices.
+struct alignas(128) Triangle {
   Vec3f p0, edge1, edge2;  // metres
   Vec3f normal;            // unit, by the right-hand rule
   float area = 0;          // square metres
   int mesh = 0, material = 0;
-  int face = 0;  // of the mesh
+  bool smooth = false;           // has shading normals
+  std::array<Vec3f, 3> normals;  // of the vertices, where smooth
+  std::array<Vec2f, 3> uvs;      // of the vertices, or zero
 };
+static_assert(sizeof(Triangle) == 128);
 
 enum class RayMask : unsigned { kOpaque = 1, kGlass = 2, kAll = 3 };
 
@@ -44,7 +49,7 @@ class RayScene {
   RayScene& operator=(const RayScene&) = delete;
   ~RayScene();
 
-  // Closest hit with t > 0.
+  // Closest hit with t > 0. The texels of albedo() are on their way when it returns.
   std::optional<Surface> intersect(Vec3f origin, Vec3f direction, RayMask mask) const;
 
   // Straight-line transmittance between two points off all surfaces (see leave): 0 behind anything
@@ -72,11 +77,11 @@ class RayScene {
  private:
   void add_triangles(bool glass);
   void attach(std::size_t first, std::size_t count, RayMask mask);
-  void interpolate_vertices(const Triangle& triangle, float u, float v, Surface& surface) const;
   static void pass_glass(const RTCFilterFunctionNArguments* arguments);
 
   const TraceScene& scene_;
   std::vector<MaterialModel> models_;
+  std::vector<ImageView> textures_;  // of materials; empty: none
   std::vector<Triangle> triangles_;  // opaque ones first
   std::size_t num_opaque_ = 0;
   RTCDevice device_ = nullptr;
