@@ -147,12 +147,19 @@ void RayScene::attach(std::size_t first, std::size_t count, RayMask mask) {
   rtcReleaseGeometry(geometry);
 }
 
-std::optional<Surface> RayScene::intersect(Vec3f origin, Vec3f direction, RayMask mask) const {
+RTCRayHit RayScene::closest(Vec3f origin, Vec3f direction, RayMask mask) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query{make_ray(origin, direction, std::numeric_limits<float>::infinity(), mask), {}};
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(bvh_, &context, &query);
+  return query;
+}
+
+std::optional<Surface> RayScene::intersect(Vec3f origin, Vec3f direction, RayMask mask) const {
+  if (recorded_ != nullptr)
+    recorded_->push_back({origin, direction, static_cast<unsigned>(mask), false});
+  const RTCRayHit query = closest(origin, direction, mask);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   const std::size_t id = (query.hit.geomID == 0 ? 0 : num_opaque_) + query.hit.primID;
@@ -190,11 +197,26 @@ void RayScene::pass_glass(const RTCFilterFunctionNArguments* arguments) {
 
 Vec3f RayScene::transmittance(Vec3f from, Vec3f to) const {
   const Vec3f segment = to - from;
+  if (recorded_ != nullptr)
+    recorded_->push_back({from, segment, static_cast<unsigned>(RayMask::kAll), true});
+  return transmittance_along(from, segment);
+}
+
+Vec3f RayScene::transmittance_along(Vec3f from, Vec3f segment) const {
   ShadowContext context{{}, this, triangles_.data() + num_opaque_, normalize(segment), {1, 1, 1}};
   rtcInitIntersectContext(&context.base);
   RTCRay ray = make_ray(from, segment, 1, RayMask::kAll);
   rtcOccluded1(bvh_, &context.base, &ray);
   return ray.tfar < 0 ? Vec3f{} : context.transmittance;
+}
+
+bool RayScene::is_met(const TracedRay& ray) const {
+  if (ray.shadow) {
+    const Vec3f passed = transmittance_along(ray.origin, ray.direction);
+    return passed.x + passed.y + passed.z <= 0;
+  }
+  const RTCRayHit query = closest(ray.origin, ray.direction, static_cast<RayMask>(ray.mask));
+  return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
 bool RayScene::occluded(Vec3f from, Vec3f to) const {
