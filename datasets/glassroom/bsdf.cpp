@@ -75,8 +75,10 @@ MaterialModel prepare_material(const Material& material) {
   return model;
 }
 
+bool Bsdf::above_surface(Vec3f wo, Vec3f wi) { return wo.z > kMinCosine && wi.z > kMinCosine; }
+
 BsdfValue Bsdf::evaluate(Vec3f wo, Vec3f wi) const {
-  if (wo.z <= kMinCosine || wi.z <= kMinCosine) return {};
+  if (!above_surface(wo, wi)) return {};
   switch (model_->kind) {
     case MaterialKind::kDiffuse:
       return {wi.z / kPi * color_, wi.z / kPi};

@@ -57,6 +57,8 @@ class Bsdf {
   // `model` must outlive this; `color`: albedo at the point, textured.
   Bsdf(const MaterialModel& model, Vec3f color) : model_(&model), color_(color) {}
 
+  // Of both directions; elsewhere nothing is scattered, whatever the material and its color.
+  static bool above_surface(Vec3f wo, Vec3f wi);
   // Zero unless both directions are above the surface.
   BsdfValue evaluate(Vec3f wo, Vec3f wi) const;
   BsdfSample sample(Vec3f wo, Vec2f u) const;

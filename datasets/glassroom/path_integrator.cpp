@@ -61,12 +61,20 @@ struct PathIntegrator::Path {
   }
 };
 
-// How one opaque vertex scatters.
-struct PathIntegrator::Scattering {
-  Bsdf bsdf;
+// From where a path came to an opaque vertex.
+struct PathIntegrator::Arrival {
+  Arrival(const Surface& surface, Vec3f direction)
+      : frame(surface.shading_normal), wo(frame.to_local(-direction)) {}
   Frame frame;
-  Vec3f back;  // world, towards the path's origin
-  Vec3f wo() const { return frame.to_local(back); }
+  Vec3f wo;  // local, towards the path's origin
+};
+
+// What a light sends to a vertex: nothing where `passed` is 0.
+struct PathIntegrator::Illumination {
+  Vec3f wi{};        // local, towards the light
+  Vec3f passed{};    // transmittance of what is between
+  Vec3f radiance{};  // of the light
+  float pdf = 0;     // of the sample, per solid angle
 };
 
 PathIntegrator::Split PathIntegrator::radiance(
@@ -126,18 +134,18 @@ Vec3f PathIntegrator::emitted(const Path& path, const Surface& surface) const {
 
 // Direct light scattered back along the path; then the path goes on by a sample of the BSDF.
 Vec3f PathIntegrator::scatter(Path& path, const Surface& surface, Sampler& sampler) const {
-  const Scattering scattering{
-      Bsdf(scene_.model(surface), scene_.albedo(surface)),
-      Frame(surface.shading_normal),
-      -path.direction};
+  const Arrival arrival(surface, path.direction);
   const Vec3f throughput = path.throughput;
   path.throughput = {};
   if (path.bounces++ >= settings_.max_bounces) return {};
 
   const Vec2f light_u = sampler.next_2d(), bsdf_u = sampler.next_2d();
-  const Vec3f direct = hadamard(throughput, direct_light(surface, scattering, light_u));
-  const BsdfSample sample = scattering.bsdf.sample(scattering.wo(), bsdf_u);
-  const Vec3f wi = scattering.frame.to_world(sample.wi);
+  // The shadow ray first: meanwhile the texels arrive, for which the albedo would have to wait.
+  const Illumination light = illumination(surface, arrival, light_u);
+  const Bsdf bsdf(scene_.model(surface), scene_.albedo(surface));
+  const Vec3f direct = hadamard(throughput, direct_light(light, arrival, bsdf));
+  const BsdfSample sample = bsdf.sample(arrival.wo, bsdf_u);
+  const Vec3f wi = arrival.frame.to_world(sample.wi);
   // A shading normal may send light through the surface: absorbed.
   if (sample.pdf <= 0 || dot(wi, surface.normal) <= 0) return direct;
   path.continue_from(surface, wi, hadamard(throughput, sample.weight), sample.pdf);
@@ -145,24 +153,32 @@ Vec3f PathIntegrator::scatter(Path& path, const Surface& surface, Sampler& sampl
   return direct;
 }
 
-Vec3f PathIntegrator::direct_light(const Surface& surface, const Scattering& scattering, Vec2f u)
-    const {
+PathIntegrator::Illumination PathIntegrator::illumination(
+    const Surface& surface, const Arrival& arrival, Vec2f u
+) const {
   if (lights_.empty() || !settings_.next_event_estimation) return {};
   const LightSample light = lights_.sample(u);
   const Vec3f to_light = light.position - surface.position;
   const float distance = length(to_light);
-  const Vec3f wi = (1 / distance) * to_light;
+  const Vec3f wi = (1 / distance) * to_light, local = arrival.frame.to_local(wi);
   const float cosine = std::abs(dot(light.normal, wi));
   if (!(distance > 0) || cosine <= 0 || dot(wi, surface.normal) <= 0) return {};
-  const BsdfValue value = scattering.bsdf.evaluate(scattering.wo(), scattering.frame.to_local(wi));
-  if (value.pdf <= 0) return {};
+  if (!Bsdf::above_surface(arrival.wo, local)) return {};
   const Vec3f passed = scene_.transmittance(
       RayScene::leave(surface.position, surface.normal, wi),
       RayScene::leave(light.position, light.normal, -wi)
   );
-  const float pdf_light = light.pdf_area * distance * distance / cosine;
-  const float weight = power_heuristic(pdf_light, value.pdf) / pdf_light;
-  return weight * hadamard(hadamard(value.f_cos, passed), light.radiance);
+  return {local, passed, light.radiance, light.pdf_area * distance * distance / cosine};
+}
+
+Vec3f PathIntegrator::direct_light(
+    const Illumination& light, const Arrival& arrival, const Bsdf& bsdf
+) {
+  if (max_component(light.passed) <= 0) return {};
+  const BsdfValue value = bsdf.evaluate(arrival.wo, light.wi);
+  if (value.pdf <= 0) return {};
+  const float weight = power_heuristic(light.pdf, value.pdf) / light.pdf;
+  return weight * hadamard(hadamard(value.f_cos, light.passed), light.radiance);
 }
 
 // Survives with the square root of its throughput as probability: in a room the throughput itself

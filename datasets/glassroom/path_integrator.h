@@ -33,13 +33,15 @@ class PathIntegrator {
 
  private:
   struct Path;
-  struct Scattering;
+  struct Arrival;
+  struct Illumination;
   // `next`: the path's next surface, where known already.
   Vec3f follow(Path path, Sampler& sampler, std::optional<Surface> next = {}) const;
   void cross_glass(Path& path, const Surface& surface, Sampler& sampler) const;
   Vec3f emitted(const Path& path, const Surface& surface) const;
   Vec3f scatter(Path& path, const Surface& surface, Sampler& sampler) const;
-  Vec3f direct_light(const Surface& surface, const Scattering& scattering, Vec2f u) const;
+  Illumination illumination(const Surface& surface, const Arrival& arrival, Vec2f u) const;
+  static Vec3f direct_light(const Illumination& light, const Arrival& arrival, const Bsdf& bsdf);
   static void russian_roulette(Path& path, Sampler& sampler);
 
   const RayScene& scene_;

@@ -46,12 +46,16 @@ class Rendering {
         out_(out),
         origin_(cast<float>(camera.center())) {}
 
+  void row(int y) const {
+    for (int x = 0; x < camera_.width; ++x) pixel(x, y);
+  }
+
+ private:
   void pixel(int x, int y) const {
     geometry(x, y);
     radiance(x, y);
   }
 
- private:
   Vec3f ray_direction(double x, double y) const { return cast<float>(camera_.ray_in_world(x, y)); }
 
   void geometry(int x, int y) const {
@@ -150,9 +154,27 @@ PathTracerOutput PathTracer::render(const Camera& camera, const PathTracerSettin
   const Rendering rendering(state_->rays, state_->lights, camera, settings, out);
   parallel_for(static_cast<std::size_t>(camera.height), 1, [&](std::size_t row) {
     throw_if_interrupted();
-    for (int x = 0; x < camera.width; ++x) rendering.pixel(x, static_cast<int>(row));
+    rendering.row(static_cast<int>(row));
   });
   return out;
+}
+
+std::vector<TracedRay> PathTracer::rays_of(
+    const Camera& camera, const PathTracerSettings& settings
+) {
+  std::vector<TracedRay> rays;
+  PathTracerOutput out = empty_output(camera.width, camera.height);
+  const Rendering rendering(state_->rays, state_->lights, camera, settings, out);
+  state_->rays.record_to(&rays);
+  for (int y = 0; y < camera.height; ++y) rendering.row(y);
+  state_->rays.record_to(nullptr);
+  return rays;
+}
+
+std::size_t PathTracer::count_met(std::span<const TracedRay> rays) const {
+  std::size_t count = 0;
+  for (const TracedRay& ray : rays) count += state_->rays.is_met(ray);
+  return count;
 }
 
 PathTracer::FirstHit PathTracer::first_hit(Vec3f origin, Vec3f direction, bool skip_glass) const {

@@ -44,7 +44,14 @@ Triangle make_triangle(const TraceMesh& mesh, int mesh_id, int face_id) {
   const Vec3f p0 = vertex(0), edge1 = vertex(1) - p0, edge2 = vertex(2) - p0;
   const Vec3f normal = cross(edge1, edge2);
   const float norm = length(normal);
-  return {p0, edge1, edge2, (1 / norm) * normal, 0.5f * norm, mesh_id, mesh.material, face_id};
+  Triangle triangle{p0, edge1, edge2, (1 / norm) * normal, 0.5f * norm, mesh_id, mesh.material};
+  triangle.smooth = !mesh.normals.empty();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto vertex_id = static_cast<std::size_t>(face[i]);
+    if (triangle.smooth) triangle.normals[i] = mesh.normals[vertex_id];
+    if (!mesh.uvs.empty()) triangle.uvs[i] = mesh.uvs[vertex_id];
+  }
+  return triangle;
 }
 
 bool degenerate(const Triangle& triangle) {
@@ -52,18 +59,28 @@ bool degenerate(const Triangle& triangle) {
 }
 
 template <class T>
-T interpolate(
-    const std::vector<T>& values, const std::array<std::int32_t, 3>& face, float u, float v
-) {
-  const auto at = [&](int i) { return values[static_cast<std::size_t>(face[i])]; };
-  return (1 - u - v) * at(0) + u * at(1) + v * at(2);
+T interpolate(const std::array<T, 3>& values, float u, float v) {
+  return (1 - u - v) * values[0] + u * values[1] + v * values[2];
+}
+
+// `normal`: the geometric one, on the side of the ray.
+Vec3f shading_normal(const Triangle& triangle, float u, float v, Vec3f normal) {
+  if (!triangle.smooth) return normal;
+  const Vec3f smooth = interpolate(triangle.normals, u, v);
+  const float norm = length(smooth);
+  if (norm < 1e-6f) return normal;  // opposite normals cancel
+  return (dot(smooth, normal) < 0 ? -1 / norm : 1 / norm) * smooth;
 }
 
 }  // namespace
 
 RayScene::RayScene(const TraceScene& scene) : scene_(scene) {
   validate_scene(scene);
-  for (const Material& material : scene.materials) models_.push_back(prepare_material(material));
+  for (const Material& material : scene.materials) {
+    models_.push_back(prepare_material(material));
+    const auto texture = static_cast<std::size_t>(material.texture);
+    textures_.push_back(material.texture < 0 ? ImageView{} : scene.textures[texture]);
+  }
   add_triangles(false);
   num_opaque_ = triangles_.size();
   add_triangles(true);
@@ -130,12 +147,19 @@ void RayScene::attach(std::size_t first, std::size_t count, RayMask mask) {
   rtcReleaseGeometry(geometry);
 }
 
-std::optional<Surface> RayScene::intersect(Vec3f origin, Vec3f direction, RayMask mask) const {
+RTCRayHit RayScene::closest(Vec3f origin, Vec3f direction, RayMask mask) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query{make_ray(origin, direction, std::numeric_limits<float>::infinity(), mask), {}};
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(bvh_, &context, &query);
+  return query;
+}
+
+std::optional<Surface> RayScene::intersect(Vec3f origin, Vec3f direction, RayMask mask) const {
+  if (recorded_ != nullptr)
+    recorded_->push_back({origin, direction, static_cast<unsigned>(mask), false});
+  const RTCRayHit query = closest(origin, direction, mask);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   const std::size_t id = (query.hit.geomID == 0 ? 0 : num_opaque_) + query.hit.primID;
@@ -149,22 +173,12 @@ std::optional<Surface> RayScene::intersect(Vec3f origin, Vec3f direction, RayMas
   surface.triangle = static_cast<int>(id);
   surface.material = triangle.material;
   surface.mesh = triangle.mesh;
-  interpolate_vertices(triangle, u, v, surface);
+  surface.uv = interpolate(triangle.uvs, u, v);
+  const ImageView texture = textures_[static_cast<std::size_t>(triangle.material)];
+  if (texture.data != nullptr) prefetch_texture(texture, surface.uv);
+  surface.shading_normal = shading_normal(triangle, u, v, surface.normal);
   if (dot(surface.shading_normal, direction) >= 0) surface.shading_normal = surface.normal;
   return surface;
-}
-
-void RayScene::interpolate_vertices(const Triangle& triangle, float u, float v, Surface& surface)
-    const {
-  const TraceMesh& mesh = scene_.meshes[static_cast<std::size_t>(triangle.mesh)];
-  const auto& face = mesh.faces[static_cast<std::size_t>(triangle.face)];
-  surface.uv = mesh.uvs.empty() ? Vec2f{} : interpolate(mesh.uvs, face, u, v);
-  surface.shading_normal = surface.normal;
-  if (mesh.normals.empty()) return;
-  const Vec3f smooth = interpolate(mesh.normals, face, u, v);
-  const float norm = length(smooth);
-  if (norm < 1e-6f) return;  // opposite normals cancel
-  surface.shading_normal = (dot(smooth, surface.normal) < 0 ? -1 / norm : 1 / norm) * smooth;
 }
 
 void RayScene::pass_glass(const RTCFilterFunctionNArguments* arguments) {
@@ -183,11 +197,26 @@ void RayScene::pass_glass(const RTCFilterFunctionNArguments* arguments) {
 
 Vec3f RayScene::transmittance(Vec3f from, Vec3f to) const {
   const Vec3f segment = to - from;
+  if (recorded_ != nullptr)
+    recorded_->push_back({from, segment, static_cast<unsigned>(RayMask::kAll), true});
+  return transmittance_along(from, segment);
+}
+
+Vec3f RayScene::transmittance_along(Vec3f from, Vec3f segment) const {
   ShadowContext context{{}, this, triangles_.data() + num_opaque_, normalize(segment), {1, 1, 1}};
   rtcInitIntersectContext(&context.base);
   RTCRay ray = make_ray(from, segment, 1, RayMask::kAll);
   rtcOccluded1(bvh_, &context.base, &ray);
   return ray.tfar < 0 ? Vec3f{} : context.transmittance;
+}
+
+bool RayScene::is_met(const TracedRay& ray) const {
+  if (ray.shadow) {
+    const Vec3f passed = transmittance_along(ray.origin, ray.direction);
+    return passed.x + passed.y + passed.z <= 0;
+  }
+  const RTCRayHit query = closest(ray.origin, ray.direction, static_cast<RayMask>(ray.mask));
+  return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
 bool RayScene::occluded(Vec3f from, Vec3f to) const {
@@ -207,9 +236,9 @@ Vec3f RayScene::leave(Vec3f position, Vec3f normal, Vec3f direction) {
 
 Vec3f RayScene::albedo(const Surface& surface) const {
   const Material& m = material(surface);
-  if (m.texture < 0) return m.albedo;
-  const Image& texture = scene_.textures[static_cast<std::size_t>(m.texture)];
-  return hadamard(m.albedo, sample_texture(texture, surface.uv));
+  const ImageView texture = textures_[static_cast<std::size_t>(surface.material)];
+  return texture.data == nullptr ? m.albedo
+                                 : hadamard(m.albedo, sample_texture(texture, surface.uv));
 }
 
 }  // namespace glint::path_tracing

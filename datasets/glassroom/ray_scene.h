@@ -5,6 +5,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,16 +13,21 @@
 
 #include "datasets/glassroom/bsdf.h"
 #include "datasets/glassroom/trace_scene.h"
+#include "datasets/glassroom/traced_ray.h"
 
 namespace glint::path_tracing {
 
-struct Triangle {
+// All that a hit needs, in two cache lines: the first for the plane, the second for the vertices.
+struct alignas(128) Triangle {
   Vec3f p0, edge1, edge2;  // metres
   Vec3f normal;            // unit, by the right-hand rule
   float area = 0;          // square metres
   int mesh = 0, material = 0;
-  int face = 0;  // of the mesh
+  bool smooth = false;           // has shading normals
+  std::array<Vec3f, 3> normals;  // of the vertices, where smooth
+  std::array<Vec2f, 3> uvs;      // of the vertices, or zero
 };
+static_assert(sizeof(Triangle) == 128);
 
 enum class RayMask : unsigned { kOpaque = 1, kGlass = 2, kAll = 3 };
 
@@ -44,13 +50,18 @@ class RayScene {
   RayScene& operator=(const RayScene&) = delete;
   ~RayScene();
 
-  // Closest hit with t > 0.
+  // Closest hit with t > 0. The texels of albedo() are on their way when it returns.
   std::optional<Surface> intersect(Vec3f origin, Vec3f direction, RayMask mask) const;
 
   // Straight-line transmittance between two points off all surfaces (see leave): 0 behind anything
   // opaque, otherwise the product over panes of (1 - R) tint.
   Vec3f transmittance(Vec3f from, Vec3f to) const;
   bool occluded(Vec3f from, Vec3f to) const;  // by opaque surfaces; ends excluded
+
+  // From now on every ray is added to `rays`, by one thread; null: no more.
+  void record_to(std::vector<TracedRay>* rays) { recorded_ = rays; }
+  // What Embree says to a ray, without anything that shading needs.
+  bool is_met(const TracedRay& ray) const;
 
   // A point of a plane moved off it, to the side that `direction` leaves by: where rays start and
   // end.
@@ -70,15 +81,18 @@ class RayScene {
   const TraceScene& scene() const { return scene_; }
 
  private:
+  RTCRayHit closest(Vec3f origin, Vec3f direction, RayMask mask) const;
+  Vec3f transmittance_along(Vec3f from, Vec3f segment) const;
   void add_triangles(bool glass);
   void attach(std::size_t first, std::size_t count, RayMask mask);
-  void interpolate_vertices(const Triangle& triangle, float u, float v, Surface& surface) const;
   static void pass_glass(const RTCFilterFunctionNArguments* arguments);
 
   const TraceScene& scene_;
   std::vector<MaterialModel> models_;
+  std::vector<ImageView> textures_;  // of materials; empty: none
   std::vector<Triangle> triangles_;  // opaque ones first
   std::size_t num_opaque_ = 0;
+  std::vector<TracedRay>* recorded_ = nullptr;
   RTCDevice device_ = nullptr;
   RTCScene bvh_ = nullptr;
 };

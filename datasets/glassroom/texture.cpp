@@ -22,7 +22,7 @@ Taps repeat_taps(float coordinate, int size) {
   return {first < 0 ? size - 1 : first, first + 1 < size ? first + 1 : 0, x - cell};
 }
 
-Vec3f texel(const Image& texture, int x, int y) {
+Vec3f texel(ImageView texture, int x, int y) {
   const float* value = texture.pixel(x, y);
   return {value[0], value[1], value[2]};
 }
@@ -31,13 +31,19 @@ Vec3f mix(Vec3f a, Vec3f b, float t) { return (1 - t) * a + t * b; }
 
 }  // namespace
 
-Vec3f sample_texture(const Image& texture, Vec2f uv) {
-  const Taps x = repeat_taps(uv.x, texture.width()), y = repeat_taps(uv.y, texture.height());
+Vec3f sample_texture(ImageView texture, Vec2f uv) {
+  const Taps x = repeat_taps(uv.x, texture.width), y = repeat_taps(uv.y, texture.height);
   const Vec3f top =
       mix(texel(texture, x.first, y.first), texel(texture, x.second, y.first), x.weight);
   const Vec3f bottom =
       mix(texel(texture, x.first, y.second), texel(texture, x.second, y.second), x.weight);
   return mix(top, bottom, y.weight);
+}
+
+void prefetch_texture(ImageView texture, Vec2f uv) {
+  const Taps x = repeat_taps(uv.x, texture.width), y = repeat_taps(uv.y, texture.height);
+  for (const int row : {y.first, y.second})
+    for (const int column : {x.first, x.second}) __builtin_prefetch(texture.pixel(column, row));
 }
 
 }  // namespace glint::path_tracing

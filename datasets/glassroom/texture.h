@@ -8,6 +8,9 @@
 
 namespace glint::path_tracing {
 
-Vec3f sample_texture(const Image& texture, Vec2f uv);
+Vec3f sample_texture(ImageView texture, Vec2f uv);
+
+// Asks for the texels of a look-up ahead of time: a room's textures do not fit into the caches.
+void prefetch_texture(ImageView texture, Vec2f uv);
 
 }  // namespace glint::path_tracing

@@ -54,6 +54,18 @@ TEST_CASE("only what is asked for is made and timed") {
   CHECK(names("Adam*|rasterize forward") == Names{"rasterize forward", "Adam, 58 values a surfel"});
   CHECK(names("2dgs training step") == Names{"2dgs training step"});
   CHECK(names("trace fog*").size() == 2);
+  CHECK(names("path tracer") == Names{"path tracer"});
+}
+
+TEST_CASE("Embree alone traces the rays of the path tracer, all of them") {
+  PerfOptions options = small_options();
+  options.only = "path tracer*";
+  const std::vector<PerfCase> cases = make_perf_cases(options);
+  REQUIRE(cases.size() == 2);
+  CHECK(cases[0].unit == "rays");
+  CHECK(cases[0].work() == cases[1].work());
+  // Of each of 4 samples: a ray to the first surface, and one towards a light.
+  CHECK(cases[0].work() > 2 * 4 * 16 * 9);
 }
 
 TEST_CASE("the kernels of an op are timed one by one, with their launches") {
