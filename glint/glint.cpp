@@ -6,8 +6,10 @@
 //
 // Deviations: transmission is rasterised with the interface's depth as the near limit instead of
 // traced (thin glass does not bend the ray; `transmission=trace` traces). z_trans is the depth of
-// the transmission set seen from the camera on its own. LPIPS needs weights that the user has, and
-// is off without. What the paper leaves open (weights, initial t and s, windows) is in GlintConfig.
+// the transmission set seen from the camera on its own. In training, pixels that mirror little
+// share mirrored rays (`mirror_share_below`; docs/PERFORMANCE.md has its price). LPIPS needs
+// weights that the user has, and is off without. What the paper leaves open (weights, initial t and
+// s, windows) is in GlintConfig.
 //
 // `glint/release` follows the official code instead where both differ. Not in it: the second
 // reflection at the transmission set, multi-view consistency, the variance of depth patches, the

@@ -8,12 +8,13 @@ namespace glint {
 
 // Deviation: mirrored rays stop earlier than rasterised ones (1e-4, 256 hits). A new reflection set
 // is a fog of faint surfels that would take hundreds of hits a ray, and what lies behind 2 % of
-// transmittance changes a pixel by 0.02 k_s, less than a step of 8 bits at the k_s of glass.
+// transmittance changes a pixel by 0.02 k_s, less than a step of 8 bits at the k_s of glass. And in
+// training, 2x2 pixels that mirror little share a ray (SharedRays).
 struct MirrorCutoffs {
   float transmittance = 0.02f;
   int hits = 64;
   float near = 0;
-  float share_below = 0;  // of training; SharedRays
+  float share_below = 0.2f;  // k_s
 
   template <class V>
   void visit(V&& v) {

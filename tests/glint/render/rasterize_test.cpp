@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "glint/core/parallel.h"
-#include "glint/render/raster_wide.h"
 #include "tests/support/compare_render.h"
+#include "tests/support/forward_backward.h"
 #include "tests/support/golden_surfel.h"
 
 using namespace glint;
@@ -16,19 +16,11 @@ using namespace glint::test;
 
 namespace {
 
-constexpr RasterSettings kAllMaps{
-    .with_distortion = true, .with_plane_distance = true, .with_statistics = true};
-
 // Largest difference at clean pixels. By the estimate at kCutoffGuard rho is off by 1e-4 and alpha
 // by half of that; ten times as much room for slanted surfels and for depth.
 constexpr double kTolerance = 1e-3;
 // Where planes are seen under angles down to 0.05 degrees, that angle multiplies every rounding.
 constexpr double kGrazingTolerance = 1e-2;
-
-RasterSettings with_lanes(RasterSettings settings, int lanes) {
-  settings.lanes = lanes;
-  return settings;
-}
 
 RasterOutput rasterize(
     const RasterInput& input,
@@ -57,12 +49,6 @@ void check_errors(const RenderErrors& errors, double tolerance) {
   CHECK(errors.clean > errors.near_cutoff);
 }
 
-RandomSurfels all_kinds() {
-  RandomSurfels options;
-  options.edge_on = options.at_camera = options.behind = options.huge = options.tiny = 0.1;
-  return options;
-}
-
 // Parallel to the image plane of a camera at the origin; feature = `value` in one channel.
 void add_facing(SurfelArrays& surfels, Vec3d mean, double scale, double opacity, float value) {
   surfels.channels = 1;
@@ -79,55 +65,6 @@ Camera small_camera() {
 }
 
 // Equal to the bit: NaN equals itself, 0 and -0 differ.
-template <class Range>
-bool same_bytes(const Range& a, const Range& b) {
-  return a.size() == b.size() &&
-         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(*a.data())) == 0);
-}
-
-void check_same_bytes(const RasterOutput& a, const RasterOutput& b) {
-  CHECK(same_bytes(a.features.values(), b.features.values()));
-  CHECK(same_bytes(a.alpha.values(), b.alpha.values()));
-  CHECK(same_bytes(a.depth_sum.values(), b.depth_sum.values()));
-  CHECK(same_bytes(a.depth_median.values(), b.depth_median.values()));
-  CHECK(same_bytes(a.normal.values(), b.normal.values()));
-  CHECK(same_bytes(a.distortion.values(), b.distortion.values()));
-  CHECK(same_bytes(a.plane_distance.values(), b.plane_distance.values()));
-  CHECK(same_bytes(a.owned_pixels, b.owned_pixels));
-  CHECK(same_bytes(a.radii, b.radii));
-  CHECK(same_bytes(a.visibility, b.visibility));
-  CHECK(same_bytes(a.in_view, b.in_view));
-}
-
-void check_same_bytes(const RasterGradient& a, const RasterGradient& b) {
-  CHECK(same_bytes(a.means, b.means));
-  CHECK(same_bytes(a.scales, b.scales));
-  CHECK(same_bytes(a.rotations, b.rotations));
-  CHECK(same_bytes(a.opacities, b.opacities));
-  CHECK(same_bytes(a.features, b.features));
-  CHECK(same_bytes(a.screen, b.screen));
-  CHECK(same_bytes(a.screen_abs, b.screen_abs));
-}
-
-struct ForwardBackward {
-  RasterOutput output;
-  RasterGradient gradient;
-};
-
-// The loss is the sum of all maps.
-ForwardBackward forward_backward(
-    Rasterizer& rasterizer, const SurfelArrays& surfels, const Camera& camera, int lanes = 16
-) {
-  ForwardBackward result;
-  const Image one(camera.width, camera.height, 1, 1.0f),
-      three(camera.width, camera.height, 3, 1.0f);
-  const RasterOutputGradient ones{
-      Image(camera.width, camera.height, surfels.channels, 1.0f), one, one, one, three, one, one};
-  result.output = rasterizer.forward({surfels.view(), camera, with_lanes(kAllMaps, lanes)});
-  result.gradient = rasterizer.backward(ones);
-  return result;
-}
-
 struct ThreadCount {
   explicit ThreadCount(int n) { set_num_threads(n); }
   ~ThreadCount() { set_num_threads(0); }
@@ -522,60 +459,6 @@ TEST_CASE("The length of a quaternion does not matter") {
   for (float& value : surfels.rotations) value *= 4;  // exact in binary
   const RasterOutput after = rasterize(surfels, camera);
   CHECK(same_bytes(before.features.values(), after.features.values()));
-}
-
-TEST_CASE("The scalar instantiation gives what the SIMD one gives, within rounding") {
-  const auto [width, height] = GENERATE(table<int, int>({{1, 1}, {33, 17}, {100, 75}}));
-  Rng rng(10);
-  const Camera camera = random_camera(rng, {width, height});
-  const SurfelArrays surfels = random_surfels(all_kinds(), camera, rng);
-  Rasterizer rasterizer;
-  const ForwardBackward simd = forward_backward(rasterizer, surfels, camera);
-  const ForwardBackward scalar = forward_backward(rasterizer, surfels, camera, 1);
-  // The same operations on every lane: maps agree to the last bits, so no cut-off can flip.
-  const auto check = [](std::span<const float> a, std::span<const float> b, float tolerance) {
-    REQUIRE(a.size() == b.size());
-    float largest = 0, difference = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      largest = std::max(largest, std::abs(a[i]));
-      difference = std::max(difference, std::abs(a[i] - b[i]));
-    }
-    CHECK(difference <= tolerance * largest);
-  };
-  check(simd.output.features.values(), scalar.output.features.values(), 1e-6f);
-  check(simd.output.depth_sum.values(), scalar.output.depth_sum.values(), 1e-6f);
-  check(simd.output.normal.values(), scalar.output.normal.values(), 1e-6f);
-  check(simd.output.distortion.values(), scalar.output.distortion.values(), 1e-6f);
-  check(simd.output.plane_distance.values(), scalar.output.plane_distance.values(), 1e-6f);
-  check(simd.output.owned_pixels, scalar.output.owned_pixels, 0);
-  check(simd.output.radii, scalar.output.radii, 0);
-  // Gradients sum over pixels in another order.
-  check(simd.gradient.means, scalar.gradient.means, 1e-5f);
-  check(simd.gradient.scales, scalar.gradient.scales, 1e-5f);
-  check(simd.gradient.rotations, scalar.gradient.rotations, 1e-5f);
-  check(simd.gradient.opacities, scalar.gradient.opacities, 1e-5f);
-  check(simd.gradient.features, scalar.gradient.features, 1e-5f);
-  check(simd.gradient.screen_abs, scalar.gradient.screen_abs, 1e-5f);
-}
-
-TEST_CASE("Eight and sixteen lanes give the same bytes") {
-  if (!has_wide_tiles()) {
-    WARN("this processor, or this build, has no sixteen lanes: not compared");
-    return;
-  }
-  const auto [width, height] = GENERATE(table<int, int>({{1, 1}, {33, 17}, {100, 75}}));
-  const int channels = GENERATE(3, 5, 7);
-  Rng rng(10);
-  const Camera camera = random_camera(rng, {width, height});
-  RandomSurfels options = all_kinds();
-  options.channels = channels;
-  options.count = 400;  // so many that pixels stop
-  const SurfelArrays surfels = random_surfels(options, camera, rng);
-  Rasterizer rasterizer;
-  const ForwardBackward eight = forward_backward(rasterizer, surfels, camera, 8);
-  const ForwardBackward sixteen = forward_backward(rasterizer, surfels, camera, 16);
-  check_same_bytes(eight.output, sixteen.output);
-  check_same_bytes(eight.gradient, sixteen.gradient);
 }
 
 TEST_CASE("Bytes do not depend on the number of threads or on repetition") {
