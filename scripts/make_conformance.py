@@ -408,6 +408,12 @@ def glass_vectors():
         vector("transparency-mae" + at, np.abs(clipped - glass)[m].mean(), NUMPY, where)
     behind = goldens.depth_values(d["behind_depth"][glass], t["behind_depth"][glass])
     vector("behind-absrel", behind["absrel"], NUMPY, "depth of what is behind glass, glass pixels")
+    content = t["behind_depth"] - t["depth"] < 1.25
+    for key, part in [("content", glass & content), ("beyond", glass & ~content)]:
+        assert part.any()
+        values = goldens.depth_values(d["behind_depth"][part], t["behind_depth"][part])
+        vector(f"behind-absrel-{key}", values["absrel"], NUMPY,
+               "glass pixels with less than 1.25 m between the layers, and the others")
     for suffix in ["", "-expected", "-median"]:
         p = d["behind" + (suffix.replace("-", "_") or "_depth")][glass]
         if suffix:
