@@ -13,8 +13,6 @@
 #else
 #define GLINT_HD inline
 #endif
-// For what runs at every hit: GCC stops inlining when a file has grown enough.
-#define GLINT_HD_INLINED GLINT_HD __attribute__((always_inline))
 
 namespace glint {
 

@@ -104,7 +104,7 @@ GLINT_HD Mask<T> owns_pixel(const SplatHit<T>& hit) {
 // `map`: the splat's, in lanes. Returns false where no lane has a hit (scalars only; lanes say it
 // by weight 0).
 template <class T>
-GLINT_HD_INLINED bool composite_splat(
+GLINT_HD bool composite_splat(
     const Splat& splat,
     const PixelPlaneMap<T>& map,
     T x,
