@@ -20,8 +20,6 @@ struct Float16 {
   Float16() = default;
   GLINT_SIMD_INLINE Float16(Lanes value) : lanes(value) {}
   GLINT_SIMD_INLINE Float16(float v) : lanes(_mm512_set1_ps(v)) {}
-  GLINT_SIMD_INLINE Float16(Float8 low, Float8 high)
-      : lanes(_mm512_insertf32x8(_mm512_castps256_ps512(low.lanes), high.lanes, 1)) {}
 
   static GLINT_SIMD_INLINE Float16 load(const float* p) { return Lanes(_mm512_loadu_ps(p)); }
   GLINT_SIMD_INLINE void store(float* p) const { _mm512_storeu_ps(p, lanes); }

@@ -13,7 +13,7 @@ namespace glint {
 
 namespace {
 
-// The tiles that the widest lanes take.
+// How many pixels are taken at once.
 int lanes_of(const RasterSettings& settings) {
   if (settings.lanes >= 16 && has_wide_tiles()) return 16;
   return settings.lanes >= 8 ? 8 : 1;
@@ -180,7 +180,7 @@ struct ListedCall {
   const float *means = nullptr, *scales = nullptr, *rotations = nullptr, *opacities = nullptr;
   std::size_t count = 0;
   CameraOf<float> camera{};
-  bool lanes = false;
+  bool with_lanes = false;
 
   ListedCall() = default;
   explicit ListedCall(const RasterCall& call)
@@ -190,10 +190,10 @@ struct ListedCall {
         opacities(call.input.opacities.data()),
         count(call.input.count),
         camera(camera_of(call)),
-        lanes(call.settings.lanes > 1) {}
+        with_lanes(call.settings.lanes > 1) {}
   friend bool operator==(const ListedCall& a, const ListedCall& b) {
     return a.means == b.means && a.scales == b.scales && a.rotations == b.rotations &&
-           a.opacities == b.opacities && a.count == b.count && a.lanes == b.lanes &&
+           a.opacities == b.opacities && a.count == b.count && a.with_lanes == b.with_lanes &&
            std::memcmp(&a.camera, &b.camera, sizeof a.camera) == 0;
   }
 };
