@@ -5,66 +5,20 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "glint/core/image.h"
 #include "glint/cuda/backend.h"
-#include "glint/cuda/ops.h"
 #include "glint/cuda/require_gpu.h"
 #include "tests/support/difference_list.h"
 #include "tests/support/host_exec.h"
 
 namespace glint::test {
 
-// Memory operations of kernels on the host.
-struct HostDeviceOps {
-  static void move(void* to, const void* from, std::size_t bytes) {
-    const OpenMemory open(OpenMemory::kBoth);
-    std::memcpy(to, from, bytes);
-  }
-  // From or to the host.
-  static void transfer(void* to, const void* from, std::size_t bytes) {
-    host_recorder().interrupt();
-    move(to, from, bytes);
-  }
-  static void copy(void* to, const void* from, std::size_t bytes) {
-    host_recorder().now_or_later([=] { move(to, from, bytes); });
-  }
-  static void clear(void* block, std::size_t bytes) {
-    host_recorder().now_or_later([=] {
-      const OpenMemory open(OpenMemory::kDevice);
-      std::memset(block, 0, bytes);
-    });
-  }
-  static void fill(float* to, std::size_t count, float value) {
-    host_recorder().now_or_later([=] {
-      const OpenMemory open(OpenMemory::kDevice);
-      std::fill_n(to, count, value);
-    });
-  }
-};
-
-// `recorded`: silent steps of trainings are.
-inline void use_host_kernels(bool recorded = false) {
-  static const DeviceBackend backend{
-      .name = "kernels on the host",
-      .allocate = HostDeviceMemory::allocate,
-      .release = HostDeviceMemory::release,
-      .upload = HostDeviceOps::transfer,
-      .download = HostDeviceOps::transfer,
-      .copy = HostDeviceOps::copy,
-      .clear = HostDeviceOps::clear,
-      .fill = HostDeviceOps::fill,
-      .synchronize = [] { host_recorder().interrupt(); },
-      .room = [] { return host_memory().room; },
-      .allocate_host = [](std::size_t bytes) { return host_memory().host.allocate(bytes); },
-      .release_host = [](void* block) noexcept { host_memory().host.release(block); }};
-  gpu::use_executor<HostExec>(backend);
-  step_recorder = recorded ? &host_recorder() : nullptr;
-}
+// `recorded`: silent steps of trainings are. Kernels are compiled once, in host_kernels.cpp.
+void use_host_kernels(bool recorded = false);
 
 // Calls f(name) with each backend in use, and the CPU afterwards.
 template <class F>

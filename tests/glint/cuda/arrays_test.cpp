@@ -9,6 +9,7 @@
 
 #include "glint/core/kernel.h"
 #include "glint/core/rng.h"
+#include "glint/render/op_backends.h"
 #include "tests/support/gpu_backends.h"
 
 using namespace glint;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "glint/core/files.h"
+#include "glint/cuda/ops.h"
 #include "tests/support/gpu_backends.h"
 
 using namespace glint;

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
+#include "glint/cuda/bvh_bodies.h"
 #include "glint/render/glass_transport.h"
 #include "glint/train/trainable_set.h"
 #include "tests/support/count_launches.h"

@@ -2,6 +2,7 @@
 // The network against a plain loop in double, whose gradient is taken by central differences.
 #include "glint/train/mlp.h"
 
+#include "glint/core/parallel.h"
 #include "tests/support/check_vjp.h"
 #include "tests/support/gpu_backends.h"
 #include "tests/support/temp_folder.h"

@@ -22,6 +22,7 @@ export const browser = await chromium.launch({
 
 export async function openPage(file, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, ...options });
+  context.setDefaultTimeout(120_000); // pictures and WebGL in software, on machines that do other work
   const page = await context.newPage();
   await page.addInitScript(() => {
     // ImageData of a PNG in base64.
