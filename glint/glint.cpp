@@ -58,8 +58,8 @@ class Glint final : public Method {
     model_.transmission = new_set(points, initial, windows_.transmission_densify());
     initial.seed = options.seed + 2;
     initial.opacity = config_.reflection_opacity;
-    model_.reflection =
-        new_set(config_.grid.points(scene, options.seed), initial, windows_.reflection_densify());
+    const PointCloud fog = config_.grid.points(scene, options.seed);
+    model_.reflection = new_set(fog, initial, windows_.reflection_densify(fog.positions.size()));
     initial = {};
     initial.seed = options.seed;
     initial.extra = {

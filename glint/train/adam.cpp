@@ -50,13 +50,14 @@ struct AdamArrays {
 };
 
 template <bool kOneRate>
-void update(const AdamArrays& a, float correction1, float correction2) {
+void update(const AdamArrays& a, float correction1, float correction2, bool only_seen) {
   AdamKernel<kOneRate> kernel{
       a.p->on_device(), a.g->on_device(), a.m->on_device(), a.v->on_device(), {}, 0, 0};
   kernel.columns = a.rates.size();
   kernel.scale_v = 1 / correction2;
   for (std::size_t c = 0; c < a.rates.size(); ++c) kernel.rates[c] = a.rates[c] / correction1;
   kernel.is_void = void_word();
+  kernel.only_seen = only_seen;
   run_kernel(a.p->size(), kGrain, kernel);
 }
 
@@ -113,9 +114,9 @@ void SurfelAdam::step(
   second_.for_each_array([&](const char*, FloatArray& a, std::size_t) { arrays[k++].v = &a; });
   for (const AdamArrays& a : arrays) {
     if (a.rates.size() == 1)
-      update<true>(a, correction1, correction2);
+      update<true>(a, correction1, correction2, rates.only_seen);
     else
-      update<false>(a, correction1, correction2);
+      update<false>(a, correction1, correction2, rates.only_seen);
   }
 }
 

@@ -22,6 +22,8 @@ struct SurfelRates {
   float opacity = 0.05f;
   float scale = 0.005f;
   float rotation = 0.001f;
+  // Numbers without a gradient in a step stay, and so do their moments (no drift by momentum).
+  bool only_seen = false;
   std::vector<float> extra;  // of the set's extra channels, in their order
 
   template <class V>
@@ -34,6 +36,7 @@ struct SurfelRates {
     v("rate_opacity", opacity, "learning rate of opacity");
     v("rate_scale", scale, "learning rate of log scales");
     v("rate_rotation", rotation, "learning rate of quaternions");
+    v("only_seen", only_seen, "Adam leaves numbers alone that have no gradient in a step");
   }
 
   // Rates of a run that is `shortening` times shorter than the published one: position_steps
