@@ -117,8 +117,9 @@ struct EnvGsConfig {
         scaled(environment_reset_interval, environment_reset_interval / 10);
   }
   // Of the environment, in a run's windows.
-  DensifyConfig environment_densify() const {
+  DensifyConfig environment_densify(ImageSize size) const {
     DensifyConfig config = densify;
+    config.max_scale *= grid.coarseness(size);
     config.from = environment_densify_from - environment_clock;
     config.until = environment_densify_until - environment_clock;
     config.interval = environment_densify_interval;
@@ -150,7 +151,8 @@ class EnvGs final : public Method {
     initial = {};
     initial.seed = options.seed + 2;
     const PointCloud grid = config_.grid.points(scene, options.seed);
-    environment_ = new_set(grid, initial, windows_.environment_densify());
+    environment_ =
+        new_set(grid, initial, windows_.environment_densify(scene.train.front().camera.size()));
     bootstrap_ = ReflectionBootstrap(windows_.bootstrap, options.seed);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
@@ -182,6 +184,7 @@ class EnvGs final : public Method {
       const int clock = iteration - windows_.environment_clock + 1;
       note_reset(environment_.update(clock), "environment", stats);
     }
+    stats.sets = {{"base", base_.cloud().size()}, {"environment", environment_.cloud().size()}};
     stats.num_surfels = num_surfels();
     return stats;
   }

@@ -59,7 +59,11 @@ class Glint final : public Method {
     initial.seed = options.seed + 2;
     initial.opacity = config_.reflection_opacity;
     const PointCloud fog = config_.grid.points(scene, options.seed);
-    model_.reflection = new_set(fog, initial, windows_.reflection_densify(fog.positions.size()));
+    model_.reflection = new_set(
+        fog,
+        initial,
+        windows_.reflection_densify(fog.positions.size(), scene.train.front().camera.size())
+    );
     initial = {};
     initial.seed = options.seed;
     initial.extra = {
@@ -93,6 +97,10 @@ class Glint final : public Method {
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     model_.backward(dL_dimage_, dL_dtransparency_, dL_dalpha, !frozen_, dL_dinterface_);
     update(iteration, stats);
+    stats.sets = {
+        {"interface", model_.interface.cloud().size()},
+        {"transmission", model_.transmission.cloud().size()},
+        {"reflection", model_.reflection.cloud().size()}};
     stats.num_surfels = num_surfels();
     return stats;
   }

@@ -66,8 +66,9 @@ DensifyConfig GlintConfig::transmission_densify() const {
   return config;
 }
 
-DensifyConfig GlintConfig::reflection_densify(std::size_t initial_count) const {
+DensifyConfig GlintConfig::reflection_densify(std::size_t initial_count, ImageSize size) const {
   DensifyConfig config = secondary_densify();
+  config.max_scale *= grid.coarseness(size);
   config.gradient_threshold = reflection_gradient;
   config.growth_quantile = reflection_growth_quantile;
   config.kept_at_least =

@@ -122,7 +122,8 @@ struct GlintConfig {
   // Of the three sets, in a run's windows; the secondary sets count steps from where they start.
   DensifyConfig interface_densify() const;
   DensifyConfig transmission_densify() const;
-  DensifyConfig reflection_densify(std::size_t initial_count) const;
+  // initial_count: surfels that it starts with; size: of training images.
+  DensifyConfig reflection_densify(std::size_t initial_count, ImageSize size) const;
   // Errors (kUsage): a word that is none of the known ones.
   void check() const;
 

@@ -22,8 +22,9 @@ struct StepStats {
   double loss = 0;
   double psnr = 0;  // of the training view of this step
   std::size_t num_surfels = 0;
-  std::map<std::string, double> terms;  // each loss term, weighted
-  std::vector<std::string> events;      // of this step, for the log: "opacities reset"
+  std::map<std::string, std::size_t> sets;  // surfels of each, of methods with several
+  std::map<std::string, double> terms;      // each loss term, weighted
+  std::vector<std::string> events;          // of this step, for the log: "opacities reset"
 };
 
 // Options of one run that every method gets.

@@ -41,6 +41,11 @@ struct ViewPair {
   MapViews rendered;  // rgb is not clamped; depth and normal: 0 or not finite where nothing is
   MapViews truth;     // "rgb" is the view's image
   MaskView glass;     // non-zero: the first surface is glass; empty: not known
+
+  // The rendered map, or `instead` of a method that renders none.
+  ImageView rendered_or(MapId map, MapId instead) const {
+    return rendered[rendered[map].empty() ? instead : map];
+  }
 };
 
 enum class Direction { kHigherIsBetter, kLowerIsBetter };

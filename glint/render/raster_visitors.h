@@ -118,8 +118,6 @@ void forward_tile(const TileContext& tile, RasterSaved& saved, RasterOutput& out
 
 // ---- backward ----------------------------------------------------------------------------------
 
-constexpr int kMaxSums = in_eights(feature_slot(true, true) + kMaxChannels);
-
 template <class T, class Code>
 struct BackwardVisitor {
   const TileContext& tile;

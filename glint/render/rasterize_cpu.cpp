@@ -49,6 +49,8 @@ void for_each_tile(const RasterCall& call, const TileLists& lists, Wide&& wide, 
 
 // ---- sums over a surfel's tiles ----------------------------------------------------------------
 
+constexpr int kMaxSums = in_eights(feature_slot(true, true) + kMaxChannels);
+
 void sum_pairs(const RasterSaved& saved, std::size_t surfel, int width, float* sums) {
   std::fill_n(sums, width, 0.0f);
   saved.for_pairs(surfel, [&](std::uint32_t place) {

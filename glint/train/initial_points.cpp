@@ -69,6 +69,10 @@ int ReflectionGrid::cells_for(ImageSize size) const {
   return std::clamp(static_cast<int>(std::lround(along_axis)), 1, std::max(cells, 1));
 }
 
+float ReflectionGrid::coarseness(ImageSize size) const {
+  return static_cast<float>(cells) / static_cast<float>(cells_for(size));
+}
+
 PointCloud ReflectionGrid::points(const Scene& scene, std::uint64_t seed) const {
   Rng rng(seed, hash_name("reflection points"));
   const int n = cells_for(scene.train.front().camera.size());

@@ -34,6 +34,10 @@ struct ReflectionGrid {
     v("reflection_points_per_pixel", points_per_pixel, "fewer cells in small images");
   }
   int cells_for(ImageSize size) const;
+  // How many times as far apart points are as with all cells. Deviation: the size at which density
+  // control prunes or splits grows with it; otherwise surfels of a coarse grid begin near that size
+  // and nearly all of them go (docs/GLINT_NOTES.md).
+  float coarseness(ImageSize size) const;
   PointCloud points(const Scene& scene, std::uint64_t seed) const;
 };
 

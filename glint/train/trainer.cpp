@@ -35,6 +35,7 @@ Json log_line(const StepStats& stats, const TrainingProgress& done) {
       {"seconds", done.seconds},
       {"saving_seconds", done.saving_seconds}};
   for (const auto& [name, value] : stats.terms) line["terms"][name] = value;
+  for (const auto& [name, size] : stats.sets) line["sets"][name] = size;
   return line;
 }
 

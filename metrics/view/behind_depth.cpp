@@ -13,18 +13,17 @@ namespace glint::view_metrics {
 namespace {
 
 struct Estimate {
-  const char* suffix;   // of the metrics' ids
-  MapId map;            // that is scored
-  const char* instead;  // what a method without the map is scored by; null: nothing
+  const char* suffix;            // of the metrics' ids
+  MapId map;                     // that is scored
+  std::optional<MapId> instead;  // what a method without the map is scored by; else nothing
 };
 const Estimate kEstimates[] = {
-    {"", "behind_depth", "depth"},
-    {"-expected", "behind_expected", nullptr},
-    {"-median", "behind_median", nullptr}};
+    {"", "behind_depth", MapId("depth")},
+    {"-expected", "behind_expected", {}},
+    {"-median", "behind_median", {}}};
 
 ImageView scored_map(const ViewPair& pair, const Estimate& estimate) {
-  const ImageView map = pair.rendered[estimate.map];
-  return map.empty() && estimate.instead != nullptr ? pair.rendered["depth"] : map;
+  return pair.rendered_or(estimate.map, estimate.instead.value_or(estimate.map));
 }
 
 // AbsRel and coverage of each.
@@ -58,7 +57,7 @@ MetricFamily behind_depth() {
     Json protocol = config_to_json(DepthProtocol{});
     protocol["pixels"] = "glass";
     protocol["map"] = estimate.map.row().id;
-    if (estimate.instead != nullptr) protocol["without_second_layer"] = estimate.instead;
+    if (estimate.instead) protocol["without_second_layer"] = estimate.instead->row().id;
     const std::string suffix = estimate.suffix;
     family.metrics.push_back({"behind-absrel" + suffix, "", Direction::kLowerIsBetter, 3, protocol}
     );

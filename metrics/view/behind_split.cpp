@@ -23,8 +23,7 @@ MaskImage glass_in_front_of(const ViewPair& pair, bool content) {
 
 MetricValues whole_image(const ViewPair& pair) {
   MetricValues row(2);
-  const ImageView own = pair.rendered["behind_depth"];
-  const ImageView depth = own.empty() ? pair.rendered["depth"] : own;
+  const ImageView depth = pair.rendered_or("behind_depth", "depth");
   if (depth.empty()) return row;
   for (const bool content : {true, false}) {
     const MaskImage mask = glass_in_front_of(pair, content);

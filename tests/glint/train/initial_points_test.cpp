@@ -28,6 +28,8 @@ TEST_CASE("The reflection grid has as many points a pixel in small images and 32
   CHECK(grid.cells_for({1920, 1080}) == 32);
   CHECK(grid.cells_for({160, 90}) == 15);
   CHECK(grid.cells_for({1, 1}) == 1);
+  CHECK(grid.coarseness({480, 270}) == 1.0f);
+  CHECK(grid.coarseness({160, 90}) == Approx(32.0 / 15));
 }
 
 TEST_CASE("Every cell of the reflection grid holds its points, inside the bounds") {

@@ -29,6 +29,7 @@ class Exploding : public Method {
     stats.loss = iteration == at_ ? std::numeric_limits<double>::quiet_NaN() : 1.0;
     stats.terms["sharpness"] = stats.loss;
     if (iteration == 3) stats.events.emplace_back("opacities reset");
+    if (iteration >= 10) stats.sets = {{"base", 2}, {"environment", 3}};
     return stats;
   }
   MapSet render(const Camera&) override { return {}; }
@@ -141,7 +142,7 @@ TEST_CASE("A device that is lost ends training with the last checkpoint kept who
   CHECK(steps_in(folder) == count_to(2));
 }
 
-TEST_CASE("Events between two lines of the log stand in the second, with their iteration") {
+TEST_CASE("The log has events with their iteration, and the surfels of each of several sets") {
   set_quiet(true);
   const test::TempFolder temporary;
   Exploding method(25);
@@ -156,6 +157,8 @@ TEST_CASE("Events between two lines of the log stand in the second, with their i
   std::getline(log, second);
   CHECK(Json::parse(first)["events"] == Json({{{"iteration", 3}, {"text", "opacities reset"}}}));
   CHECK_FALSE(Json::parse(second).contains("events"));
+  CHECK_FALSE(Json::parse(first).contains("sets"));
+  CHECK(Json::parse(second)["sets"] == Json({{"base", 2}, {"environment", 3}}));
 }
 
 TEST_CASE("Training without views is refused") {
