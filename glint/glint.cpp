@@ -291,6 +291,17 @@ GLINT_REGISTER(
         {{"linear_light", true}}
     )
 )
+// docs/GLINT_NOTES.md has what each does alone.
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
+        "glint/plus",
+        "GLINT+",
+        "",
+        "beyond the paper: transmission starts as a copy of the interface, a quarter of the resets",
+        {{"clone_interface", true}, {"opacity_reset_interval", 12000}}
+    )
+)
 GLINT_REGISTER(
     MethodSpec,
     glint_spec(

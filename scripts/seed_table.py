@@ -1,0 +1,78 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Tables of runs of one room with several seeds: those of docs/GLINT_NOTES_TABLES.md.
+
+    scripts/seed_table.py RECORDS.jsonl [--base NAME]
+
+Mean and standard deviation over seeds of each variant (the record's `name`, else its method); with --base the
+differences of runs with the same seed to that variant, from the smallest to the largest.
+"""
+
+import argparse
+import json
+import statistics
+
+COLUMNS = [  # title, metric, decimals
+    ("PSNR", "psnr", 2), ("glass", "psnr@glass", 2), ("opaque", "psnr@opaque", 2), ("SSIM", "ssim-3dgs", 3),
+    ("Normal MAE", "normal-mae", 1), ("AbsRel on glass", "depth-absrel@glass", 3), ("t IoU", "transparency-iou", 3),
+    ("behind", "behind-absrel", 3), ("content", "behind-absrel-content", 3), ("beyond", "behind-absrel-beyond", 3),
+    ("trans-PSNR", "trans-psnr", 1), ("refl-PSNR", "refl-psnr", 1), ("CD (dm)", "mesh-cd", 2),
+    ("CD behind (dm)", "behind-mesh-cd", 2), ("surfels", "num-surfels", 0),
+]
+IN_DM = {"mesh-cd", "behind-mesh-cd"}
+
+
+def value(record, metric):
+    """The metric in the column's unit, or None."""
+    found = record["metrics"].get(metric)
+    return found * 10 if found is not None and metric in IN_DM else found
+
+
+def by_variant(path):
+    """name -> seed -> record, in the file's order; the last record of a seed counts."""
+    variants = {}
+    with open(path, encoding="utf-8") as lines:
+        for record in map(json.loads, lines):
+            name = record.get("name", record["method"])
+            if record["status"] == "ok":
+                variants.setdefault(name, {})[record["seed"]] = record
+    return variants
+
+
+def mean_cell(values, decimals):
+    values = [v for v in values if v is not None]
+    if not values:
+        return "-"
+    mean = f"{statistics.mean(values):.{decimals}f}"
+    return mean if len(values) < 2 or decimals == 0 else f"{mean} ± {statistics.stdev(values):.{decimals}f}"
+
+
+def difference_cell(runs, base, metric, decimals):
+    pairs = [(value(runs[s], metric), value(base[s], metric)) for s in runs if s in base]
+    pairs = [a - b for a, b in pairs if a is not None and b is not None]
+    return f"{min(pairs):+.{decimals}f} to {max(pairs):+.{decimals}f}" if pairs else "-"
+
+
+def print_row(cells):
+    print("| " + " | ".join(cells) + " |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("records")
+    parser.add_argument("--base", help="variant that the others are compared with")
+    arguments = parser.parse_args()
+    variants = by_variant(arguments.records)
+    print_row([f"less `{arguments.base}`" if arguments.base else "", "seeds"] + [title for title, _, _ in COLUMNS])
+    print_row(["---"] + ["---:"] * (1 + len(COLUMNS)))
+    for name, runs in variants.items():
+        if name == arguments.base:
+            continue
+        cell = lambda metric, decimals: (
+            difference_cell(runs, variants[arguments.base], metric, decimals) if arguments.base
+            else mean_cell([value(run, metric) for run in runs.values()], decimals))
+        print_row([name, str(len(runs))] + [cell(metric, decimals) for _, metric, decimals in COLUMNS])
+
+
+if __name__ == "__main__":
+    main()
