@@ -58,11 +58,10 @@ class Glint final : public Method {
     model_.transmission = new_set(points, initial, windows_.transmission_densify());
     initial.seed = options.seed + 2;
     initial.opacity = config_.reflection_opacity;
-    const PointCloud fog = config_.grid.points(scene, options.seed);
     model_.reflection = new_set(
-        fog,
+        config_.grid.points(scene, options.seed),
         initial,
-        windows_.reflection_densify(fog.positions.size(), scene.train.front().camera.size())
+        windows_.reflection_densify(scene.train.front().camera.size())
     );
     initial = {};
     initial.seed = options.seed;

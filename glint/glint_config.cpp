@@ -66,14 +66,10 @@ DensifyConfig GlintConfig::transmission_densify() const {
   return config;
 }
 
-DensifyConfig GlintConfig::reflection_densify(std::size_t initial_count, ImageSize size) const {
+DensifyConfig GlintConfig::reflection_densify(ImageSize size) const {
   DensifyConfig config = secondary_densify();
   config.max_scale *= grid.coarseness(size);
   config.gradient_threshold = reflection_gradient;
-  config.growth_quantile = reflection_growth_quantile;
-  config.kept_at_least =
-      static_cast<std::size_t>(reflection_kept_share * static_cast<float>(initial_count));
-  if (reflection_min_opacity >= 0) config.min_opacity = reflection_min_opacity;
   return config;
 }
 

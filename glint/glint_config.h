@@ -50,8 +50,7 @@ struct GlintConfig {
   // resets (s not before reflection takes part), the transmission set from a copy of the interface,
   // and what helps s and t along.
   bool reset_channels = false, clone_interface = false;
-  float transmission_min_opacity = -1, reflection_min_opacity = -1;
-  float reflection_growth_quantile = 0, reflection_kept_share = 0;
+  float transmission_min_opacity = -1;
   int secondary_max_surfels = 0;
   BootstrapConfig bootstrap;
   SurfelRates rates;
@@ -100,16 +99,6 @@ struct GlintConfig {
     v("transmission_min_opacity",
       transmission_min_opacity,
       "min_opacity of the transmission set; below 0: min_opacity");
-    v("reflection_growth_quantile",
-      reflection_growth_quantile,
-      "the reflection set grows at this quantile of its gradients where they are below "
-      "reflection_gradient; 0: not");
-    v("reflection_kept_share",
-      reflection_kept_share,
-      "of the reflection set's initial surfels that pruning leaves");
-    v("reflection_min_opacity",
-      reflection_min_opacity,
-      "min_opacity of the reflection set; below 0: min_opacity");
     v("secondary_max_surfels",
       secondary_max_surfels,
       "max_surfels of each of the secondary sets; 0: max_surfels");
@@ -122,8 +111,7 @@ struct GlintConfig {
   // Of the three sets, in a run's windows; the secondary sets count steps from where they start.
   DensifyConfig interface_densify() const;
   DensifyConfig transmission_densify() const;
-  // initial_count: surfels that it starts with; size: of training images.
-  DensifyConfig reflection_densify(std::size_t initial_count, ImageSize size) const;
+  DensifyConfig reflection_densify(ImageSize size) const;  // of training images
   // Errors (kUsage): a word that is none of the known ones.
   void check() const;
 

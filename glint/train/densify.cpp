@@ -85,34 +85,6 @@ DensifyConfig DensifyConfig::for_views(std::size_t training_views) const {
   return config;
 }
 
-void drop_faintest(
-    std::vector<std::uint32_t> candidates,
-    const FloatArray& opacity_logits,
-    std::size_t least,
-    DensifyRows& rows,
-    DensifyCounts& counts
-) {
-  const auto kept = static_cast<std::size_t>(std::count(rows.keep.begin(), rows.keep.end(), 1));
-  const std::size_t most = kept - std::min(kept, least);
-  if (candidates.size() > most) {
-    std::stable_sort(candidates.begin(), candidates.end(), [&](std::uint32_t x, std::uint32_t y) {
-      return opacity_logits[x] < opacity_logits[y];
-    });
-    candidates.resize(most);
-  }
-  for (const std::uint32_t i : candidates) rows.drop(i, counts);
-}
-
-float growth_threshold(std::vector<float> means, float threshold, float quantile) {
-  std::erase_if(means, [](float mean) { return !(mean > 0); });
-  if (!(quantile > 0) || means.empty()) return threshold;
-  const double last = static_cast<double>(means.size() - 1);
-  const auto rank =
-      static_cast<std::ptrdiff_t>(std::min(static_cast<double>(quantile), 1.0) * last);
-  std::nth_element(means.begin(), means.begin() + rank, means.end());
-  return std::min(threshold, means[static_cast<std::size_t>(rank)]);
-}
-
 void drop_lightest(std::size_t limit, DensifyRows& rows, DensifyCounts& counts) {
   std::vector<std::uint32_t> kept;
   for (std::uint32_t i = 0; i < rows.keep.size(); ++i)
@@ -291,13 +263,6 @@ std::vector<float> Densifier::mean_weights() const {
   return weights;
 }
 
-std::vector<float> Densifier::mean_gradients() const {
-  std::vector<float> means(views_.size(), 0.0f);
-  for (std::size_t i = 0; i < means.size(); ++i)
-    if (views_[i] > 0) means[i] = gradient_sum_[i] / static_cast<float>(views_[i]);
-  return means;
-}
-
 // Clones and splits where the mean gradient asks for more surfels.
 DensifyRows Densifier::grow(SurfelCloud& cloud, DensifyCounts& counts) {
   constexpr Shape kSplit{2, 1.6f};
@@ -306,12 +271,10 @@ DensifyRows Densifier::grow(SurfelCloud& cloud, DensifyCounts& counts) {
   const auto most = static_cast<std::size_t>(config_.max_surfels);
   std::vector<std::uint32_t> clones, splits;
   std::vector<std::uint8_t> taken(count, 0);
-  const std::vector<float> means = mean_gradients();
-  const float threshold =
-      growth_threshold(means, config_.gradient_threshold, config_.growth_quantile);
   for (std::uint32_t i = 0; i < count; ++i) {
+    const float mean = views_[i] > 0 ? gradient_sum_[i] / static_cast<float>(views_[i]) : 0.0f;
     const bool room = config_.cap_by_visibility || count + clones.size() + splits.size() < most;
-    if (means[i] < threshold || !room) continue;
+    if (mean < config_.gradient_threshold || !room) continue;
     (max_scale_of(cloud, i) > config_.clone_scale * extent_ ? splits : clones).push_back(i);
     taken[i] = 1;
   }
@@ -333,10 +296,8 @@ DensifyRows Densifier::grow(SurfelCloud& cloud, DensifyCounts& counts) {
 void Densifier::prune_faint(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts)
     const {
   const float min_logit = logit(config_.min_opacity);
-  std::vector<std::uint32_t> faint;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i)
-    if (rows.keep[i] != 0 && cloud.opacity_logits[i] < min_logit) faint.push_back(i);
-  drop_faintest(std::move(faint), cloud.opacity_logits, config_.kept_at_least, rows, counts);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.opacity_logits[i] < min_logit) rows.drop(i, counts);
 }
 
 bool Densifier::is_large(const SurfelCloud& cloud, std::size_t i) const {
@@ -345,10 +306,8 @@ bool Densifier::is_large(const SurfelCloud& cloud, std::size_t i) const {
 
 void Densifier::prune_large(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts)
     const {
-  std::vector<std::uint32_t> large;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i)
-    if (rows.keep[i] != 0 && is_large(cloud, i)) large.push_back(i);
-  drop_faintest(std::move(large), cloud.opacity_logits, config_.kept_at_least, rows, counts);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (is_large(cloud, i)) rows.drop(i, counts);
 }
 
 // A large surfel goes where it is among those of the least weight; others become five of 1/2.5 of

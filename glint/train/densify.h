@@ -50,12 +50,6 @@ struct DensifyConfig {
   // [Xie25] waits longer between densifications in the middle of a run.
   int slow_interval = 0, slow_from = 3000, slow_until = 18000;
   bool split_large = false, cap_by_visibility = false;
-  // Of a set whose gradients are faint, such as one seen through mirrored light alone [the newer
-  // official code of Na26]: the threshold is at most this quantile of the mean gradients of surfels
-  // that were seen (0: as it is), and pruning for opacity or size leaves so many surfels, the most
-  // opaque.
-  float growth_quantile = 0;
-  std::size_t kept_at_least = 0;
   std::vector<ChannelReset> channel_resets;  // of the set's own channels; its method's to say
 
   static constexpr int kHolidayRule = -1, kShortestHoliday = 200;
@@ -169,7 +163,6 @@ class Densifier {
   };
   DensifyCounts densify(SurfelCloud& cloud, SurfelAdam& adam, int step);
   DensifyRows grow(SurfelCloud& cloud, DensifyCounts& counts);
-  std::vector<float> mean_gradients() const;  // 0 where a surfel was not seen
   void prune_faint(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) const;
   void prune_large(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) const;
   void split_large(SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts);
@@ -201,20 +194,6 @@ void keep_rows(SurfelCloud& cloud, const std::vector<std::uint8_t>& keep);
 // Where more than `limit` rows are kept, those of the smallest weights (among equals: the first) go
 // until `limit` are left.
 void drop_lightest(std::size_t limit, DensifyRows& rows, DensifyCounts& counts);
-
-// Drops the candidates of the smallest opacity (among equals: the first), as long as more than
-// `least` rows are kept.
-void drop_faintest(
-    std::vector<std::uint32_t> candidates,
-    const FloatArray& opacity_logits,
-    std::size_t least,
-    DensifyRows& rows,
-    DensifyCounts& counts
-);
-
-// The gradient from which surfels grow: `threshold`, or that quantile of the positive means where
-// it is lower; quantile 0: `threshold`.
-float growth_threshold(std::vector<float> means, float threshold, float quantile);
 
 // Lowers the activated values of a column of [N][width] logits to a ceiling.
 void lower_logits(float ceiling, std::size_t column, std::size_t width, FloatArray& logits);

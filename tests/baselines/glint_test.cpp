@@ -132,16 +132,11 @@ TEST_CASE("The opacity loss makes the transmission behind the interface opaque, 
 TEST_CASE("The three sets have the density control that the config gives them") {
   constexpr ImageSize kSmall{160, 90}, kPublished{480, 270};
   GlintConfig config;
-  CHECK(config.reflection_densify(1000, kPublished).max_scale == config.densify.max_scale);
-  CHECK(
-      config.reflection_densify(1000, kSmall).max_scale ==
-      Approx(config.densify.max_scale * 32 / 15)
-  );
-  config.reflection_kept_share = 0.05f;
-  CHECK(config.reflection_densify(1000, kSmall).kept_at_least == 50);
+  CHECK(config.reflection_densify(kPublished).max_scale == config.densify.max_scale);
+  CHECK(config.reflection_densify(kSmall).max_scale == Approx(config.densify.max_scale * 32 / 15));
   CHECK(config.interface_densify().channel_resets.empty());
   CHECK(config.transmission_densify().min_opacity == config.densify.min_opacity);
-  CHECK(config.reflection_densify(1000, kSmall).max_surfels == config.densify.max_surfels);
+  CHECK(config.reflection_densify(kSmall).max_surfels == config.densify.max_surfels);
   config_from_json(config, glint_release_overrides(), "test");
   const DensifyConfig interface = config.interface_densify();
   REQUIRE(interface.channel_resets.size() == 2);
@@ -149,9 +144,9 @@ TEST_CASE("The three sets have the density control that the config gives them") 
   CHECK(interface.channel_resets[1].from == 3001);
   CHECK(interface.interval_at(10000) == 500);
   CHECK(config.transmission_densify().min_opacity == 0.05f);
-  CHECK(config.reflection_densify(1000, kSmall).min_opacity == 0.08f);
+  CHECK(config.reflection_densify(kSmall).min_opacity == 0.08f);
   for (const DensifyConfig& set :
-       {config.transmission_densify(), config.reflection_densify(1000, kSmall)}) {
+       {config.transmission_densify(), config.reflection_densify(kSmall)}) {
     CHECK(set.max_surfels == 500000);
     CHECK(set.interval_at(100) == 500);
     CHECK(set.interval_at(10000) == 500);

@@ -208,54 +208,6 @@ TEST_CASE("Rows of the least weight go, new ones last") {
   CHECK(counts.pruned == 4);
 }
 
-TEST_CASE("The faintest candidates go, as long as enough are left") {
-  const FloatArray opacities = {-3, -5, -4, -5, 1};
-  DensifyRows rows{{1, 1, 1, 1, 1}, std::vector<float>(5, 1.0f)};
-  DensifyCounts counts;
-  drop_faintest({0, 1, 2, 3}, opacities, 3, rows, counts);
-  CHECK(rows.keep == std::vector<std::uint8_t>{1, 0, 1, 0, 1});  // equals: the first, then the next
-  CHECK(counts.pruned == 2);
-  drop_faintest({0, 2}, opacities, 3, rows, counts);
-  CHECK(counts.pruned == 2);
-  drop_faintest({0, 2}, opacities, 0, rows, counts);
-  CHECK(rows.keep == std::vector<std::uint8_t>{0, 0, 0, 0, 1});
-}
-
-TEST_CASE("A set that is to keep some of its surfels keeps its most opaque") {
-  DensifyConfig config = every_step();
-  config.kept_at_least = 2;
-  SurfelCloud cloud = cloud_of(4);
-  SurfelAdam adam = adam_of(cloud);
-  for (const std::size_t i : {0u, 1u, 2u, 3u})
-    cloud.opacity_logits[i] = logit(0.001f * static_cast<float>(i + 1));
-  Densifier densifier(config, 1, 0);
-  observe(densifier, std::vector<float>(4, 1.0f));
-  CHECK(densifier.update(1, cloud, adam).pruned == 2);
-  REQUIRE(cloud.size() == 2);
-  CHECK(cloud.means[0] == 2.0f);
-  CHECK(cloud.means[3] == 3.0f);
-}
-
-TEST_CASE("Growth by a quantile lowers the threshold, never raises it") {
-  const std::vector<float> means = {0, 4, 1, 0, 3, 2, 5};  // two were not seen
-  CHECK(growth_threshold(means, 10, 0) == 10.0f);
-  CHECK(growth_threshold(means, 10, 0.5f) == 3.0f);
-  CHECK(growth_threshold(means, 2.5f, 0.5f) == 2.5f);
-  CHECK(growth_threshold(means, 10, 1) == 5.0f);
-  CHECK(growth_threshold({0, 0}, 10, 0.5f) == 10.0f);
-}
-
-TEST_CASE("Surfels whose gradients are all below the threshold grow by their quantile") {
-  DensifyConfig config = every_step();
-  config.growth_quantile = 0.75f;
-  SurfelCloud cloud = cloud_of(5);
-  SurfelAdam adam = adam_of(cloud);
-  Densifier densifier(config, 1, 0);
-  const float step = config.gradient_threshold / 1e6f;
-  observe(densifier, std::vector<float>(5, 1.0f), {step, 2 * step, 3 * step, 4 * step, 5 * step});
-  CHECK(densifier.update(1, cloud, adam).cloned == 2);
-}
-
 TEST_CASE("A cap by visibility lets surfels grow, and takes those least seen down to 0.9 of it") {
   DensifyConfig config = every_step();
   config.cap_by_visibility = true;
