@@ -64,7 +64,7 @@ def main():
     arguments = parser.parse_args()
     variants = by_variant(arguments.records)
     if arguments.base and arguments.base not in variants:
-        parser.error(f"no variant '{arguments.base}' in {arguments.records}; it has: {', '.join(variants)}")
+        parser.error(f"no variant '{arguments.base}' in {arguments.records}; it has: {'; '.join(variants)}")
     print_row([f"less `{arguments.base}`" if arguments.base else "", "seeds"] + [title for title, _, _ in COLUMNS])
     print_row(["---"] + ["---:"] * (1 + len(COLUMNS)))
     for name, runs in variants.items():
