@@ -57,6 +57,7 @@ void write_run_spec(const RunSpec& spec, const Json& resolved_config) {
   visit_spec(spec, [&](const char* name, const auto& field) { json[name] = field; });
   json["dataset_folder"] = spec.dataset_folder.string();
   json["config"] = resolved_config;
+  if (!spec.row.empty()) json["row"] = spec.row;
   write_file(spec.folder / "config.json", json.dump(2) + "\n");
 }
 
@@ -74,6 +75,7 @@ RunSpec read_run_spec(const fs::path& folder) {
   try {
     visit_spec(spec, [&](const char* name, auto& field) { read_field(json.at(name), field); });
     spec.dataset_folder = json.at("dataset_folder").get<std::string>();
+    spec.row = json.value("row", "");
   } catch (const nlohmann::json::exception& error) {
     throw Error(
         ExitCode::kBadPrediction, fmt::format("{}: {}; train again", path.string(), error.what())

@@ -17,6 +17,7 @@ namespace glint {
 struct RunSpec {
   fs::path folder;
   std::string method;
+  std::string row;  // in tables; empty: the method's (models of other programs have one)
   Json config = Json::object();  // overrides for MethodSpec::create
   RunOptions options;
   fs::path dataset_folder;
@@ -27,6 +28,8 @@ struct RunSpec {
   Json train_document;              // what the training goes by (stage_documents.h)
   double checkpoint_seconds = 300;  // between checkpoints, at least
   bool anew = false;                // an unfinished training does not go on
+
+  CellKey cell() const { return {scene, row.empty() ? method : row, options.seed}; }
 };
 
 fs::path run_folder(const fs::path& out, const CellKey& cell);

@@ -7,6 +7,7 @@
 #include "reports/bench/evaluate.h"
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
+#include "reports/import/import_model.h"
 #include "reports/import/import_predictions.h"
 #include "reports/records/earlier_run.h"
 #include "reports/records/environment.h"
@@ -22,7 +23,7 @@ using Scores = std::map<std::string, double>;
 // What an earlier scoring of the run found out about its cost; scoring again does not change it.
 Scores earlier_cost(const RunSpec& spec) {
   Scores cost;
-  if (const auto trained = trained_cost(spec)) {
+  if (const auto trained = trained_cost(spec); trained && trained->seconds > 0) {
     cost["train-minutes"] = trained->seconds / 60;
     cost["peak-memory"] = trained->peak_memory_mb;
   }
@@ -99,7 +100,7 @@ Record single_record(const SingleRun& single, const Json& score_document, const 
   Record record;
   record.profile = kSingleProfile;
   record.dataset = spec.dataset;
-  record.cell = {spec.scene, spec.method, spec.options.seed};
+  record.cell = spec.cell();
   record.metrics = means;
   record.train_key = key_of(spec.folder, Stage::kTrain);
   record.score_key = stage_key(score_document);
@@ -112,7 +113,7 @@ Record single_record(const SingleRun& single, const Json& score_document, const 
   if (const auto cost = trained_cost(spec)) {
     record.warnings = cost->warnings;
     record.notes = cost->notes;
-    record.timings["train"] = cost->seconds;
+    if (cost->seconds > 0) record.timings["train"] = cost->seconds;
   }
   return record;
 }
@@ -188,7 +189,7 @@ Record record_of(const RunSpec& spec, const Profile& profile, const std::string&
   Record record;
   record.profile = profile.name;
   record.dataset = spec.dataset;
-  record.cell = {spec.scene, spec.method, spec.options.seed};
+  record.cell = spec.cell();
   record.dataset_hash = spec.dataset_hash;
   record.imported = predictions;
   record.environment = environment_json();
@@ -223,33 +224,13 @@ RunSpec spec_of(
   return spec;
 }
 
-// Of a program that made renders. Errors (kUsage): none, one of ours, no name for a folder.
-void check_method_name(const std::string& method) {
-  GLINT_CHECK(
-      !method.empty() && !Registry<MethodSpec>::all().contains(method),
-      kUsage,
-      "--method '{}': name the method that made these renders, not one of ours; such as --method "
-      "pgsr-official",
-      method
-  );
-  for (const fs::path& part : fs::path(method + "/").parent_path())
-    GLINT_CHECK(
-        why_no_folder_name(part.string()).empty(),
-        kUsage,
-        "--method '{}': '{}' {}; results lie in a folder of that name",
-        method,
-        part.string(),
-        why_no_folder_name(part.string())
-    );
-}
-
 int eval_predictions(const CommonOptions& common, const EvalArguments& arguments) {
   GLINT_CHECK(
       !arguments.predictions.empty() && !arguments.dataset.empty(),
       kUsage,
       "give --run FOLDER, or --predictions FOLDER --dataset FOLDER --method NAME"
   );
-  check_method_name(arguments.method);
+  check_row_name(arguments.method);
   LoadOptions load;
   load.max_pixels = arguments.max_pixels;
   const Scene scene = load_scene(arguments.dataset, load);

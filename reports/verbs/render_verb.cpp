@@ -18,8 +18,7 @@ namespace {
 constexpr int kDefaultFrames = 120;
 constexpr double kDefaultFps = 24;
 
-struct RenderArguments {
-  std::string run, dataset;
+struct RenderArguments : ModelRunOptions {  // run, dataset: also of runs of ours
   // Of camera paths.
   std::string path, keys = "train", size, to;
   int frames = 0;  // 0: kDefaultFrames, or those of a file
@@ -157,7 +156,14 @@ int render_along_path(
 
 int run_render(const CommonOptions& common, const RenderArguments& arguments) {
   install_interrupt_handler();
-  const SingleRun single = open_single_run(arguments.run, arguments.dataset);
+  GLINT_CHECK(
+      !arguments.model.empty() || !arguments.run.empty(),
+      kUsage,
+      "give --run FOLDER, or --model PLY --dataset FOLDER"
+  );
+  const SingleRun single = arguments.model.empty()
+                               ? open_single_run(arguments.run, arguments.dataset)
+                               : new_model_run(common, arguments);
   try {
     return arguments.path.empty() ? render_test_views(common, single)
                                   : render_along_path(common, arguments, single);
@@ -193,17 +199,38 @@ void add_path_options(CLI::App& verb, RenderArguments& arguments) {
   verb.add_flag("--values", arguments.values, "EXR beside the pictures")->needs(path);
 }
 
+void add_model_options(CLI::App& verb, RenderArguments& arguments) {
+  CLI::Option* model = verb.add_option(
+      "--model",
+      arguments.model,
+      "Gaussians that another program trained: a PLY, or a folder (docs/RENDERING.md); becomes the "
+      "run"
+  );
+  model->needs(verb.get_option("--dataset"));
+  verb.add_option("--method", arguments.row, "row of the model in tables")
+      ->needs(model)
+      ->capture_default_str();
+  verb.add_option(
+          "--max-pixels", arguments.max_pixels, "of the model: shrink images below this area"
+  )
+      ->needs(model)
+      ->check(CLI::NonNegativeNumber);
+  verb.add_flag("--force", arguments.force, "of the model: replace the run that is there")
+      ->needs(model);
+}
+
 void add_render_verb(CommandLine& line) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* verb = line.add_verb(
       line.app,
       "render",
-      "render the test views of a trained run, or a camera path",
+      "render the test views of a trained run or of a model by another program, or a camera path",
       [&line, arguments] { return run_render(line.common, *arguments); },
-      kWorkOptions
+      kWorkOptions | kOutOption | kDataOption | kSeedOption
   );
-  verb->add_option("--run", arguments->run, "run folder")->required();
+  verb->add_option("--run", arguments->run, "run folder; of --model: else OUT/single/runs/...");
   add_moved_dataset_option(*verb, arguments->dataset);
+  add_model_options(*verb, *arguments);
   add_path_options(*verb, *arguments);
 }
 

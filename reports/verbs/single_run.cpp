@@ -7,6 +7,7 @@
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
 #include "reports/bench/stage_documents.h"
+#include "reports/import/import_model.h"
 #include "reports/records/earlier_run.h"
 #include "reports/records/stage_files.h"
 
@@ -40,10 +41,34 @@ void check_new_run(const fs::path& folder, bool force, const std::string& identi
   GLINT_CHECK(
       force || goes_on || !holds_work(folder),
       kUsage,
-      "{}: holds a run already; --force trains it again, --run names another folder",
+      "{}: holds a run already; --force replaces it, --run names another folder",
       folder.string()
   );
   check_run_folder(folder);
+}
+
+// The scene of single.spec, whose method, config and options are known, and the training's
+// document.
+void open_data(
+    const CommonOptions& common, const std::string& dataset, double max_pixels, SingleRun& single
+) {
+  RunSpec& spec = single.spec;
+  spec.dataset_folder = fs::absolute(dataset);
+  spec.max_pixels = max_pixels;
+  single.scene = load_dataset(spec.dataset_folder, max_pixels);
+  spec.dataset = single.scene.dataset;
+  spec.scene = single.scene.name;
+  spec.dataset_hash = single.scene.spec_hash;
+  const Json data = data_document(spec.dataset_folder, max_pixels, common.data);
+  spec.train_document = train_document(spec.method, spec.config, spec.options, data);
+}
+
+// `run`; empty: where single runs lie below OUT.
+void take_folder(const CommonOptions& common, const std::string& run, SingleRun& single) {
+  RunSpec& spec = single.spec;
+  const fs::path root = fs::path(common.out) / kSingleProfile;
+  spec.folder = run.empty() ? run_folder(root, spec.cell()) : fs::path(run);
+  single.lock.emplace(lock_of(spec.folder));
 }
 
 }  // namespace
@@ -56,27 +81,27 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
   spec.config = method_overrides(Profile{}, options.method, common.set);
   spec.options.iterations = common.iterations > 0 ? common.iterations : kDefaultIterations;
   spec.options.seed = common.seed.value_or(0);
-  spec.dataset_folder = fs::absolute(options.dataset);
-  spec.max_pixels = options.max_pixels;
-  single.scene = load_dataset(spec.dataset_folder, options.max_pixels);
-  spec.dataset = single.scene.dataset;
-  spec.scene = single.scene.name;
-  spec.dataset_hash = single.scene.spec_hash;
-  spec.train_document = train_document(
-      spec.method,
-      spec.config,
-      spec.options,
-      data_document(spec.dataset_folder, spec.max_pixels, common.data)
-  );
-  spec.folder = options.run.empty() ? run_folder(
-                                          fs::path(common.out) / kSingleProfile,
-                                          {spec.scene, spec.method, spec.options.seed}
-                                      )
-                                    : fs::path(options.run);
-  single.lock.emplace(lock_of(spec.folder));
+  open_data(common, options.dataset, options.max_pixels, single);
+  take_folder(common, options.run, single);
   spec.checkpoint_seconds = common.checkpoint_seconds;
   spec.anew = options.force;
   check_new_run(spec.folder, options.force, stage_key(spec.train_document));
+  return single;
+}
+
+SingleRun new_model_run(const CommonOptions& common, const ModelRunOptions& options) {
+  check_row_name(options.row);
+  const ModelFiles files = find_model(options.model);
+  SingleRun single;
+  RunSpec& spec = single.spec;
+  spec.method = files.method;
+  spec.row = options.row;
+  spec.options = {.iterations = 0, .seed = common.seed.value_or(0)};
+  open_data(common, options.dataset, options.max_pixels, single);
+  spec.train_document["model"] = content_hash(options.model, fs::path(common.data) / ".hashes");
+  take_folder(common, options.run, single);
+  check_new_run(spec.folder, options.force, {});
+  for (const std::string& note : import_model(options.model, files, spec)) log::info(note);
   return single;
 }
 
@@ -108,8 +133,7 @@ SingleRun open_single_run(const std::string& run_folder, const std::string& data
 }
 
 fs::path root_of_run(const RunSpec& spec) {
-  const fs::path cell =
-      fs::path("runs") / CellKey{spec.scene, spec.method, spec.options.seed}.text();
+  const fs::path cell = fs::path("runs") / spec.cell().text();
   fs::path root = fs::absolute(spec.folder / "").lexically_normal().parent_path();
   for (auto part = cell.end(); part != cell.begin();) {
     if (root.filename() != *--part) return {};

@@ -25,6 +25,18 @@ struct SingleRun {
   std::optional<FileLock> lock;  // nobody else writes into the folder
 };
 SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& options);
+
+struct ModelRunOptions {
+  std::string model;  // Gaussians of another program: find_model()
+  std::string dataset, run;
+  std::string row = "model";  // in tables
+  double max_pixels = 0;
+  bool force = false;  // replaces the run that is there
+};
+// The same for a model that another program trained: it is read into the run's folder. Errors:
+// new_single_run()'s, check_row_name()'s, import_model()'s.
+SingleRun new_model_run(const CommonOptions& common, const ModelRunOptions& options);
+
 // The run of a folder that `train` or `all` filled, with its dataset loaded again; from `dataset`
 // (a folder or packed scene) where that is given, since the data may have moved. Other data than
 // the run was trained on come with a warning. Errors (kBadPrediction): no run; kBadReference: the

@@ -47,7 +47,7 @@ bool is_folder_of_runs(const fs::path& folder) {
 // One whose config.json is damaged, too: it is told of.
 bool is_chosen(const fs::path& run, const CellFilter& filter) try {
   const RunSpec spec = read_run_spec(run);
-  return filter_accepts(filter, {spec.scene, spec.method, spec.options.seed});
+  return filter_accepts(filter, spec.cell());
 } catch (const Error&) {
   return true;
 }
@@ -153,7 +153,7 @@ class Verification {
     if (!holder.empty())
       return {{"run", CheckState::kNote, holder + " is at work there: not looked at"}};
     const RunSpec spec = read_run_spec(run);
-    const CellKey cell{spec.scene, spec.method, spec.options.seed};
+    const CellKey cell = spec.cell();
     return verifier_.verify(
         {run, dataset_of(spec), loader_of(spec), find_record(plan_.records, cell)}
     );
