@@ -8,7 +8,9 @@
   convert_lpips_weights.py --net alex --features alexnet-owt-7be5be79.pth --lin alex.pth \\
       --out ~/.cache/glint-bench/lpips
 
-Needs PyTorch to read them. The result, lpips_<net>_v0.1.npz, holds the same bytes whenever it is made.
+scripts/fetch_lpips_weights.sh downloads and converts all of them. Needs neither PyTorch nor NumPy. The result,
+lpips_<net>_v0.1.npz, holds the same bytes whenever it is made. Sums: torchvision's files have the first digits of their
+SHA-256 in their names; AlexNet's and SqueezeNet's arrays are known as a whole, VGG16's are not.
 """
 import argparse
 import hashlib
@@ -18,10 +20,14 @@ import struct
 import sys
 import zipfile
 
-import torch
+from torch_files import BadFile, tensors
 
 NUM_TAPS = {"alex": 5, "squeeze": 7, "vgg": 5}
 FIRST_SHAPE = {"alex": (64, 3, 11, 11), "squeeze": (64, 3, 3, 3), "vgg": (64, 3, 3, 3)}
+KNOWN_ARRAYS = {  # SHA-256 of names and values, as metrics/lpips_weights.cpp has them
+    "alex": "0ef71af41cc957e07f0eaf349e2ec748453cce1a8f60ed9a6c878328338496a7",
+    "squeeze": "2ca1ac118a52387307bd9d1c829d83b8f5c2214a4e6569e89b1a149ef5a2c533",
+}
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date that a zip can hold
 
 
@@ -39,54 +45,67 @@ def check_name_hash(path):
         fail(f"{path}: SHA-256 {found[:8]}..., but its name says {stated.group(1)}; download it again")
 
 
-def load_state(path):
+def arrays_in(path):
+    """name -> (shape, floats)"""
     check_name_hash(path)
-    state = torch.load(path, map_location="cpu", weights_only=True)
-    if not isinstance(state, dict):
-        fail(f"{path}: holds a {type(state).__name__}, expected a dictionary of tensors")
-    return state
+    return {name: (tensor.shape, tensor.values()) for name, tensor in tensors(path).items()}
 
 
 def feature_arrays(path, net):
-    arrays = {name: tensor for name, tensor in load_state(path).items() if name.startswith("features.")}
-    first = arrays.get("features.0.weight")
-    found = None if first is None else tuple(first.shape)
+    arrays = {name: array for name, array in arrays_in(path).items() if name.startswith("features.")}
+    found, _ = arrays.get("features.0.weight", (None, None))
     if found != FIRST_SHAPE[net]:
         fail(f"{path}: features.0.weight has shape {found}, expected {FIRST_SHAPE[net]} of {net}")
     return arrays
 
 
 def lin_arrays(path, net):
-    state = load_state(path)
+    state = arrays_in(path)
     arrays = {}
     for tap in range(NUM_TAPS[net]):
         name = f"lin{tap}.model.1.weight"
         if name not in state:
             fail(f"{path}: no '{name}'; expected the v0.1 file of {net}")
-        arrays[f"lin{tap}.weight"] = state[name].flatten()  # [1][channels][1][1] in the file
+        _, values = state[name]  # [1][channels][1][1]
+        arrays[f"lin{tap}.weight"] = ((len(values),), values)
     if f"lin{NUM_TAPS[net]}.model.1.weight" in state:
         fail(f"{path}: more than {NUM_TAPS[net]} taps; this is not the file of {net}")
     return arrays
 
 
-def npy_bytes(tensor):
+def npy_bytes(shape, values):
     """A float32 array in NumPy's format 1.0: values start at a multiple of 64 bytes."""
-    values = tensor.to(torch.float32).contiguous().flatten().tolist()
-    shape = "".join(f"{extent}, " for extent in tensor.shape)
-    if tensor.dim() > 1:
-        shape = shape[:-2]
-    header = f"{{'descr': '<f4', 'fortran_order': False, 'shape': ({shape.strip()}), }}"
+    text = ", ".join(map(str, shape)) + ("," if len(shape) == 1 else "")
+    header = f"{{'descr': '<f4', 'fortran_order': False, 'shape': ({text}), }}"
     header += " " * (-(10 + len(header) + 1) % 64) + "\n"
-    preamble = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header))
-    return preamble + header.encode() + struct.pack(f"<{len(values)}f", *values)
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + little_endian(values)
+
+
+def little_endian(values):
+    if sys.byteorder == "big":
+        values = values[:]
+        values.byteswap()
+    return values.tobytes()
+
+
+def check_known(arrays, net):
+    digest = hashlib.sha256()
+    for name in sorted(arrays):
+        digest.update(name.encode() + b"\0" + little_endian(arrays[name][1]))
+    if net not in KNOWN_ARRAYS:
+        print(f"{net}: no sum of its linear layers is on record; compare a pair with a known value "
+              "(docs/METRICS.md)", file=sys.stderr)
+    elif digest.hexdigest() != KNOWN_ARRAYS[net]:
+        fail(f"{net}: other values than those that were published (SHA-256 of the arrays {digest.hexdigest()[:16]}...); "
+             "download the files again, or give --unpublished")
 
 
 def write_npz(path, arrays):
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_suffix(".tmp")
     with zipfile.ZipFile(temporary, "w") as archive:
-        for name, tensor in arrays.items():
-            archive.writestr(zipfile.ZipInfo(f"{name}.npy", EPOCH), npy_bytes(tensor))
+        for name, (shape, values) in arrays.items():
+            archive.writestr(zipfile.ZipInfo(f"{name}.npy", EPOCH), npy_bytes(shape, values))
     temporary.replace(path)
 
 
@@ -97,12 +116,18 @@ def main():
     parser.add_argument("--features", required=True, type=pathlib.Path, help="torchvision's .pth file")
     parser.add_argument("--lin", required=True, type=pathlib.Path, help="the .pth file of LPIPS 0.1")
     parser.add_argument("--out", default=".", type=pathlib.Path, help="folder of the result")
+    parser.add_argument("--unpublished", action="store_true", help="take weights that are not those of LPIPS 0.1")
     options = parser.parse_args()
     arrays = feature_arrays(options.features, options.net) | lin_arrays(options.lin, options.net)
+    if not options.unpublished:
+        check_known(arrays, options.net)
     path = options.out.expanduser() / f"lpips_{options.net}_v0.1.npz"
     write_npz(path, arrays)
     print(path)
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except BadFile as error:
+        fail(error)

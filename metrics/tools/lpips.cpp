@@ -14,7 +14,8 @@ class LpipsTool final : public MetricTool {
   std::string name() const override { return "glint-lpips"; }
   std::string description() const override {
     return "LPIPS 0.1: distance in the features of AlexNet, SqueezeNet 1.1 or VGG16. Weights are a "
-           "file of yours, made by scripts/convert_lpips_weights.py.";
+           "file of yours: scripts/fetch_lpips_weights.sh fetches them, "
+           "scripts/convert_lpips_weights.py makes one of downloaded files.";
   }
   std::string example() const override {
     return "glint-lpips renders/ images/ --weights lpips_alex_v0.1.npz --mask masks/";
@@ -48,9 +49,9 @@ class LpipsTool final : public MetricTool {
     GLINT_CHECK(
         weights != nullptr,
         kEnvironment,
-        "no LPIPS weights of {0} at '{1}'; make lpips_{0}_v0.1.npz with "
-        "scripts/convert_lpips_weights.py and put it there, or name it by --weights or "
-        "GLINT_LPIPS_WEIGHTS",
+        "no LPIPS weights of {0} at '{1}'; scripts/fetch_lpips_weights.sh fetches them, or make "
+        "lpips_{0}_v0.1.npz with scripts/convert_lpips_weights.py and put it there, or name it by "
+        "--weights or GLINT_LPIPS_WEIGHTS",
         network,
         place.string()
     );

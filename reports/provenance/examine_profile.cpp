@@ -111,7 +111,7 @@ class ProfileExamination {
           {"weights",
            CheckState::kNote,
            fmt::format("{} train without LPIPS: no weights", fmt::join(methods, ", ")),
-           "scripts/convert_lpips_weights.py makes the file"}
+           "scripts/fetch_lpips_weights.sh fetches them"}
       );
   } catch (const Error&) {
   }

@@ -328,12 +328,28 @@ void add_scenes_note(
     ));
 }
 
+// Where what a machine lacked is to be had.
+void add_weights_note(Table& table) {
+  const auto lacks = [](const TableCell& cell) {
+    return cell.status == CellStatus::kUnavailable && cell.text == "no weights";
+  };
+  const bool any = std::any_of(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
+    return std::any_of(row.cells.begin(), row.cells.end(), lacks);
+  });
+  if (any)
+    table.notes.emplace_back(
+        "no weights: scripts/fetch_lpips_weights.sh fetches those of LPIPS, and the next "
+        "`glint-bench all` scores again."
+    );
+}
+
 void add_notes(
     Table& table, const TableDefinition& definition, const std::vector<Record>& records
 ) {
   add_scenes_note(table, definition, records);
   add_failures(table, records);
   add_method_notes(table, records);
+  add_weights_note(table);
   for (const OrderAgreement& order : table.agreement) table.notes.push_back(agreement_note(order));
 }
 

@@ -83,7 +83,7 @@ Checked lpips_weights() {
         "lpips",
         CheckState::kNote,
         fmt::format("no weights at {}: its columns will say so", place.string()),
-        "scripts/convert_lpips_weights.py makes them"};
+        "scripts/fetch_lpips_weights.sh fetches them"};
   const std::string text = fmt::format("{}", fmt::join(found, ", "));
   if (published) return good("lpips", text);
   return {"lpips", CheckState::kNote, text, "not the published weights: values stand alone"};

@@ -101,6 +101,7 @@ TEST_CASE("a metric that the machine had no weights for says so in every format"
   CHECK(cell_of(table, "2dgs", "lpips-vgg-3dgs").rank == 0);
   CHECK(cell_of(table, "2dgs", "ssim-3dgs").status == CellStatus::kMissing);
   CHECK(table_csv(table).find("\n2dgs,30,missing,no weights,missing,") != std::string::npos);
+  CHECK(table_markdown(table).find("scripts/fetch_lpips_weights.sh") != std::string::npos);
   for (const std::string& text : {table_markdown(table), table_latex(table), table_terminal(table)})
     CHECK(text.find("no weights") != std::string::npos);
   const Json cell = table_json(table)["rows"][0]["cells"]["lpips-vgg-3dgs"];
