@@ -7,6 +7,7 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "reports/verbs/dataset_export.h"
+#include "reports/verbs/dataset_import.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -238,6 +239,7 @@ void add_dataset_verb(CommandLine& line) {
   add_folder_verb(line, *dataset, "check", "everything wrong with a folder; exit 4", run_check);
   add_pack(line, *dataset);
   add_dataset_export(line, *dataset);
+  add_dataset_import(line, *dataset);
 }
 
 }  // namespace

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// A folder of photos becomes a dataset: the program COLMAP, where it is installed, finds cameras
+// and points.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glint/core/files.h"
+
+namespace glint {
+
+struct PhotoOptions {
+  std::string lens = "OPENCV";  // of kColmapLenses: those that are undone when the folder is read
+  std::string matcher =
+      "auto";           // exhaustive: all pairs; sequential: a video's; auto: by their number
+  int max_side = 1600;  // pixels of the photos that features are looked for in
+  int threads = 0;      // 0: all cores
+};
+
+struct PhotoModel {
+  std::size_t photos = 0, points = 0;
+  std::vector<std::string> unposed;  // photos that have no place in the model
+  std::size_t other_models = 0;      // smaller ones, of photos that do not hang together
+  std::string matcher;               // the one that was taken
+};
+
+// Fills `out` with images/ (those that have poses) and sparse/0/ as the colmap loader reads it.
+// Work lies in OUT.colmap meanwhile, with COLMAP's words in colmap.log, and stays there when
+// something goes wrong: the same call goes on from it. Errors: kUsage (`out` holds files);
+// kBadReference (no photos, fewer than three, photos that COLMAP cannot place); kEnvironment (no
+// COLMAP; it crashed).
+PhotoModel import_photos(const fs::path& photos, const fs::path& out, const PhotoOptions& options);
+
+}  // namespace glint
