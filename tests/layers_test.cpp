@@ -92,7 +92,7 @@ const std::vector<Layer>& layers() {
       {"reports/page/", below_reports({"records", "tables", "pictures", "page"})},
       {"reports/figures/",
        below_reports({"records", "tables", "pictures", "bench", "page", "perf", "figures"})},
-      {"reports/import/", below_reports({"records", "pictures", "import"})},
+      {"reports/import/", below_reports({"records", "pictures", "bench", "import"})},
       {"reports/perf/", below_reports({"records", "perf"})},
       {"reports/selftest/", below_reports({"records", "bench", "import", "selftest"})},
       {"reports/verbs/", below_reports(folders_of_verbs())},

@@ -8,8 +8,8 @@
 #include "glint/core/nearest.h"
 #include "glint/scene/gaussian_ply.h"
 #include "glint/scene/ply.h"
-#include "reports/bench/run_stage.h"
 #include "reports/records/earlier_run.h"
+#include "reports/records/stage_files.h"
 
 namespace glint {
 namespace {
