@@ -65,6 +65,19 @@ std::string facts(const ResultsInfo& info, const std::vector<Record>& records) {
   return text;
 }
 
+// Captions, scenes of means and published columns are those of our rooms.
+Table of_other_data(const Table& table) {
+  Table result = without_empty_columns(without_published(table));
+  std::erase_if(result.rows, [](const TableRow& row) {
+    return std::none_of(row.cells.begin(), row.cells.end(), [](const TableCell& cell) {
+      return cell.has_value();
+    });
+  });
+  result.caption.clear();
+  result.notes.clear();
+  return result;
+}
+
 }  // namespace
 
 ResultsInfo read_results_info(const fs::path& file) {
@@ -73,15 +86,35 @@ ResultsInfo read_results_info(const fs::path& file) {
   return info;
 }
 
-std::string results_markdown(const ResultsInfo& info, const std::vector<Record>& records) {
+std::string results_part(const ResultsInfo& info, const std::vector<Record>& records) {
+  std::string text = info.title.empty() ? "" : fmt::format("# {}\n\n", info.title);
+  text += facts(info, records);
+  const auto is_shown = [&](const std::string& id) {
+    return info.tables.empty() ||
+           std::find(info.tables.begin(), info.tables.end(), id) != info.tables.end();
+  };
+  for (const TableDefinition& definition : table_definitions()) {
+    if (!is_shown(definition.id)) continue;
+    Table table = build_table(definition, records);
+    if (!info.title.empty()) table = of_other_data(table);
+    if (has_measurement(table)) text += fmt::format("\n{}", table_markdown(table));
+  }
+  return text;
+}
+
+std::string results_markdown(const fs::path& root) {
   std::string text =
       "# Results\n\n"
       "Written by `glint-bench results` from the records named below; a test fails when the two "
-      "differ.\n\n" +
-      facts(info, records);
-  for (const TableDefinition& definition : table_definitions())
-    if (const Table table = build_table(definition, records); has_measurement(table))
-      text += fmt::format("\n{}", table_markdown(table));
+      "differ.\n\n";
+  for (const char* name : {"results.json", "captures.json"}) {
+    const fs::path file = root / "docs/results" / name;
+    if (!fs::exists(file)) continue;
+    const ResultsInfo info = read_results_info(file);
+    const auto records = read_records(root / info.records);
+    GLINT_CHECK(!records.empty(), kBadPrediction, "{}: no records", info.records);
+    text += (info.title.empty() ? "" : "\n") + results_part(info, records);
+  }
   return text;
 }
 

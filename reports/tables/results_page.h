@@ -10,25 +10,31 @@
 
 namespace glint {
 
-// What the pages say besides the tables; docs/results/results.json.
+// What the page says of some records besides their tables: docs/results/results.json (our rooms)
+// and captures.json.
 struct ResultsInfo {
-  std::string records;  // "docs/results/small.jsonl"
-  std::string command;  // that made them
-  std::string remarks;  // what a reader has to know: what did not run, what was busy
+  std::string records;              // "docs/results/small.jsonl"
+  std::string command;              // that made them
+  std::string remarks;              // what a reader has to know: what did not run, what was busy
+  std::string title;                // of their part of the page, on other data; empty: the first
+  std::vector<std::string> tables;  // ids; empty: all in which something is measured
   template <class V>
   void visit(V&& v) {
     v("records", records, "file of the records");
     v("command", command, "that made them");
     v("remarks", remarks, "what a reader has to know");
+    v("title", title, "of their part of the page");
+    v("tables", tables, "ids of the tables shown");
   }
 };
 
 // Errors (kUsage): unknown fields; kBadReference: no such file.
 ResultsInfo read_results_info(const fs::path& file);
 
-// The whole of docs/RESULTS.md: command, scenes, resolution, revisions, dates, machine, all tables
-// in which something is measured.
-std::string results_markdown(const ResultsInfo& info, const std::vector<Record>& records);
+// A part of docs/RESULTS.md: command, scenes, resolution, revisions, dates, machine, tables.
+std::string results_part(const ResultsInfo& info, const std::vector<Record>& records);
+// The whole page of a project's folder, from docs/results/. Errors (kBadPrediction): no records.
+std::string results_markdown(const fs::path& root);
 
 // The table that the README shows, with one line on where it comes from.
 std::string readme_results(const ResultsInfo& info, const std::vector<Record>& records);

@@ -13,7 +13,7 @@ int run_results(const std::string& root) {
   const auto records = read_records(fs::path(root) / info.records);
   GLINT_CHECK(!records.empty(), kBadPrediction, "{}: no records", info.records);
   const fs::path page = fs::path(root) / "docs/RESULTS.md", readme = fs::path(root) / "README.md";
-  write_file(page, results_markdown(info, records));
+  write_file(page, results_markdown(root));
   write_file(readme, with_results(read_file(readme), readme_results(info, records)));
   print_text(fmt::format("{} and {}: written\n", page.string(), readme.string()));
   return 0;

@@ -10,7 +10,7 @@ TEST_CASE("docs/RESULTS.md and the README's table are what the committed records
   const auto records = read_records(info.records);
   REQUIRE(!records.empty());
   INFO("run `glint-bench results` and commit what it writes");
-  CHECK(read_file("docs/RESULTS.md") == results_markdown(info, records));
+  CHECK(read_file("docs/RESULTS.md") == results_markdown("."));
   const std::string readme = read_file("README.md");
   CHECK(readme == with_results(readme, readme_results(info, records)));
 }
@@ -31,8 +31,20 @@ TEST_CASE("The page says which revision trained and which scored") {
   record.metrics = {{"psnr", 30.0}};
   record.warnings = {"trained by revision abc1234"};
   record.environment = {{"git_revision", "def5678"}, {"date", "2026-01-01T00:00:00Z"}};
-  const std::string page = results_markdown({"r.jsonl", "glint-bench all", "a remark"}, {record});
+  const std::string page = results_part({"r.jsonl", "glint-bench all", "a remark"}, {record});
   for (const char* text :
        {"abc1234", "def5678", "2026-01-01", "glint-bench all", "a remark", "30.00"})
     CHECK_THAT(page, Catch::Contains(text));
+}
+
+TEST_CASE("A part of the page may have a title and some tables alone") {
+  Record record;
+  record.dataset = "glassroom";
+  record.cell = {"room_1", "glint", 0};
+  record.metrics = {{"psnr", 30.0}};
+  const ResultsInfo info{"r.jsonl", "glint-bench all", "", "Captures", {"summary"}};
+  const std::string part = results_part(info, {record});
+  CHECK(part.starts_with("# Captures\n\n- Command"));
+  CHECK_THAT(part, Catch::Contains("## Summary"));
+  CHECK_THAT(part, !Catch::Contains("## Photometric evaluation"));
 }
