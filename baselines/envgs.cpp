@@ -70,7 +70,7 @@ struct EnvGsConfig {
     densify.slow_interval = 500;
     densify.split_large = densify.cap_by_visibility = true;
     densify.max_surfels = 2000000;
-    mirror.share_below = 0;  // it would cost the mirrored part 0.3 dB (docs/GLINT_NOTES.md)
+    mirror.share_below = 0;  // it would cost the mirrored part 0.2 dB (docs/GLINT_NOTES.md)
     bootstrap.color_sabotage = bootstrap.normal_propagation = true;
   }
   template <class V>
