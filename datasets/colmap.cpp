@@ -19,7 +19,10 @@ LoaderMatch match(const fs::path& folder) {
   std::error_code code;
   const fs::path model = find_colmap_model(folder);
   if (model.empty()) return {};
-  if (!fs::is_directory(folder / "images", code)) return {Sureness::kName, "a COLMAP model"};
+  const bool has_pictures =
+      fs::is_directory(folder / "images", code) || fs::is_directory(folder / "images_2", code) ||
+      fs::is_directory(folder / "images_4", code) || fs::is_directory(folder / "images_8", code);
+  if (!has_pictures) return {Sureness::kName, "a COLMAP model"};
   // Folders of other formats often keep the model that they were made from.
   for (const char* other : {"transforms.json", "transforms_train.json", "intri.yml"})
     if (fs::exists(folder / other, code))
@@ -80,7 +83,7 @@ ViewSource make_view(
   ViewSource view;
   view.name = fs::path(image.name).lexically_normal().string();
   view.where = std::move(where);
-  view.image = folder / "images" / view.name;
+  view.image = picture_or_copy(folder / "images" / view.name);
   view.scales_with_image = true;
   const auto camera = model.cameras.find(image.camera_id);
   GLINT_CHECK(

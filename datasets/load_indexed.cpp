@@ -170,6 +170,16 @@ bool file_contains(const fs::path& file, std::string_view part) {
   }
 }
 
+fs::path picture_or_copy(const fs::path& path) {
+  std::error_code code;
+  if (fs::is_regular_file(path, code)) return path;
+  for (const char* smaller : {"_2", "_4", "_8"}) {
+    const fs::path copy = fs::path(path.parent_path().string() + smaller) / path.filename();
+    if (fs::is_regular_file(copy, code)) return copy;
+  }
+  return path;
+}
+
 std::string folder_name(const fs::path& folder) {
   return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
 }
@@ -307,20 +317,48 @@ Image read_prior(const fs::path& path, MapKind kind) {
   return read_true_map(path, kind);
 }
 
+namespace {
+
+// Names in files that lead out of the folder become problems: a dataset of strangers reads nothing
+// else of the machine. Links in the folder are its owner's.
+void refuse_outside(const fs::path& folder, SceneIndex& index) {
+  const fs::path inside = fs::absolute(folder / "").lexically_normal();
+  for (const ViewSource& view : index.views) {
+    const fs::path relative =
+        fs::absolute(view.image).lexically_normal().lexically_relative(inside);
+    if (!relative.empty() && *relative.begin() != "..") continue;
+    index.problems.push_back(
+        {"path-outside",
+         view.where,
+         fmt::format(
+             "{} lies outside of {}; move the pictures into the folder, or link them there",
+             view.image.string(),
+             folder.string()
+         )}
+    );
+  }
+}
+
+}  // namespace
+
 LoaderSpec indexed_loader(
     const std::string& name,
     std::function<LoaderMatch(const fs::path&)> match,
-    FolderIndexer index,
+    FolderIndexer index_folder,
     const std::string& looks_for
 ) {
+  const FolderIndexer index = [index_folder](const fs::path& folder, const LoadOptions& options) {
+    SceneIndex of_folder = index_folder(folder, options);
+    of_folder.folder = folder;
+    refuse_outside(folder, of_folder);
+    return of_folder;
+  };
   LoaderSpec loader;
   loader.name = name;
   loader.match = std::move(match);
   loader.looks_for = looks_for;
   loader.load = [index](const fs::path& folder, const LoadOptions& options) {
-    SceneIndex of_folder = index(folder, options);
-    of_folder.folder = folder;
-    return load_indexed(of_folder, options);
+    return load_indexed(index(folder, options), options);
   };
   loader.check = [index](const fs::path& folder) { return check_indexed(index(folder, {})); };
   loader.split_rule = [index](const fs::path& folder) { return index(folder, {}).split_rule; };

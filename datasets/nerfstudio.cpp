@@ -50,7 +50,9 @@ LoaderMatch match(const fs::path& folder) {
   return {Sureness::kContents, "transforms.json with frames"};
 }
 
-SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
+}  // namespace
+
+SceneIndex index_nerfstudio(const fs::path& folder, const LoadOptions& options) {
   const fs::path file = folder / "transforms.json";
   const Json json = parse_transforms(file);
   SceneIndex index;
@@ -67,10 +69,8 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   return index;
 }
 
-}  // namespace
-
 GLINT_REGISTER(
-    LoaderSpec, indexed_loader("nerfstudio", match, index_folder, "transforms.json with frames")
+    LoaderSpec, indexed_loader("nerfstudio", match, index_nerfstudio, "transforms.json with frames")
 )
 
 }  // namespace glint

@@ -47,6 +47,10 @@ inline constexpr std::size_t kFewestPoints = 4;
 // leaves the message to load().
 bool file_contains(const fs::path& file, std::string_view part);
 
+// A picture, or its smaller copy where captures ship those alone, or beside it: of DIR_2/, DIR_4/
+// and DIR_8/ the largest that has it. `path` itself where none has.
+fs::path picture_or_copy(const fs::path& path);
+
 // The folder's own name, also for "." and names that end in a slash.
 std::string folder_name(const fs::path& folder);
 

@@ -90,6 +90,26 @@ void read_intrinsics(const FrameReader& reader, const fs::path& image, Camera& c
   camera.cy = reader.number("cy", 0.5 * camera.height);
 }
 
+// distortion_params, k1 k2 k3 k4 p1 p2, in OpenCV's order; empty: there is none.
+std::vector<double> distortion_list(const FrameReader& reader) {
+  const Json* list = reader.find("distortion_params");
+  if (list == nullptr) return {};
+  const bool good =
+      list->is_array() && list->size() == 6 &&
+      std::all_of(list->begin(), list->end(), [](const Json& v) { return v.is_number(); });
+  GLINT_CHECK(
+      good && (*list)[3] == 0,
+      kBadReference,
+      "{}: distortion_params is {}, expected the numbers k1 k2 k3 k4 p1 p2 with k4 = 0: undistort "
+      "the images first",
+      reader.where,
+      list->dump()
+  );
+  std::vector<double> distortion;
+  for (const std::size_t i : {0u, 1u, 4u, 5u, 2u}) distortion.push_back((*list)[i].get<double>());
+  return distortion;
+}
+
 std::vector<double> read_distortion(const FrameReader& reader) {
   const Json* model = reader.find("camera_model");
   const std::string name =
@@ -104,9 +124,10 @@ std::vector<double> read_distortion(const FrameReader& reader) {
       name,
       known.contains(name) ? " with k4" : ""
   );
-  std::vector<double> distortion;
-  for (const char* key : {"k1", "k2", "p1", "p2", "k3"})
-    distortion.push_back(reader.number(key, 0));
+  std::vector<double> distortion = distortion_list(reader);
+  if (distortion.empty())
+    for (const char* key : {"k1", "k2", "p1", "p2", "k3"})
+      distortion.push_back(reader.number(key, 0));
   const bool none =
       std::all_of(distortion.begin(), distortion.end(), [](double d) { return d == 0; });
   return none ? std::vector<double>{} : distortion;
@@ -141,15 +162,15 @@ void read_pose(const FrameReader& reader, Camera& camera) {
   camera.translation_cam_from_world = -(camera.rotation_cam_from_world * column(3));
 }
 
-// file_path may lack its extension (Blender exports).
+// file_path may lack its extension (Blender exports), and name pictures of which only smaller
+// copies are there (DL3DV).
 fs::path find_image(const fs::path& folder, const std::string& file_path) {
   const fs::path path = (folder / file_path).lexically_normal();
   std::error_code code;
-  if (fs::is_regular_file(path, code)) return path;
-  for (const char* extension : {".png", ".jpg", ".jpeg", ".JPG", ".PNG"}) {
-    const fs::path candidate = path.string() + extension;
-    if (fs::is_regular_file(candidate, code)) return candidate;
-  }
+  for (const char* extension : {"", ".png", ".jpg", ".jpeg", ".JPG", ".PNG"})
+    if (const fs::path found = picture_or_copy(path.string() + extension);
+        fs::is_regular_file(found, code))
+      return found;
   return path;
 }
 

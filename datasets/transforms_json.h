@@ -16,4 +16,7 @@ Json parse_transforms(const fs::path& path);
 // problems of the index.
 void read_frames(const Json& json, const fs::path& file, SceneIndex& index);
 
+// A folder with transforms.json as nerfstudio has it, with its split lists and its point cloud.
+SceneIndex index_nerfstudio(const fs::path& folder, const LoadOptions& options);
+
 }  // namespace glint

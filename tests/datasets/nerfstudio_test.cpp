@@ -238,3 +238,62 @@ TEST_CASE("real captures are loaded") {
     CHECK(check_dataset(folder).empty());
   }
 }
+
+TEST_CASE("pictures that are there in smaller copies alone are taken from the largest") {
+  RoomFolder folder;
+  for (const char* key : {"w", "h", "fl_x", "fl_y", "cx", "cy"})
+    folder.json[key] = 4 * folder.json[key].get<double>();
+  fs::rename(folder / "images", folder / "images_4");
+  Scene scene = folder.load();
+  CHECK(scene.train[0].camera.size() == kSize);
+  CHECK(scene.train[0].camera.fx == Approx(folder.views[0].camera.fx));
+  for (const View& view : folder.views)
+    write_png(folder / "images_2" / (view.name + ".png"), Image(96, 72, 3));
+  scene = folder.load();
+  CHECK(scene.train[0].camera.size() == ImageSize{96, 72});
+}
+
+TEST_CASE("a scene of DL3DV's benchmark is known by its folders") {
+  RoomFolder folder;
+  const TempFolder outer;
+  folder.load();
+  fs::create_directories(outer / "abc123/gaussian_splat");
+  fs::copy(folder.path(), outer / "abc123/nerfstudio", fs::copy_options::recursive);
+  fs::rename(outer / "abc123/nerfstudio/images", outer / "abc123/nerfstudio/images_8");
+  const Scene scene = load_scene(outer / "abc123", {});
+  CHECK(scene.dataset == "dl3dv");
+  CHECK(scene.name == "abc123");
+  CHECK(scene.train.size() == 8);
+  CHECK(find_loader(outer / "abc123/nerfstudio").name == "nerfstudio");
+}
+
+TEST_CASE("distortion may stand in a list, in its own order") {
+  RoomFolder folder;
+  folder.json["k1"] = 0.05;
+  folder.json["p1"] = 0.01;
+  folder.json["k3"] = 0.02;
+  const Scene single = folder.load();
+  for (const char* key : {"k1", "p1", "k3"}) folder.json.erase(key);
+  folder.json["distortion_params"] = {0.05, 0, 0.02, 0, 0.01, 0};
+  const Scene list = folder.load();
+  CHECK(list.train[0].camera.size() == single.train[0].camera.size());
+  CHECK(list.train[0].rgb.at(5, 5, 0) == single.train[0].rgb.at(5, 5, 0));
+  folder.json["distortion_params"] = {0.05, 0, 0, 0.1, 0, 0};
+  CHECK_THAT(folder.load_error(), Contains("k4 = 0"));
+  folder.json["distortion_params"] = {0.05, 0};
+  CHECK_THAT(folder.load_error(), Contains("k1 k2 k3 k4 p1 p2"));
+}
+
+TEST_CASE("pictures outside of the folder are refused, links inside are not") {
+  RoomFolder folder;
+  const TempFolder outside;
+  fs::copy_file(folder / "images/0000.png", outside / "secret.png");
+  folder.json["frames"][0]["file_path"] = (outside / "secret.png").string();
+  CHECK_THAT(folder.load_error(), Contains("lies outside of"));
+  folder.json["frames"][0]["file_path"] =
+      "../" + outside.path().filename().string() + "/secret.png";
+  CHECK_THAT(folder.load_error(), Contains("lies outside of"));
+  fs::create_symlink(outside / "secret.png", folder / "images/link.png");
+  folder.json["frames"][0]["file_path"] = "images/link.png";
+  CHECK(folder.load().test.size() == 2);
+}
