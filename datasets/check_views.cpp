@@ -166,8 +166,8 @@ PosedMap read_posed(const ViewSource& view, const fs::path& path, Reader&& read)
 }
 
 PosedMap read_depth(const ViewSource& view, MapId depth) {
-  return read_posed(view, view.truth[depth], [](const fs::path& p) {
-    return read_true_values(p, MapKind::kDepth);
+  return read_posed(view, view.truth[depth], [&](const fs::path& p) {
+    return read_true_values(p, MapKind::kDepth, view.depth_scale);
   });
 }
 

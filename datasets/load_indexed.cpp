@@ -77,9 +77,8 @@ Image read_depth_prior(const fs::path& path) {
   return depth;
 }
 
-MapSet read_maps(
-    const MapFiles& files, ImageSize size, Image (*read)(const fs::path& path, MapKind kind)
-) {
+template <class Read>
+MapSet read_maps(const MapFiles& files, ImageSize size, Read&& read) {
   MapSet maps;
   files.for_each([&](const MapRow& row, const fs::path& path) {
     maps[row] = read(path, row.kind);
@@ -263,7 +262,10 @@ View read_view(const ViewSource& source, const LoadOptions& options) {
   view.rgb = at_place(source.where, [&] { return read_image(source.image, 3); });
   view.camera = camera_at(source, view.rgb.size());
   if (options.with_priors) view.priors = read_maps(source.priors, view.rgb.size(), read_prior);
-  if (options.with_truth) view.truth = read_maps(source.truth, view.rgb.size(), read_true_map);
+  const auto read_truth = [&](const fs::path& path, MapKind kind) {
+    return read_true_map(path, kind, source.depth_scale);
+  };
+  if (options.with_truth) view.truth = read_maps(source.truth, view.rgb.size(), read_truth);
   return view;
 }
 
@@ -297,16 +299,16 @@ PointCloud read_points(const fs::path& path) {
   return points;
 }
 
-Image read_true_values(const fs::path& path, MapKind kind) {
+Image read_true_values(const fs::path& path, MapKind kind, double depth_scale) {
   Image map = read_image(path, channels_of(kind));
   if (kind == MapKind::kDepth && path.extension() == ".png")
-    for (float& value : map.values()) value *= kFarthestMillimetres / 1000;
+    for (float& value : map.values()) value *= static_cast<float>(65535 * depth_scale);
   return map;
 }
 
-Image read_true_map(const fs::path& path, MapKind kind) {
+Image read_true_map(const fs::path& path, MapKind kind, double depth_scale) {
   if (kind == MapKind::kMask) return map_of_mask(read_mask(path));
-  Image map = read_true_values(path, kind);
+  Image map = read_true_values(path, kind, depth_scale);
   check_finite(path, map);
   return map;
 }

@@ -28,6 +28,7 @@ struct ViewSource {
   std::vector<double> distortion;  // OpenCV's order k1 k2 p1 p2 k3; empty: none
   bool is_train = false, is_test = false;
   MapFiles priors, truth;
+  double depth_scale = 1e-3;  // metres of a step of true depth as 16-bit PNG
 };
 
 struct SceneIndex {
@@ -96,11 +97,11 @@ LoaderSpec indexed_loader(
 // PLY, or COLMAP's points3D.bin or .txt.
 PointCloud read_points(const fs::path& path);
 
-// Readers of single maps, values checked to be finite. True depth as PNG is in millimetres
-// (map_files.h), in any other file in metres.
-Image read_true_map(const fs::path& path, MapKind kind);
+// Readers of single maps, values checked to be finite. True depth as PNG is in steps of
+// `depth_scale` metres, in any other file in metres.
+Image read_true_map(const fs::path& path, MapKind kind, double depth_scale = 1e-3);
 // The same without a look at the values; masks in [0, 1].
-Image read_true_values(const fs::path& path, MapKind kind);
+Image read_true_values(const fs::path& path, MapKind kind, double depth_scale = 1e-3);
 // As other networks store them. Normals: (n + 1) / 2, OpenCV camera axes, to unit n or zero. Depth:
 // grey, or R + G/256 + B/65536.
 Image read_prior(const fs::path& path, MapKind kind);

@@ -13,8 +13,12 @@ namespace {
 void find_side_maps(const fs::path& folder, ViewSource& view) {
   const auto find = [&](MapFiles& files, const MapRow& row, const fs::path& file) {
     std::error_code code;
-    if (!file.empty() && fs::is_directory((folder / file).parent_path(), code))
-      files[row] = folder / file;
+    if (file.empty() || !fs::is_directory((folder / file).parent_path(), code)) return;
+    files[row] = folder / file;
+    for (const char* extension : {".exr", ".npy"})
+      if (const fs::path other = fs::path(folder / file).replace_extension(extension);
+          !fs::exists(folder / file, code) && fs::exists(other, code))
+        files[row] = other;
   };
   for (const MapRow& row : maps()) {
     find(view.priors, row, side_prior_file(row, view.name));
@@ -45,6 +49,18 @@ void split_by_names(const Json& test_views, const std::string& where, SceneIndex
   index.split_rule = "test_views of scene.json";
 }
 
+void read_depth_scale(const Json& json, const std::string& where, SceneIndex& index) {
+  const double scale = json.value("depth_scale", 1e-3);
+  GLINT_CHECK(
+      scale > 0 && scale < 1e3,
+      kBadReference,
+      "{}: depth_scale is {}; expected the metres of a step of 16-bit depth, such as 0.001",
+      where,
+      scale
+  );
+  for (ViewSource& view : index.views) view.depth_scale = scale;
+}
+
 }  // namespace
 
 void read_scene_json(const fs::path& folder, SceneIndex& index) {
@@ -69,6 +85,7 @@ void read_scene_json(const fs::path& folder, SceneIndex& index) {
     index.spec_hash = json.value("hash", index.spec_hash);
     index.simulated_priors = json.value("simulated_priors", false);
     if (json.contains("test_views")) split_by_names(json["test_views"], path.string(), index);
+    read_depth_scale(json, path.string(), index);
     if (json.value("side_maps", false))
       for (ViewSource& view : index.views) find_side_maps(folder, view);
     if (json.contains("without_priors"))

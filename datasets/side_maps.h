@@ -2,7 +2,8 @@
 // Where the maps of a view lie in folders whose format has no place for them (COLMAP, nerfstudio,
 // Blender), under the names that trainers of the field look for:
 //   masks/<view>.png           glass is white; ground truth
-//   depths/<view>.png          16 bit, millimetres, 0: nothing; ground truth, first surface
+//   depths/<view>.png          16 bit, millimetres (or depth_scale of scene.json), 0: nothing;
+//                              ground truth, first surface. Or .exr, .npy in metres
 //   normals/<view>.png         prior, (n + 1) / 2, camera space, OpenCV axes
 //   priors/<prior>/<view>.png  the other priors; depth 16 bit, relative
 // Other ground truth has no place there.

@@ -60,21 +60,28 @@ const ValueType& find_type(const fs::path& path, const std::string& name) {
 
 detail::ClaimedSize image_size(const fs::path& path, const NpyHeader& header) {
   const std::vector<std::int64_t>& shape = header.shape;
-  const bool usable =
-      (shape.size() == 2 || (shape.size() == 3 && shape[2] >= 1 && shape[2] <= 4)) &&
-      !header.fortran_order;
+  const bool usable = shape.size() == 2 || (shape.size() == 3 && shape[2] >= 1 && shape[2] <= 4);
   GLINT_CHECK(
       usable,
       kBadReference,
-      "{}: shape ({}){}; expected (height, width) or (height, width, channels) with 1 to 4 "
-      "channels, "
-      "C order",
+      "{}: shape ({}); expected (height, width) or (height, width, channels) with 1 to 4 channels",
       path.string(),
-      fmt::join(shape, ", "),
-      header.fortran_order ? " in Fortran order" : ""
+      fmt::join(shape, ", ")
   );
   return {shape[1], shape[0], shape.size() == 3 ? shape[2] : 1};
 }
+
+// Where the value of a pixel's channel stands among all: with the last index fastest, or, in
+// Fortran order, the first.
+struct ValueOrder {
+  std::size_t width, height, channels;
+  bool fortran;
+
+  std::size_t at(std::size_t pixel, std::size_t channel) const {
+    if (!fortran) return pixel * channels + channel;
+    return pixel / width + height * (pixel % width + width * channel);
+  }
+};
 
 }  // namespace
 
@@ -95,9 +102,14 @@ Image detail::read_npy(const fs::path& path) {
         fmt::format("{} bytes of values, expected {}", file.size() - header.values_at, expected)
     );
   const char* from = file.data() + header.values_at;
+  const ValueOrder order{
+      static_cast<std::size_t>(size.width),
+      static_cast<std::size_t>(size.height),
+      stored,
+      header.fortran_order};
   for (std::size_t i = 0; i < image.num_pixels(); ++i)
     for (std::size_t c = 0; c < kept; ++c)
-      image.data()[i * kept + c] = type.read(from + (i * stored + c) * type.bytes);
+      image.data()[i * kept + c] = type.read(from + order.at(i, c) * type.bytes);
   return image;
 }
 

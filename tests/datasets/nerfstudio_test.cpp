@@ -297,3 +297,27 @@ TEST_CASE("pictures outside of the folder are refused, links inside are not") {
   folder.json["frames"][0]["file_path"] = "images/link.png";
   CHECK(folder.load().test.size() == 2);
 }
+
+TEST_CASE("true depth beside a capture is EXR, NPY or PNG in stated steps, where scene.json says so"
+) {
+  RoomFolder folder;
+  const Image& depth = folder.views[1].truth["depth"];
+  Image steps(depth.width(), depth.height(), 1);
+  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
+    steps.data()[i] = std::round(depth.data()[i] / 0.0005f) / 65535;
+  for (const View& view : folder.views) {
+    write_png16(folder / "depths" / (view.name + ".png"), steps);
+    if (view.name == "0002") fs::remove(folder / "depths/0002.png");
+    if (view.name == "0003") fs::remove(folder / "depths/0003.png");
+  }
+  write_exr(folder / "depths/0002.exr", depth);
+  write_npy(folder / "depths/0003.npy", depth);
+  CHECK(folder.load().train[0].truth["depth"].empty());
+  write_file(folder / "scene.json", R"({"side_maps": true, "depth_scale": 0.0005})");
+  const Scene scene = folder.load();
+  CHECK(scene.train[0].truth["depth"].at(7, 9) == Approx(depth.at(7, 9)).margin(0.0003));
+  CHECK(scene.train[1].truth["depth"].at(7, 9) == depth.at(7, 9));
+  CHECK(scene.train[2].truth["depth"].at(7, 9) == depth.at(7, 9));
+  write_file(folder / "scene.json", R"({"side_maps": true, "depth_scale": 0})");
+  CHECK_THAT(folder.load_error(), Contains("depth_scale is 0"));
+}

@@ -211,9 +211,27 @@ TEST_CASE("NPY of other types and a batch of bad headers") {
   CHECK_THAT(message(npy_file(huge, bytes)), Contains("too many for a file of"));
   const std::string overflow = npy_dictionary("<f4", "(99999999999999999999, 2)");
   message(npy_file(overflow, bytes));
-  std::string fortran = npy_dictionary("<f8", "(1, 1)");
-  fortran.replace(fortran.find("False"), 5, "True ");
-  CHECK_THAT(message(npy_file(fortran, bytes)), Contains("Fortran order"));
+}
+
+TEST_CASE("NPY arrays in Fortran order are read as those in C order") {
+  const TempFolder folder;
+  // [2][3][3], value 100 y + 10 x + c in 8 bits, once with the last index fastest and once the
+  // first.
+  std::string c_order, fortran_order;
+  const auto value = [](int y, int x, int c) { return static_cast<char>(100 * y + 10 * x + c); };
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 3; ++x)
+      for (int c = 0; c < 3; ++c) c_order += value(y, x, c);
+  for (int c = 0; c < 3; ++c)
+    for (int x = 0; x < 3; ++x)
+      for (int y = 0; y < 2; ++y) fortran_order += value(y, x, c);
+  std::string dictionary = npy_dictionary("|u1", "(2, 3, 3)");
+  write_file(folder / "c.npy", npy_file(dictionary, c_order));
+  dictionary.replace(dictionary.find("False"), 5, "True ");
+  write_file(folder / "f.npy", npy_file(dictionary, fortran_order));
+  const Image a = read_image(folder / "c.npy"), b = read_image(folder / "f.npy");
+  CHECK(a.at(2, 1, 1) == 121 / 255.0f);
+  CHECK(largest_difference(a, b) == 0);
 }
 
 TEST_CASE("every cut-off PNG, EXR and NPY is an error that names the file") {
