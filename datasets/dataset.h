@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/findings.h"
+#include "datasets/prior_options.h"
 #include "glint/core/files.h"
 #include "glint/core/registry.h"
 #include "glint/scene/scene.h"
@@ -22,6 +23,7 @@ struct LoadOptions {
   bool with_truth = true;   // read gt/
   bool with_priors = true;  // read diffrens/
   std::string loader;       // id of the loader to take; empty: the surest
+  PriorOptions priors = {};  // how those of other programs are stored
 };
 
 enum class Sureness {
@@ -41,7 +43,7 @@ struct LoaderSpec {
   std::function<Scene(const fs::path&, const LoadOptions&)> load;
   std::string looks_for = {};  // e.g. "transforms.json"; listed when no loader knows a folder
   // What check_dataset() calls; empty: it only tries load().
-  std::function<std::vector<Finding>(const fs::path&)> check = {};
+  std::function<std::vector<Finding>(const fs::path&, const LoadOptions&)> check = {};
   // How it chooses the test views of a folder, in words; empty: they come with the data.
   std::function<std::string(const fs::path&)> split_rule = {};
   std::string source = {};  // the file that registers it, as the compiler calls it
@@ -60,7 +62,8 @@ Scene load_scene(const fs::path& folder, const LoadOptions& options);
 std::string describe_scene(const Scene& scene);
 
 // Everything wrong with a dataset folder, not only the first thing; of a packed scene the first.
-// Empty: clean. Errors: find_loader()'s; kEnvironment: load_scene()'s.
-std::vector<Finding> check_dataset(const fs::path& folder, const std::string& loader = "");
+// Empty: clean. Of the options the loader and those of priors count. Errors: find_loader()'s;
+// kEnvironment: load_scene()'s.
+std::vector<Finding> check_dataset(const fs::path& folder, const LoadOptions& options = {});
 
 }  // namespace glint

@@ -89,6 +89,7 @@ std::vector<SceneSource> Profile::sources() const {
     );
     const std::string why = why_no_folder_name(source.scene);
     GLINT_CHECK(why.empty(), kUsage, "{}: scene '{}' {}", where, source.scene, why);
+    check_prior_options(source.foreign_priors, fmt::format("{}: scene '{}'", where, source.scene));
     check_prior_level(source.priors, fmt::format("{}: scene '{}'", where, source.scene));
     sources.push_back(source);
   }

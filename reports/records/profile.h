@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/glassroom/prior_levels.h"
+#include "datasets/prior_options.h"
 #include "glint/core/config.h"
 #include "metrics/fusion/tsdf.h"
 #include "metrics/mesh/mesh_protocol.h"
@@ -26,6 +27,7 @@ struct SceneSource {
   std::string assets;                                   // glassroom: folder with glTF furniture
   std::string room;                                     // glassroom; empty: `scene`
   std::string priors = kDefaultPriorLevel;              // glassroom: one of kPriorLevels
+  PriorOptions foreign_priors = {};                     // folders: priors of other programs
 
   bool made() const { return folder.empty(); }
 
@@ -44,6 +46,13 @@ struct SceneSource {
     v("assets", assets, "folder with glTF furniture");
     v("room", room, "room that is made, where the scene is called otherwise");
     v("priors", priors, "how good simulated priors are: perfect, good, default, poor, bad");
+    v("prior_folder", foreign_priors.folder, "folder with priors as other programs write them");
+    v("prior_axes", foreign_priors.axes, "of normals: auto, opencv, opengl, stablenormal, world");
+    v("prior_depth", foreign_priors.depth, "of depth: auto, linear, disparity, inverted");
+    v("prior_overlap", foreign_priors.overlap, "frames that two chunks share; else told");
+    v("albedo_from_basecolor",
+      foreign_priors.albedo_from_basecolor,
+      "base colour x (1 - metallic) where there is no albedo");
   }
 };
 

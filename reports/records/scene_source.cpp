@@ -39,6 +39,12 @@ fs::path folder_of(const SceneSource& source, const fs::path& data_folder) {
   return source.made() ? made_folder(source, data_folder) : data_folder / source.folder;
 }
 
+// The options with their folder as load_scene() takes it.
+PriorOptions placed_priors(PriorOptions priors, const fs::path& data_folder) {
+  if (!priors.folder.empty()) priors.folder = (data_folder / priors.folder).string();
+  return priors;
+}
+
 fs::path hash_cache(const fs::path& data_folder) { return data_folder / ".hashes"; }
 
 // The options of a room. Of assets the content counts, not where they lie.
@@ -71,6 +77,31 @@ std::string made_content(const fs::path& folder) {
 
 Json load_code(const fs::path& folder, const std::string& loader) {
   return code_json({"load", code_entry_of(find_loader(folder, loader).source)});
+}
+
+// Nothing where there are none of other programs, so that earlier keys go on.
+void add_priors(const PriorOptions& priors, const fs::path& data_folder, Json& document) {
+  if (priors == PriorOptions{}) return;
+  document["scene"]["priors"] = {
+      {"folder", priors.folder},
+      {"axes", priors.axes},
+      {"depth", priors.depth},
+      {"overlap", priors.overlap},
+      {"albedo_from_basecolor", priors.albedo_from_basecolor}};
+  if (!priors.folder.empty())
+    document["prior_content"] =
+        content_hash(placed_priors(priors, data_folder).folder, hash_cache(data_folder));
+}
+
+PriorOptions priors_of(const Json& scene) {
+  if (!scene.contains("priors")) return {};
+  const Json& json = scene["priors"];
+  return {
+      json.value("folder", ""),
+      json.value("axes", ""),
+      json.value("depth", ""),
+      json.value("overlap", -1),
+      json.value("albedo_from_basecolor", false)};
 }
 
 SceneIdentity made_identity(const SceneSource& source, const fs::path& data_folder) {
@@ -110,19 +141,26 @@ SceneIdentity identify_source(const SceneSource& source, const fs::path& data_fo
     return {
         {{"scene", {{"max_pixels", source.max_pixels}}}},
         folder.string() + ": no such folder or file"};
-  return {data_document(folder, source.max_pixels, data_folder, source.loader), ""};
+  const PriorOptions& priors = source.foreign_priors;
+  const std::string prior_folder = placed_priors(priors, data_folder).folder;
+  if (!prior_folder.empty() && !fs::exists(prior_folder))
+    return {{{"scene", {{"max_pixels", source.max_pixels}}}}, prior_folder + ": no such folder"};
+  return {data_document(folder, source.max_pixels, data_folder, source.loader, priors), ""};
 }
 
 Json data_document(
     const fs::path& dataset,
     double max_pixels,
     const fs::path& data_folder,
-    const std::string& loader
+    const std::string& loader,
+    const PriorOptions& priors
 ) {
-  return {
+  Json document = {
       {"scene", {{"max_pixels", max_pixels}}},
       {"content", content_hash(dataset, hash_cache(data_folder))},
       {"code", load_code(dataset, loader)}};
+  add_priors(priors, data_folder, document);
+  return document;
 }
 
 Json data_document_now(
@@ -133,7 +171,7 @@ Json data_document_now(
 ) {
   const Json& scene = then.at("scene");
   if (!scene.contains("spp"))
-    return data_document(dataset, scene.at("max_pixels"), data_folder, loader);
+    return data_document(dataset, scene.at("max_pixels"), data_folder, loader, priors_of(scene));
   return {
       {"scene", scene}, {"content", made_content(dataset)}, {"code", load_code(dataset, loader)}};
 }
@@ -143,6 +181,7 @@ LoadedScene load_source(const SceneSource& source, const fs::path& data_folder) 
   LoadOptions options;
   options.max_pixels = source.max_pixels;
   options.loader = source.loader;
+  options.priors = placed_priors(source.foreign_priors, data_folder);
   loaded.folder = folder_of(source, data_folder);
   if (source.made()) make_source(source, loaded.folder, data_folder);
   loaded.scene = load_scene(loaded.folder, options);

@@ -28,12 +28,13 @@ SceneIdentity identify_source(const SceneSource& source, const fs::path& data_fo
 using SceneIdentifier = std::function<SceneIdentity(const SceneSource&)>;
 
 // Of a folder or packed file of the user's; hashes are kept below `data_folder`. `loader`: as
-// find_loader's. Errors (kBadReference): as identify_source, and nothing there that a loader knows.
+// find_loader's. `priors`: of other programs, their folder as of SceneSource. Errors (kBadReference): as identify_source, and nothing there that a loader knows.
 Json data_document(
     const fs::path& dataset,
     double max_pixels,
     const fs::path& data_folder,
-    const std::string& loader = ""
+    const std::string& loader = "",
+    const PriorOptions& priors = {}
 );
 
 // What a training's data are now, to be compared with `then`, its document of them: of a room that
