@@ -137,7 +137,7 @@ std::string describe_scene(const Scene& scene) {
       describe_maps(scene.train, &View::priors),
       scene.simulated_priors ? ", simulated" : ""
   );
-  for (const std::string& note : scene.prior_notes) text += fmt::format("               {}\n", note);
+  for (const std::string& note : scene.data_notes) text += fmt::format("               {}\n", note);
   text += fmt::format("ground truth   {}\n", describe_maps(scene.test, &View::truth));
   text += fmt::format("points         {}\n", scene.points.positions.size());
   text += fmt::format(

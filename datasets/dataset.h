@@ -16,13 +16,14 @@
 namespace glint {
 
 struct LoadOptions {
-  ImageSize size;           // images resized to this (area average); {0, 0}: as stored
-  double max_pixels = 0;    // or: shrink so that width x height stays below; 0: as stored
-  int test_every = 8;       // view index % test_every == 0 is a test view (unless the data says)
-  bool test_only = false;   // leave the training views out where that saves reading them
-  bool with_truth = true;   // read gt/
-  bool with_priors = true;  // read diffrens/
-  std::string loader;       // id of the loader to take; empty: the surest
+  ImageSize size;            // images resized to this (area average); {0, 0}: as stored
+  double image_ratio = 1;    // or: both sides times this, rounded down (area average)
+  double max_pixels = 0;     // or: shrink so that width x height stays below; 0: as stored
+  int test_every = 8;        // view index % test_every == 0 is a test view (unless the data says)
+  bool test_only = false;    // leave the training views out where that saves reading them
+  bool with_truth = true;    // read gt/
+  bool with_priors = true;   // read diffrens/
+  std::string loader;        // id of the loader to take; empty: the surest
   PriorOptions priors = {};  // how those of other programs are stored
 };
 
@@ -46,6 +47,9 @@ struct LoaderSpec {
   std::function<std::vector<Finding>(const fs::path&, const LoadOptions&)> check = {};
   // How it chooses the test views of a folder, in words; empty: they come with the data.
   std::function<std::string(const fs::path&)> split_rule = {};
+  // What a folder says before any picture is read: names and cameras of the views (size 0 where it
+  // is not stated), points, bounds and extent. Empty: load() is the only way.
+  std::function<Scene(const fs::path&, const LoadOptions&)> outline = {};
   std::string source = {};  // the file that registers it, as the compiler calls it
 };
 

@@ -108,6 +108,12 @@ std::vector<View> load_views(const std::vector<ViewSource>& sources, const LoadO
   return views;
 }
 
+void add_points_and_extent(const SceneIndex& index, Scene& scene) {
+  if (!index.points.empty())
+    scene.points = at_place(index.folder.string(), [&] { return read_points(index.points); });
+  set_extent(scene);
+}
+
 void check_index(const SceneIndex& index) {
   GLINT_CHECK(
       index.problems.empty(),
@@ -241,14 +247,29 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options) {
       scene.test.push_back(std::move(views[i]));
   }
   if (options.with_priors && !index.simulated_priors && !index.prior_notes.empty()) {
-    scene.prior_notes = index.prior_notes;
+    scene.data_notes = index.prior_notes;
     const std::vector<std::string> coverage = prior_coverage(scene);
-    scene.prior_notes.insert(scene.prior_notes.end(), coverage.begin(), coverage.end());
+    scene.data_notes.insert(scene.data_notes.end(), coverage.begin(), coverage.end());
   }
   if (options.test_only) return scene;  // nobody starts a training from it
-  if (!index.points.empty())
-    scene.points = at_place(index.folder.string(), [&] { return read_points(index.points); });
-  set_extent(scene);
+  add_points_and_extent(index, scene);
+  return scene;
+}
+
+Scene outline_indexed(const SceneIndex& index) {
+  check_index(index);
+  Scene scene;
+  scene.name = index.name;
+  scene.dataset = index.dataset;
+  scene.spec_hash = index.spec_hash;
+  for (const ViewSource& source : index.views) {
+    View view;
+    view.name = source.name;
+    view.camera = source.camera;
+    if (source.is_train) scene.train.push_back(view);
+    if (source.is_test) scene.test.push_back(view);
+  }
+  add_points_and_extent(index, scene);
   return scene;
 }
 
@@ -332,6 +353,11 @@ LoaderSpec indexed_loader(
           of_folder
       );
     return load_indexed(of_folder, options);
+  };
+  loader.outline = [index](const fs::path& folder, const LoadOptions& options) {
+    SceneIndex of_folder = index(folder, options);
+    of_folder.folder = folder;
+    return outline_indexed(of_folder);
   };
   loader.check = [index_with_priors](const fs::path& folder, const LoadOptions& options) {
     SceneIndex of_folder = index_with_priors(folder, options);

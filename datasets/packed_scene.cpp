@@ -299,7 +299,7 @@ Scene read_scene(const fs::path& file) {
   scene.dataset = reader.field("dataset");
   scene.spec_hash = reader.field("hash");
   scene.simulated_priors = reader.field("simulated_priors") == "true";
-  if (reader.has_field("prior_notes")) scene.prior_notes = reader.list("prior_notes");
+  if (reader.has_field("data_notes")) scene.data_notes = reader.list("data_notes");
   for (const Split& split : packed::kSplits) scene.*split.views = read_views(reader, split.name);
   scene.points = read_points(reader);
   const std::vector<Vec3f> bounds = read_vectors(reader, "bounds", 2);

@@ -86,6 +86,10 @@ View read_view(const ViewSource& source, const LoadOptions& options);
 // first of `problems`, no train views, and read_view()'s.
 Scene load_indexed(const SceneIndex& index, const LoadOptions& options);
 
+// The same without pictures and maps (LoaderSpec::outline). Errors (kBadReference): the first of
+// `problems`, no train views, points that cannot be read.
+Scene outline_indexed(const SceneIndex& index);
+
 // Everything wrong with the files, the split, the points, and maps against cameras.
 std::vector<Finding> check_indexed(const SceneIndex& index);
 

@@ -40,9 +40,10 @@ std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
   const TrainReport report = train(*method, scene, train_options(spec));
   const auto files =
       save_in_place(spec.folder, [&](const fs::path& folder) { method->save(folder.string()); });
-  std::vector<std::string> notes = method->notes();
-  notes.insert(notes.end(), scene.prior_notes.begin(), scene.prior_notes.end());
-  write_trained(spec, {report.seconds, report.peak_memory_mb, method->warnings(), notes});
+  write_trained(
+      spec,
+      {report.seconds, report.peak_memory_mb, method->warnings(), method->notes(), scene.data_notes}
+  );
   write_stage(spec.folder, Stage::kTrain, spec.train_document, files);
   fs::remove(checkpoint);
   earlier.drop();

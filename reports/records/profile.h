@@ -17,11 +17,13 @@ namespace glint {
 
 // A scene of a profile: made by GlassRoom, or a folder that a loader knows.
 struct SceneSource {
-  std::string dataset;    // "glassroom", or the name shown for a folder's data
-  std::string scene;      // "room_1"; for folders the name shown, unique in the profile
-  std::string folder;     // folders: where it lies, relative to --data unless absolute
-  std::string loader;     // folders: id of the loader to take; empty: the surest
-  double max_pixels = 0;  // folders: images shrunk below this area; 0: as stored
+  std::string dataset;     // "glassroom", or the name shown for a folder's data
+  std::string scene;       // "room_1"; for folders the name shown, unique in the profile
+  std::string folder;      // folders: where it lies, relative to --data unless absolute
+  std::string loader;      // folders: id of the loader to take; empty: the surest
+  double max_pixels = 0;   // folders: images shrunk below this area; 0: as stored
+  double image_ratio = 1;  // folders: both sides of images times this, rounded down
+  std::string manifest;    // id of the published dataset it is a scene of; empty: none
   int width = 160, height = 90, views = 64, spp = 128;  // glassroom
   std::uint64_t seed = 0;                               // glassroom: varies the layout
   std::string assets;                                   // glassroom: folder with glTF furniture
@@ -38,6 +40,7 @@ struct SceneSource {
     v("folder", folder, "folder with the data; empty: made by GlassRoom");
     v("loader", loader, "loader that reads the folder; empty: the one that is surest of it");
     v("max_pixels", max_pixels, "shrink images below this area; 0: as stored");
+    v("image_ratio", image_ratio, "both sides of images times this, rounded down");
     v("width", width, "pixels");
     v("height", height, "pixels");
     v("views", views, "views along the camera path");
@@ -66,6 +69,7 @@ struct Profile {
   int gpus = 0;                        // that a cell asks a cluster for
   Json defaults = Json::object();      // SceneSource fields shared by all scenes
   Json scenes = Json::array();         // names, or objects with SceneSource fields
+  std::vector<std::string> manifests;  // ids of datasets whose scenes come after `scenes`
   Json overrides = Json::object();     // method id -> config fields
   Json mesh = Json::object();          // TsdfOptions fields of the mesh stage
   Json mesh_metrics = Json::object();  // MeshProtocol fields; its tolerance is otherwise 2 voxels
@@ -82,6 +86,7 @@ struct Profile {
     v("gpus", gpus, "that a cell asks a cluster for");
     v("defaults", defaults, "scene fields shared by all scenes");
     v("scenes", scenes, "names, or tables of scene fields");
+    v("manifests", manifests, "published datasets, below --data: ref-dl3dv, 3d-front-t");
     v("overrides", overrides, "config fields by method");
     v("mesh", mesh, "extraction: voxel, truncation_voxels, ...");
     v("mesh_metrics", mesh_metrics, "comparison: num_samples, thresholds_m, ...");

@@ -7,7 +7,9 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "reports/verbs/dataset_export.h"
+#include "reports/verbs/dataset_manifest.h"
 #include "reports/verbs/load_options.h"
+#include "reports/verbs/print_findings.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -90,7 +92,7 @@ Json scene_json(const Scene& scene, const std::string& loader, const std::string
       {"height", any ? scene.train[0].camera.height : 0},
       {"points", scene.points.positions.size()},
       {"simulated_priors", scene.simulated_priors},
-      {"prior_notes", scene.prior_notes},
+      {"data_notes", scene.data_notes},
       {"spatial_scale", scene.spatial_scale},
       {"hash", scene.spec_hash}};
 }
@@ -101,6 +103,7 @@ struct FolderOptions {
 };
 
 int run_info(const CommonOptions& common, const FolderOptions& options) {
+  if (const auto code = show_manifest(common, options.folder)) return *code;
   const LoaderSpec& loader = find_loader(options.folder, options.load.loader);
   const Scene scene = loader.load(options.folder, options.load);
   const std::string split_rule = split_rule_of(loader, options.folder);
@@ -118,21 +121,9 @@ int run_info(const CommonOptions& common, const FolderOptions& options) {
 }
 
 int run_check(const CommonOptions& common, const FolderOptions& options) {
-  const std::string& folder = options.folder;
-  const std::vector<Finding> findings = check_dataset(folder, options.load);
-  Json json = {{"folder", folder}, {"findings", Json::array()}};
-  std::string text;
-  for (const Finding& finding : findings) {
-    json["findings"].push_back(
-        {{"check", finding.check}, {"where", finding.where}, {"message", finding.message}}
-    );
-    text += fmt::format("{}: {}: {}\n", finding.check, finding.where, finding.message);
-  }
-  if (common.json)
-    print_json(json);
-  else
-    print_text(findings.empty() ? fmt::format("{}: nothing wrong\n", folder) : text);
-  return static_cast<int>(findings.empty() ? ExitCode::kSuccess : ExitCode::kCheckFailed);
+  if (const auto code = check_manifest(common, options.folder)) return *code;
+  const std::vector<Finding> findings = check_dataset(options.folder, options.load);
+  return print_findings(common, options.folder, findings, "nothing wrong");
 }
 
 struct PackOptions : FolderOptions {
@@ -216,9 +207,12 @@ void add_folder_verb(
       name,
       help,
       [&line, options, action] { return action(line.common, *options); },
-      kDatasetOptions
+      kDatasetOptions | kDataOption
   );
-  verb->add_option("folder", options->folder, "dataset folder or packed scene")->required();
+  verb->add_option(
+          "folder", options->folder, "dataset folder or packed scene; or ref-dl3dv, 3d-front-t"
+  )
+      ->required();
   add_load_options(*verb, options->load);
 }
 

@@ -112,6 +112,7 @@ Record single_record(const SingleRun& single, const Json& score_document, const 
   if (const auto cost = trained_cost(spec)) {
     record.warnings = cost->warnings;
     record.notes = cost->notes;
+    record.data_notes = cost->data_notes;
     record.timings["train"] = cost->seconds;
   }
   return record;

@@ -16,10 +16,13 @@ namespace {
 
 constexpr int kDefaultIterations = 7000;  // of `train` without --iterations
 
-Scene load_dataset(const fs::path& folder, double max_pixels) {
+Scene load_dataset(const RunSpec& spec) {
   LoadOptions options;
-  options.max_pixels = max_pixels;
-  return with_exit_code(ExitCode::kBadReference, [&] { return load_scene(folder, options); });
+  options.max_pixels = spec.max_pixels;
+  options.image_ratio = spec.image_ratio;
+  return with_exit_code(ExitCode::kBadReference, [&] {
+    return load_scene(spec.dataset_folder, options);
+  });
 }
 
 FileLock lock_of(const fs::path& run) {
@@ -58,7 +61,7 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
   spec.options.seed = common.seed.value_or(0);
   spec.dataset_folder = fs::absolute(options.dataset);
   spec.max_pixels = options.max_pixels;
-  single.scene = load_dataset(spec.dataset_folder, options.max_pixels);
+  single.scene = load_dataset(spec);
   spec.dataset = single.scene.dataset;
   spec.scene = single.scene.name;
   spec.dataset_hash = single.scene.spec_hash;
@@ -66,7 +69,7 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
       spec.method,
       spec.config,
       spec.options,
-      data_document(spec.dataset_folder, spec.max_pixels, common.data)
+      data_document(spec.dataset_folder, {.max_pixels = spec.max_pixels}, common.data)
   );
   spec.folder = options.run.empty() ? run_folder(
                                           fs::path(common.out) / kSingleProfile,
@@ -94,7 +97,7 @@ SingleRun open_single_run(const std::string& run_folder, const std::string& data
       spec.dataset_folder.string(),
       run_folder
   );
-  single.scene = load_dataset(spec.dataset_folder, spec.max_pixels);
+  single.scene = load_dataset(spec);
   const std::string& hash = single.scene.spec_hash;
   if (!dataset.empty() && !spec.dataset_hash.empty() && hash != spec.dataset_hash)
     log::warn(fmt::format(

@@ -39,7 +39,7 @@ struct EvidenceRoom : TempFolder {
 };
 
 bool has_note(const Scene& scene, const std::string& part) {
-  return std::any_of(scene.prior_notes.begin(), scene.prior_notes.end(), [&](const auto& note) {
+  return std::any_of(scene.data_notes.begin(), scene.data_notes.end(), [&](const auto& note) {
     UNSCOPED_INFO(note);
     return note.find(part) != std::string::npos;
   });

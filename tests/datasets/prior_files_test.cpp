@@ -89,8 +89,8 @@ double mean_angle(const Image& a, const Image& b) {
 
 std::string notes_of(const Scene& scene) {
   return std::accumulate(
-      scene.prior_notes.begin(),
-      scene.prior_notes.end(),
+      scene.data_notes.begin(),
+      scene.data_notes.end(),
       std::string(),
       [](auto a, auto b) { return a + b + "\n"; }
   );

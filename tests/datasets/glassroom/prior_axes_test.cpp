@@ -28,7 +28,7 @@ struct CopiedRoom : TempFolder {
   }
   std::string notes() const {
     std::string text;
-    for (const std::string& note : load_scene(path(), {}).prior_notes) text += note + "\n";
+    for (const std::string& note : load_scene(path(), {}).data_notes) text += note + "\n";
     return text;
   }
 };
