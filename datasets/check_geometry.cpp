@@ -139,8 +139,19 @@ std::optional<double> carried_difference(
   return stored_depth_of(*point, kind) / stored - 1;
 }
 
-// Unit normal of the depth map at a pixel, facing the camera, by central differences; nothing where
-// the surface bends or ends.
+Vec3d normal_at(ImageView normal, int x, int y) {
+  const float* n = normal.pixel(x, y);
+  return cast<double>(Vec3f{n[0], n[1], n[2]});
+}
+
+Vec3d flip(Vec3d n, int pattern) {
+  for (int axis = 0; axis < 3; ++axis)
+    if ((pattern >> axis & 1) != 0) n[axis] = -n[axis];
+  return n;
+}
+
+}  // namespace
+
 std::optional<Vec3d> normal_from_depth(
     const Camera& camera, ImageView depth, int x, int y, DepthKind kind
 ) {
@@ -161,19 +172,6 @@ std::optional<Vec3d> normal_from_depth(
   const double toward = dot(normal, point(0, 0)) > 0 ? -1 : 1;
   return (toward / norm) * normal;
 }
-
-Vec3d normal_at(ImageView normal, int x, int y) {
-  const float* n = normal.pixel(x, y);
-  return cast<double>(Vec3f{n[0], n[1], n[2]});
-}
-
-Vec3d flip(Vec3d n, int pattern) {
-  for (int axis = 0; axis < 3; ++axis)
-    if ((pattern >> axis & 1) != 0) n[axis] = -n[axis];
-  return n;
-}
-
-}  // namespace
 
 void DepthAgreement::add_pair(
     const Camera& from, ImageView from_depth, const Camera& to, ImageView to_depth

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,12 @@ class NormalAgreement {
   double world_cosine_ = 0;
   std::size_t num_samples_ = 0;
 };
+
+// Unit normal of the depth map at a pixel that is not at the border, facing the camera, by central
+// differences; nothing where the surface bends or ends.
+std::optional<Vec3d> normal_from_depth(
+    const Camera& camera, ImageView depth, int x, int y, DepthKind kind
+);
 
 // "x and z" for a pattern; "none" for 0.
 std::string flipped_axes(int pattern);

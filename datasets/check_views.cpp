@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "datasets/check_geometry.h"
+#include "datasets/prior_maps.h"
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
 
@@ -277,6 +278,15 @@ void report_facing(double share, const std::string& where, std::vector<Finding>&
 
 using DepthKinds = std::map<std::string_view, DepthKind>;  // by id of the depth
 
+// At the size of the view's picture, in the axes that are documented for it.
+Image read_normal_prior(const ViewSource& view, const MapRow& row) {
+  Image normal = read_stored_prior(view, row);
+  if (view.prior_programs.has(row))
+    normal = resize_prior(std::move(normal), row.kind, read_image(view.image, 3).size());
+  convert_prior(row.kind, view.prior_reading, camera_at(view, normal.size()), normal);
+  return normal;
+}
+
 void check_normals(
     const SceneIndex& index,
     MapFiles ViewSource::*files,
@@ -293,7 +303,7 @@ void check_normals(
     const ViewSource& view = index.views[i];
     const fs::path& path = (view.*files)[row];
     const PosedMap normal = read_posed(view, path, [&](const fs::path& p) {
-      return files == &ViewSource::priors ? read_prior(p, row.kind) : read_image(p, 3);
+      return files == &ViewSource::priors ? read_normal_prior(view, row) : read_image(p, 3);
     });
     if (!normal.usable) continue;
     where = path.parent_path().string();
@@ -323,7 +333,8 @@ std::vector<Finding> check_view_files(const ViewSource& view) {
     // Depth comes in one channel or spread over three.
     const int channels = row.kind == MapKind::kDepth ? 0 : row.channels();
     const Image map = read_or_report(path, channels, findings);
-    check_map(fmt::format("prior.{}", row.id), path, map, image.size(), findings);
+    const ImageSize expected = view.prior_programs.has(row) ? ImageSize{} : image.size();
+    check_map(fmt::format("prior.{}", row.id), path, map, expected, findings);
   });
   view.truth.for_each([&](const MapRow& row, const fs::path& path) {
     const Image map = read_or_report(path, row.channels(), findings);

@@ -111,11 +111,11 @@ Scene load_scene(const fs::path& folder, const LoadOptions& options) {
   return find_loader(folder, options.loader).load(folder, options);
 }
 
-std::vector<Finding> check_dataset(const fs::path& folder, const std::string& id) {
-  const LoaderSpec& loader = find_loader(folder, id);
+std::vector<Finding> check_dataset(const fs::path& folder, const LoadOptions& options) {
+  const LoaderSpec& loader = find_loader(folder, options.loader);
   try {
-    if (loader.check) return loader.check(folder);
-    loader.load(folder, {});
+    if (loader.check) return loader.check(folder, options);
+    loader.load(folder, options);
     return {};
   } catch (const Error& error) {
     if (error.code() == ExitCode::kEnvironment) throw;
@@ -137,6 +137,7 @@ std::string describe_scene(const Scene& scene) {
       describe_maps(scene.train, &View::priors),
       scene.simulated_priors ? ", simulated" : ""
   );
+  for (const std::string& note : scene.data_notes) text += fmt::format("               {}\n", note);
   text += fmt::format("ground truth   {}\n", describe_maps(scene.test, &View::truth));
   text += fmt::format("points         {}\n", scene.points.positions.size());
   text += fmt::format(

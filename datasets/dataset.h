@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/findings.h"
+#include "datasets/prior_options.h"
 #include "glint/core/files.h"
 #include "glint/core/registry.h"
 #include "glint/scene/scene.h"
@@ -15,13 +16,15 @@
 namespace glint {
 
 struct LoadOptions {
-  ImageSize size;           // images resized to this (area average); {0, 0}: as stored
-  double max_pixels = 0;    // or: shrink so that width x height stays below; 0: as stored
-  int test_every = 8;       // view index % test_every == 0 is a test view (unless the data says)
-  bool test_only = false;   // leave the training views out where that saves reading them
-  bool with_truth = true;   // read gt/
-  bool with_priors = true;  // read diffrens/
-  std::string loader;       // id of the loader to take; empty: the surest
+  ImageSize size;            // images resized to this (area average); {0, 0}: as stored
+  double image_ratio = 1;    // or: both sides times this, rounded down (area average)
+  double max_pixels = 0;     // or: shrink so that width x height stays below; 0: as stored
+  int test_every = 8;        // view index % test_every == 0 is a test view (unless the data says)
+  bool test_only = false;    // leave the training views out where that saves reading them
+  bool with_truth = true;    // read gt/
+  bool with_priors = true;   // read diffrens/
+  std::string loader;        // id of the loader to take; empty: the surest
+  PriorOptions priors = {};  // how those of other programs are stored
 };
 
 enum class Sureness {
@@ -41,9 +44,12 @@ struct LoaderSpec {
   std::function<Scene(const fs::path&, const LoadOptions&)> load;
   std::string looks_for = {};  // e.g. "transforms.json"; listed when no loader knows a folder
   // What check_dataset() calls; empty: it only tries load().
-  std::function<std::vector<Finding>(const fs::path&)> check = {};
+  std::function<std::vector<Finding>(const fs::path&, const LoadOptions&)> check = {};
   // How it chooses the test views of a folder, in words; empty: they come with the data.
   std::function<std::string(const fs::path&)> split_rule = {};
+  // What a folder says before any picture is read: names and cameras of the views (size 0 where it
+  // is not stated), points, bounds and extent. Empty: load() is the only way.
+  std::function<Scene(const fs::path&, const LoadOptions&)> outline = {};
   std::string source = {};  // the file that registers it, as the compiler calls it
 };
 
@@ -60,7 +66,8 @@ Scene load_scene(const fs::path& folder, const LoadOptions& options);
 std::string describe_scene(const Scene& scene);
 
 // Everything wrong with a dataset folder, not only the first thing; of a packed scene the first.
-// Empty: clean. Errors: find_loader()'s; kEnvironment: load_scene()'s.
-std::vector<Finding> check_dataset(const fs::path& folder, const std::string& loader = "");
+// Empty: clean. Of the options the loader and those of priors count. Errors: find_loader()'s;
+// kEnvironment: load_scene()'s.
+std::vector<Finding> check_dataset(const fs::path& folder, const LoadOptions& options = {});
 
 }  // namespace glint

@@ -18,6 +18,10 @@ Image resize_map(const Image& map, MapKind kind, ImageSize size) {
 
 ImageSize target_size(ImageSize stored, const LoadOptions& options) {
   if (options.size.width > 0 && options.size.height > 0) return options.size;
+  if (options.image_ratio < 1)
+    return {
+        std::max(1, static_cast<int>(options.image_ratio * stored.width)),
+        std::max(1, static_cast<int>(options.image_ratio * stored.height))};
   const auto pixels = static_cast<double>(stored.num_pixels());
   if (options.max_pixels <= 0 || pixels <= options.max_pixels) return stored;
   const double scale = std::sqrt(options.max_pixels / pixels);

@@ -7,6 +7,9 @@
 
 #include "datasets/colmap_model.h"
 #include "datasets/map_files.h"
+#include "datasets/prior_evidence.h"
+#include "datasets/prior_files.h"
+#include "datasets/prior_maps.h"
 #include "datasets/scene_index.h"
 #include "datasets/undistort.h"
 #include "datasets/view_maps.h"
@@ -32,57 +35,24 @@ void check_size(const fs::path& path, ImageSize found, ImageSize expected) {
   );
 }
 
-void check_finite(const fs::path& path, const Image& map) {
-  const auto channels = static_cast<std::size_t>(map.channels());
-  for (std::size_t i = 0; i < map.values().size(); ++i) {
-    const std::size_t pixel = i / channels;
-    GLINT_CHECK(
-        std::isfinite(map.values()[i]),
-        kBadReference,
-        "{}: pixel ({}, {}) is {}; store 0 where nothing is known",
-        path.string(),
-        pixel % static_cast<std::size_t>(map.width()),
-        pixel / static_cast<std::size_t>(map.width()),
-        map.values()[i]
-    );
-  }
-}
-
-Image read_finite(const fs::path& path, int channels) {
-  Image map = read_image(path, channels);
-  check_finite(path, map);
-  return map;
-}
-
-Image read_normal_prior(const fs::path& path) {
-  constexpr float kMissing = 0.5f;  // mid-grey decodes to about zero
-  Image normal = read_finite(path, 3);
-  for (std::size_t i = 0; i < normal.num_pixels(); ++i) {
-    float* n = normal.data() + 3 * i;
-    for (int c = 0; c < 3; ++c) n[c] = 2 * n[c] - 1;
-    const float norm = length(Vec3f{n[0], n[1], n[2]});
-    for (int c = 0; c < 3; ++c) n[c] = norm < kMissing ? 0 : n[c] / norm;
-  }
-  return normal;
-}
-
-Image read_depth_prior(const fs::path& path) {
-  Image stored = read_image(path);
-  if (stored.channels() == 1) return read_finite(path, 1);
-  Image depth(stored.width(), stored.height(), 1);
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i) {
-    const float* rgb = stored.data() + 3 * i;
-    depth.data()[i] = rgb[0] + rgb[1] / 256 + rgb[2] / 65536;
-  }
-  return depth;
-}
-
-template <class Read>
-MapSet read_maps(const MapFiles& files, ImageSize size, Read&& read) {
+MapSet read_truth(const ViewSource& source, ImageSize size) {
   MapSet maps;
-  files.for_each([&](const MapRow& row, const fs::path& path) {
-    maps[row] = read(path, row.kind);
+  source.truth.for_each([&](const MapRow& row, const fs::path& path) {
+    maps[row] = read_true_map(path, row.kind, source.depth_scale);
     check_size(path, maps[row].size(), size);
+  });
+  return maps;
+}
+
+// As they are used inside.
+MapSet read_priors(const ViewSource& source, const Camera& camera) {
+  MapSet maps;
+  source.priors.for_each([&](const MapRow& row, const fs::path& path) {
+    Image map = read_stored_prior(source, row);
+    if (source.prior_programs.has(row)) map = resize_prior(std::move(map), row.kind, camera.size());
+    check_size(path, map.size(), camera.size());
+    convert_prior(row.kind, source.prior_reading, camera, map);
+    maps[row] = std::move(map);
   });
   return maps;
 }
@@ -136,6 +106,12 @@ std::vector<View> load_views(const std::vector<ViewSource>& sources, const LoadO
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
   return views;
+}
+
+void add_points_and_extent(const SceneIndex& index, Scene& scene) {
+  if (!index.points.empty())
+    scene.points = at_place(index.folder.string(), [&] { return read_points(index.points); });
+  set_extent(scene);
 }
 
 void check_index(const SceneIndex& index) {
@@ -261,11 +237,8 @@ View read_view(const ViewSource& source, const LoadOptions& options) {
   view.name = source.name;
   view.rgb = at_place(source.where, [&] { return read_image(source.image, 3); });
   view.camera = camera_at(source, view.rgb.size());
-  if (options.with_priors) view.priors = read_maps(source.priors, view.rgb.size(), read_prior);
-  const auto read_truth = [&](const fs::path& path, MapKind kind) {
-    return read_true_map(path, kind, source.depth_scale);
-  };
-  if (options.with_truth) view.truth = read_maps(source.truth, view.rgb.size(), read_truth);
+  if (options.with_priors) view.priors = read_priors(source, view.camera);
+  if (options.with_truth) view.truth = read_truth(source, view.rgb.size());
   return view;
 }
 
@@ -283,10 +256,30 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options) {
     else if (index.views[i].is_test)
       scene.test.push_back(std::move(views[i]));
   }
+  if (options.with_priors && !index.simulated_priors && !index.prior_notes.empty()) {
+    scene.data_notes = index.prior_notes;
+    const std::vector<std::string> coverage = prior_coverage(scene);
+    scene.data_notes.insert(scene.data_notes.end(), coverage.begin(), coverage.end());
+  }
   if (options.test_only) return scene;  // nobody starts a training from it
-  if (!index.points.empty())
-    scene.points = at_place(index.folder.string(), [&] { return read_points(index.points); });
-  set_extent(scene);
+  add_points_and_extent(index, scene);
+  return scene;
+}
+
+Scene outline_indexed(const SceneIndex& index) {
+  check_index(index);
+  Scene scene;
+  scene.name = index.name;
+  scene.dataset = index.dataset;
+  scene.spec_hash = index.spec_hash;
+  for (const ViewSource& source : index.views) {
+    View view;
+    view.name = source.name;
+    view.camera = source.camera;
+    if (source.is_train) scene.train.push_back(view);
+    if (source.is_test) scene.test.push_back(view);
+  }
+  add_points_and_extent(index, scene);
   return scene;
 }
 
@@ -313,10 +306,20 @@ Image read_true_map(const fs::path& path, MapKind kind, double depth_scale) {
   return map;
 }
 
-Image read_prior(const fs::path& path, MapKind kind) {
-  if (kind == MapKind::kNormal) return read_normal_prior(path);
-  if (kind == MapKind::kDepth) return read_depth_prior(path);
-  return read_true_map(path, kind);
+void check_finite(const fs::path& path, const Image& map) {
+  const auto channels = static_cast<std::size_t>(map.channels());
+  for (std::size_t i = 0; i < map.values().size(); ++i) {
+    const std::size_t pixel = i / channels;
+    GLINT_CHECK(
+        std::isfinite(map.values()[i]),
+        kBadReference,
+        "{}: pixel ({}, {}) is {}; store 0 where nothing is known",
+        path.string(),
+        pixel % static_cast<std::size_t>(map.width()),
+        pixel / static_cast<std::size_t>(map.width()),
+        map.values()[i]
+    );
+  }
 }
 
 namespace {
@@ -341,6 +344,18 @@ void refuse_outside(const fs::path& folder, SceneIndex& index) {
   }
 }
 
+// Evidence of a second kind for what a check has told already is no second finding: the message
+// goes to the first.
+void add_unless_told(Finding finding, std::vector<Finding>& findings) {
+  const auto told = std::find_if(findings.begin(), findings.end(), [&](const Finding& other) {
+    return other.check == finding.check && other.where.find("gt/") == std::string::npos;
+  });
+  if (told == findings.end())
+    findings.push_back(std::move(finding));
+  else
+    told->message += "; " + finding.message;
+}
+
 }  // namespace
 
 LoaderSpec indexed_loader(
@@ -359,10 +374,36 @@ LoaderSpec indexed_loader(
   loader.name = name;
   loader.match = std::move(match);
   loader.looks_for = looks_for;
-  loader.load = [index](const fs::path& folder, const LoadOptions& options) {
-    return load_indexed(index(folder, options), options);
+  const auto index_with_priors = [index](const fs::path& folder, const LoadOptions& options) {
+    SceneIndex of_folder = index(folder, options);
+    of_folder.folder = folder;
+    attach_priors(folder, options.priors, of_folder);
+    return of_folder;
   };
-  loader.check = [index](const fs::path& folder) { return check_indexed(index(folder, {})); };
+  loader.load = [index_with_priors](const fs::path& folder, const LoadOptions& options) {
+    SceneIndex of_folder = index_with_priors(folder, options);
+    if (options.with_priors && !options.test_only)  // nobody trains on priors of test views
+      settle_readings(
+          options.priors,
+          of_folder.simulated_priors ? PriorEvidence{} : weigh_priors(of_folder),
+          of_folder
+      );
+    return load_indexed(of_folder, options);
+  };
+  loader.outline = [index](const fs::path& folder, const LoadOptions& options) {
+    SceneIndex of_folder = index(folder, options);
+    of_folder.folder = folder;
+    return outline_indexed(of_folder);
+  };
+  loader.check = [index_with_priors](const fs::path& folder, const LoadOptions& options) {
+    SceneIndex of_folder = index_with_priors(folder, options);
+    settle_readings(options.priors, {}, of_folder);  // as documented or stated, to be checked
+    std::vector<Finding> findings = check_indexed(of_folder);
+    const PriorEvidence evidence = weigh_priors(of_folder);
+    for (Finding& finding : check_readings(options.priors, evidence, of_folder))
+      add_unless_told(std::move(finding), findings);
+    return findings;
+  };
   loader.split_rule = [index](const fs::path& folder) { return index(folder, {}).split_rule; };
   return loader;
 }

@@ -40,13 +40,14 @@ class PackedReader {
     );
     return it->second;
   }
+  bool has_field(const std::string& key) const { return file_.metadata().contains(key); }
   std::vector<std::string> list(const std::string& key) const {
     const Json json = parse_json(field(key));
     const bool good = json.is_array() && std::all_of(json.begin(), json.end(), [](const auto& v) {
                         return v.is_string();
                       });
     GLINT_CHECK(
-        good, kBadReference, "{}: __metadata__: {} is no list of names; pack it again", where(), key
+        good, kBadReference, "{}: __metadata__: {} is no list of texts; pack it again", where(), key
     );
     return json.get<std::vector<std::string>>();
   }
@@ -298,6 +299,7 @@ Scene read_scene(const fs::path& file) {
   scene.dataset = reader.field("dataset");
   scene.spec_hash = reader.field("hash");
   scene.simulated_priors = reader.field("simulated_priors") == "true";
+  if (reader.has_field("data_notes")) scene.data_notes = reader.list("data_notes");
   for (const Split& split : packed::kSplits) scene.*split.views = read_views(reader, split.name);
   scene.points = read_points(reader);
   const std::vector<Vec3f> bounds = read_vectors(reader, "bounds", 2);

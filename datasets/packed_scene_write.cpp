@@ -150,6 +150,7 @@ void write_packed_scene(const fs::path& file, const Scene& scene) {
       {"dataset", scene.dataset},
       {"hash", scene.spec_hash},
       {"simulated_priors", scene.simulated_priors ? "true" : "false"}};
+  if (!scene.data_notes.empty()) metadata["data_notes"] = Json(scene.data_notes).dump();
   for (const Split& split : packed::kSplits)
     metadata[std::string(split.name) + "_views"] = names_of(scene.*split.views);
   write_safetensors(file, metadata, Packer(scene).tensors());

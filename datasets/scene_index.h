@@ -29,6 +29,11 @@ struct ViewSource {
   bool is_train = false, is_test = false;
   MapFiles priors, truth;
   double depth_scale = 1e-3;  // metres of a step of true depth as 16-bit PNG
+  // The program whose file a prior is, in words (prior_files.h): it is resized to the image and
+  // decoded as that program stores it. Empty: a file of the folder's own format.
+  BasicMapSet<std::string> prior_programs;
+  PriorReading prior_reading;
+  fs::path metallic;  // for an albedo from the base colour; empty: none
 };
 
 struct SceneIndex {
@@ -39,6 +44,10 @@ struct SceneIndex {
   std::vector<ViewSource> views;  // natural order of names
   std::string split_rule;         // how test views were chosen, for people
   std::vector<Finding> problems;  // found while reading the camera files
+  PriorOptions stated_priors;     // by scene.json
+  // What the format says of its priors, before options and evidence.
+  PriorReading documented_priors;
+  std::vector<std::string> prior_notes;  // for people
 };
 
 // Fewer are no start for surfels, whose sizes come from three neighbours (neighbor_distances).
@@ -82,6 +91,10 @@ View read_view(const ViewSource& source, const LoadOptions& options);
 // first of `problems`, no train views, and read_view()'s.
 Scene load_indexed(const SceneIndex& index, const LoadOptions& options);
 
+// The same without pictures and maps (LoaderSpec::outline). Errors (kBadReference): the first of
+// `problems`, no train views, points that cannot be read.
+Scene outline_indexed(const SceneIndex& index);
+
 // Everything wrong with the files, the split, the points, and maps against cameras.
 std::vector<Finding> check_indexed(const SceneIndex& index);
 
@@ -102,8 +115,7 @@ PointCloud read_points(const fs::path& path);
 Image read_true_map(const fs::path& path, MapKind kind, double depth_scale = 1e-3);
 // The same without a look at the values; masks in [0, 1].
 Image read_true_values(const fs::path& path, MapKind kind, double depth_scale = 1e-3);
-// As other networks store them. Normals: (n + 1) / 2, OpenCV camera axes, to unit n or zero. Depth:
-// grey, or R + G/256 + B/65536.
-Image read_prior(const fs::path& path, MapKind kind);
+// Errors (kBadReference): a value that is not finite; its pixel is named.
+void check_finite(const fs::path& path, const Image& map);
 
 }  // namespace glint

@@ -41,6 +41,32 @@ void leave_out_priors(std::set<std::string> names, const std::string& where, Sce
   );
 }
 
+// Of what scene.json says of priors by other programs.
+PriorOptions read_priors(const Json& json, const fs::path& folder, const std::string& where) {
+  PriorOptions priors;
+  priors.axes = json.value("prior_axes", "");
+  priors.depth = json.value("prior_depth", "");
+  priors.overlap = json.value("prior_overlap", -1);
+  priors.albedo_from_basecolor = json.value("albedo_from_basecolor", false);
+  try {
+    check_prior_options(priors, where);
+  } catch (const Error& error) {  // of the data, not of who asks
+    throw Error(ExitCode::kBadReference, error.what());
+  }
+  const fs::path place = fs::path(json.value("prior_folder", "")).lexically_normal();
+  if (place.empty()) return priors;
+  GLINT_CHECK(
+      place.is_relative() && *place.begin() != "..",
+      kBadReference,
+      "{}: prior_folder: '{}' leaves the scene's folder; move the priors into it, or name another "
+      "place by --priors",
+      where,
+      place.string()
+  );
+  priors.folder = (folder / place).string();
+  return priors;
+}
+
 void split_by_names(const Json& test_views, const std::string& where, SceneIndex& index) {
   const std::string unknown = hold_out(test_views.get<std::set<std::string>>(), index.views);
   GLINT_CHECK(
@@ -88,6 +114,7 @@ void read_scene_json(const fs::path& folder, SceneIndex& index) {
     read_depth_scale(json, path.string(), index);
     if (json.value("side_maps", false))
       for (ViewSource& view : index.views) find_side_maps(folder, view);
+    index.stated_priors = read_priors(json, folder, path.string());
     if (json.contains("without_priors"))
       leave_out_priors(json["without_priors"], path.string(), index);
   } catch (const nlohmann::json::exception& error) {

@@ -445,6 +445,7 @@ TEST_CASE(
 ) {
   const std::vector<std::string> optional = {
       "datasets/glassroom/",
+      "datasets/known_surfaces.cpp",
       "datasets/undistort.cpp",
       "glint/drawing/",
       "glint/render/trace_embree.cpp",

@@ -60,6 +60,7 @@ RunSpec spec_of(
   spec.dataset = cell.source.dataset;
   spec.scene = cell.cell.scene;
   spec.max_pixels = cell.source.max_pixels;
+  spec.image_ratio = cell.source.image_ratio;
   spec.dataset_hash = loaded.scene.spec_hash;
   spec.train_document = stages[Stage::kTrain].document;
   spec.checkpoint_seconds = options.checkpoint_seconds;
@@ -201,6 +202,7 @@ class CellRun {
     record_.num_surfels = method_->num_surfels();
     record_.warnings = cost.warnings;
     record_.notes = cost.notes;
+    record_.data_notes = cost.data_notes;
     const Camera& camera = scene_.test.front().camera;
     record_.resolution = fmt::format("{}x{}", camera.width, camera.height);
   }

@@ -23,9 +23,10 @@ struct RunnerOptions {
 
 struct RunSummary {
   int ran = 0, reused = 0, failed = 0;
-  int elsewhere = 0;  // another process was at them until the end
-  int not_begun = 0;  // left because of an interrupt, or of too many failures
-  int submitted = 0;  // handed to a cluster, which runs them later
+  int elsewhere = 0;     // another process was at them until the end
+  int not_begun = 0;     // left because of an interrupt, or of too many failures
+  int without_data = 0;  // of published datasets whose scenes are not there
+  int submitted = 0;     // handed to a cluster, which runs them later
   bool interrupted = false;
 };
 

@@ -11,6 +11,7 @@
 #include "glint/method.h"
 #include "glint/train/perceptual.h"
 #include "reports/provenance/profile_needs.h"
+#include "reports/records/manifest.h"
 #include "reports/records/stage_files.h"
 
 namespace glint {
@@ -57,7 +58,9 @@ class ProfileExamination {
   explicit ProfileExamination(const ProfileToExamine& examined) : examined_(examined) {}
 
   std::vector<Checked> rows() {
-    for (const SceneSource& source : sources()) add_scene(source);
+    for (const SceneSource& source : sources())
+      if (source.manifest.empty()) add_scene(source);
+    for (const std::string& id : examined_.profile.manifests) add_manifest(*find_manifest(id));
     add_weights();
     add_disk();
     add_memory();
@@ -87,6 +90,28 @@ class ProfileExamination {
     } catch (const Error& error) {
       rows_.push_back({name, CheckState::kBad, error.what(), "mend the data"});
     }
+  }
+
+  // Missing scenes are a note: the cells of the others run. Of those that are there what is not as
+  // published is bad.
+  void add_manifest(const Manifest& manifest) {
+    std::size_t there = 0;
+    std::string wrong;
+    for (const ManifestSceneState& state : examine_manifest(manifest, examined_.data, false)) {
+      if (state.there) ++there;
+      for (const Finding& finding : state.findings)
+        wrong += fmt::format("{}{}: {}", wrong.empty() ? "" : "; ", state.name, finding.message);
+    }
+    const std::string name = "dataset " + manifest.id;
+    const std::string missing = missing_scenes_text(manifest, examined_.data);
+    if (!wrong.empty())
+      rows_.push_back(
+          {name, CheckState::kBad, wrong, "`dataset check " + manifest.id + "` has more"}
+      );
+    else if (!missing.empty())
+      rows_.push_back({name, CheckState::kNote, missing, "its cells are left out, others run"});
+    else
+      rows_.push_back({name, CheckState::kOk, fmt::format("{} scenes, as published", there)});
   }
 
   void add_room_to_make(

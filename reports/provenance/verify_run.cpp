@@ -363,11 +363,13 @@ std::vector<Checked> RunVerifier::verify(const RunToVerify& run) {
 }
 
 const Scene& RunVerifier::scene_of(const RunSpec& spec, const std::string& loader) {
-  const std::string name =
-      fmt::format("{}\n{}\n{}", spec.dataset_folder.string(), spec.max_pixels, loader);
+  const std::string name = fmt::format(
+      "{}\n{}\n{}\n{}", spec.dataset_folder.string(), spec.max_pixels, spec.image_ratio, loader
+  );
   if (name == scene_name_) return scene_;
   LoadOptions options;
   options.max_pixels = spec.max_pixels;
+  options.image_ratio = spec.image_ratio;
   options.loader = loader;
   scene_name_.clear();
   scene_ = load_scene(spec.dataset_folder, options);

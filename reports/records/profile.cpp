@@ -8,6 +8,7 @@
 #include "glint/method.h"
 #include "glint/scene/scene.h"
 #include "reports/records/embedded.h"
+#include "reports/records/manifest.h"
 
 namespace glint {
 
@@ -40,6 +41,26 @@ std::pair<std::string, std::string> split_assignment(const std::string& assignme
   const std::size_t dot = assignment.substr(0, equals).find('.');
   if (dot == std::string::npos) return {"", assignment};
   return {assignment.substr(0, dot), assignment.substr(dot + 1)};
+}
+
+std::vector<SceneSource> manifest_sources(const std::string& id, const std::string& where) {
+  const Manifest* manifest = find_manifest(id);
+  GLINT_CHECK(
+      manifest != nullptr,
+      kUsage,
+      "{}: manifests: no published dataset '{}'; there are: {}",
+      where,
+      id,
+      comma_list(embedded_names("manifests"))
+  );
+  std::vector<SceneSource> sources;
+  for (const ManifestScene& scene : manifest->scenes) {
+    SceneSource source{id, scene.name, scene.folder};
+    source.image_ratio = manifest->image_ratio;
+    source.manifest = id;
+    sources.push_back(source);
+  }
+  return sources;
 }
 
 }  // namespace
@@ -89,9 +110,22 @@ std::vector<SceneSource> Profile::sources() const {
     );
     const std::string why = why_no_folder_name(source.scene);
     GLINT_CHECK(why.empty(), kUsage, "{}: scene '{}' {}", where, source.scene, why);
+    check_prior_options(source.foreign_priors, fmt::format("{}: scene '{}'", where, source.scene));
     check_prior_level(source.priors, fmt::format("{}: scene '{}'", where, source.scene));
     sources.push_back(source);
   }
+  for (const std::string& id : manifests)
+    for (SceneSource& source : manifest_sources(id, where)) {
+      GLINT_CHECK(
+          names.insert(source.scene).second,
+          kUsage,
+          "{}: scene '{}' of {} stands there twice",
+          where,
+          source.scene,
+          id
+      );
+      sources.push_back(std::move(source));
+    }
   return sources;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/glassroom/prior_levels.h"
+#include "datasets/prior_options.h"
 #include "glint/core/config.h"
 #include "metrics/fusion/tsdf.h"
 #include "metrics/mesh/mesh_protocol.h"
@@ -16,16 +17,19 @@ namespace glint {
 
 // A scene of a profile: made by GlassRoom, or a folder that a loader knows.
 struct SceneSource {
-  std::string dataset;    // "glassroom", or the name shown for a folder's data
-  std::string scene;      // "room_1"; for folders the name shown, unique in the profile
-  std::string folder;     // folders: where it lies, relative to --data unless absolute
-  std::string loader;     // folders: id of the loader to take; empty: the surest
-  double max_pixels = 0;  // folders: images shrunk below this area; 0: as stored
+  std::string dataset;     // "glassroom", or the name shown for a folder's data
+  std::string scene;       // "room_1"; for folders the name shown, unique in the profile
+  std::string folder;      // folders: where it lies, relative to --data unless absolute
+  std::string loader;      // folders: id of the loader to take; empty: the surest
+  double max_pixels = 0;   // folders: images shrunk below this area; 0: as stored
+  double image_ratio = 1;  // folders: both sides of images times this, rounded down
+  std::string manifest;    // id of the published dataset it is a scene of; empty: none
   int width = 160, height = 90, views = 64, spp = 128;  // glassroom
   std::uint64_t seed = 0;                               // glassroom: varies the layout
   std::string assets;                                   // glassroom: folder with glTF furniture
   std::string room;                                     // glassroom; empty: `scene`
   std::string priors = kDefaultPriorLevel;              // glassroom: one of kPriorLevels
+  PriorOptions foreign_priors = {};                     // folders: priors of other programs
 
   bool made() const { return folder.empty(); }
 
@@ -36,6 +40,7 @@ struct SceneSource {
     v("folder", folder, "folder with the data; empty: made by GlassRoom");
     v("loader", loader, "loader that reads the folder; empty: the one that is surest of it");
     v("max_pixels", max_pixels, "shrink images below this area; 0: as stored");
+    v("image_ratio", image_ratio, "both sides of images times this, rounded down");
     v("width", width, "pixels");
     v("height", height, "pixels");
     v("views", views, "views along the camera path");
@@ -44,6 +49,13 @@ struct SceneSource {
     v("assets", assets, "folder with glTF furniture");
     v("room", room, "room that is made, where the scene is called otherwise");
     v("priors", priors, "how good simulated priors are: perfect, good, default, poor, bad");
+    v("prior_folder", foreign_priors.folder, "folder with priors as other programs write them");
+    v("prior_axes", foreign_priors.axes, "of normals: auto, opencv, opengl, stablenormal, world");
+    v("prior_depth", foreign_priors.depth, "of depth: auto, linear, disparity, inverted");
+    v("prior_overlap", foreign_priors.overlap, "frames that two chunks share; else told");
+    v("albedo_from_basecolor",
+      foreign_priors.albedo_from_basecolor,
+      "base colour x (1 - metallic) where there is no albedo");
   }
 };
 
@@ -57,6 +69,7 @@ struct Profile {
   int gpus = 0;                        // that a cell asks a cluster for
   Json defaults = Json::object();      // SceneSource fields shared by all scenes
   Json scenes = Json::array();         // names, or objects with SceneSource fields
+  std::vector<std::string> manifests;  // ids of datasets whose scenes come after `scenes`
   Json overrides = Json::object();     // method id -> config fields
   Json mesh = Json::object();          // TsdfOptions fields of the mesh stage
   Json mesh_metrics = Json::object();  // MeshProtocol fields; its tolerance is otherwise 2 voxels
@@ -73,6 +86,7 @@ struct Profile {
     v("gpus", gpus, "that a cell asks a cluster for");
     v("defaults", defaults, "scene fields shared by all scenes");
     v("scenes", scenes, "names, or tables of scene fields");
+    v("manifests", manifests, "published datasets, below --data: ref-dl3dv, 3d-front-t");
     v("overrides", overrides, "config fields by method");
     v("mesh", mesh, "extraction: voxel, truncation_voxels, ...");
     v("mesh_metrics", mesh_metrics, "comparison: num_samples, thresholds_m, ...");

@@ -34,6 +34,7 @@ void visit_fields(R& record, V&& v) {
   v("process_memory_mb", record.process_memory_mb);
   v("warnings", record.warnings);
   v("notes", record.notes);
+  v("data_notes", record.data_notes);
   v("not_measured", record.not_measured);
   v("not_applicable", record.not_applicable);
   v("timings", record.timings);

@@ -53,8 +53,9 @@ struct Record {
   double process_memory_mb = 0;       // the most that its process took; metrics have the training's
   std::vector<std::string> warnings;  // of the method: losses off, missing priors
   std::vector<std::string> notes;     // of the method, for readers of tables: which masks it got
-  Json timings = Json::object();      // stage -> seconds
-  Json environment = Json::object();  // machine, build, date
+  std::vector<std::string> data_notes;  // of the scene it was trained on: how priors were read
+  Json timings = Json::object();        // stage -> seconds
+  Json environment = Json::object();    // machine, build, date
 
   bool ok() const { return !failure.has_value(); }
 };

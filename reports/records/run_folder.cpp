@@ -56,6 +56,7 @@ void write_run_spec(const RunSpec& spec, const Json& resolved_config) {
   Json json = {{kWrittenByField, kWrittenBy}};
   visit_spec(spec, [&](const char* name, const auto& field) { json[name] = field; });
   json["dataset_folder"] = spec.dataset_folder.string();
+  if (spec.image_ratio != 1) json["image_ratio"] = spec.image_ratio;
   json["config"] = resolved_config;
   if (!spec.row.empty()) json["row"] = spec.row;
   write_file(spec.folder / "config.json", json.dump(2) + "\n");
@@ -76,6 +77,7 @@ RunSpec read_run_spec(const fs::path& folder) {
     visit_spec(spec, [&](const char* name, auto& field) { read_field(json.at(name), field); });
     spec.dataset_folder = json.at("dataset_folder").get<std::string>();
     spec.row = json.value("row", "");
+    spec.image_ratio = json.value("image_ratio", 1.0);
   } catch (const nlohmann::json::exception& error) {
     throw Error(
         ExitCode::kBadPrediction, fmt::format("{}: {}; train again", path.string(), error.what())
@@ -90,6 +92,7 @@ void write_trained(const RunSpec& spec, const TrainCost& cost) {
   json["peak_memory_mb"] = cost.peak_memory_mb;
   json["warnings"] = cost.warnings;
   json["notes"] = cost.notes;
+  json["data_notes"] = cost.data_notes;
   write_file(spec.folder / "env.json", json.dump(2) + "\n");
 }
 
@@ -102,7 +105,8 @@ std::optional<TrainCost> trained_cost(const RunSpec& spec) {
         json.value("train_seconds", 0.0),
         json.value("peak_memory_mb", 0.0),
         json.value("warnings", std::vector<std::string>{}),
-        json.value("notes", std::vector<std::string>{})};
+        json.value("notes", std::vector<std::string>{}),
+        json.value("data_notes", std::vector<std::string>{})};
   } catch (const nlohmann::json::exception& error) {
     throw Error(
         ExitCode::kBadPrediction, fmt::format("{}: {}; train again", path.string(), error.what())

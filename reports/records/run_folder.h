@@ -21,9 +21,9 @@ struct RunSpec {
   Json config = Json::object();  // overrides for MethodSpec::create
   RunOptions options;
   fs::path dataset_folder;
-  std::string dataset, scene;  // names
-  double max_pixels = 0;
-  std::string dataset_hash;  // as the loader knows the data
+  std::string dataset, scene;              // names
+  double max_pixels = 0, image_ratio = 1;  // how pictures are shrunk (LoadOptions)
+  std::string dataset_hash;                // as the loader knows the data
   // Not in config.json:
   Json train_document;              // what the training goes by (stage_documents.h)
   double checkpoint_seconds = 300;  // between checkpoints, at least
@@ -41,7 +41,7 @@ RunSpec read_run_spec(const fs::path& folder);
 // What training cost and had to say, in env.json; nothing: no training has ended there.
 struct TrainCost {
   double seconds = 0, peak_memory_mb = 0;
-  std::vector<std::string> warnings, notes;
+  std::vector<std::string> warnings, notes, data_notes;  // of the method; of the scene
 };
 void write_trained(const RunSpec& spec, const TrainCost& cost);
 std::optional<TrainCost> trained_cost(const RunSpec& spec);

@@ -9,6 +9,7 @@
 #include "glint/core/progress.h"
 #include "glint/core/sha256.h"
 #include "reports/records/code_hashes.h"
+#include "reports/records/manifest.h"
 #include "reports/records/stage_files.h"
 
 namespace glint {
@@ -36,7 +37,16 @@ fs::path made_folder(const SceneSource& source, const fs::path& data_folder) {
 }
 
 fs::path folder_of(const SceneSource& source, const fs::path& data_folder) {
-  return source.made() ? made_folder(source, data_folder) : data_folder / source.folder;
+  if (source.made()) return made_folder(source, data_folder);
+  const Manifest* manifest = find_manifest(source.manifest);
+  if (manifest == nullptr) return data_folder / source.folder;
+  return manifest_scene_folder(*manifest, {source.scene, source.folder}, data_folder);
+}
+
+// The options with their folder as load_scene() takes it.
+PriorOptions placed_priors(PriorOptions priors, const fs::path& data_folder) {
+  if (!priors.folder.empty()) priors.folder = (data_folder / priors.folder).string();
+  return priors;
 }
 
 fs::path hash_cache(const fs::path& data_folder) { return data_folder / ".hashes"; }
@@ -71,6 +81,51 @@ std::string made_content(const fs::path& folder) {
 
 Json load_code(const fs::path& folder, const std::string& loader) {
   return code_json({"load", code_entry_of(find_loader(folder, loader).source)});
+}
+
+// Nothing where there are none of other programs, so that earlier keys go on.
+void add_priors(const PriorOptions& priors, const fs::path& data_folder, Json& document) {
+  if (priors == PriorOptions{}) return;
+  document["scene"]["priors"] = {
+      {"folder", priors.folder},
+      {"axes", priors.axes},
+      {"depth", priors.depth},
+      {"overlap", priors.overlap},
+      {"albedo_from_basecolor", priors.albedo_from_basecolor}};
+  if (!priors.folder.empty())
+    document["prior_content"] =
+        content_hash(placed_priors(priors, data_folder).folder, hash_cache(data_folder));
+}
+
+PriorOptions priors_of(const Json& scene) {
+  if (!scene.contains("priors")) return {};
+  const Json& json = scene["priors"];
+  return {
+      json.value("folder", ""),
+      json.value("axes", ""),
+      json.value("depth", ""),
+      json.value("overlap", -1),
+      json.value("albedo_from_basecolor", false)};
+}
+
+// Folders of priors as of the source.
+LoadOptions options_of(const SceneSource& source) {
+  LoadOptions options;
+  options.max_pixels = source.max_pixels;
+  options.image_ratio = source.image_ratio;
+  options.loader = source.loader;
+  options.priors = source.foreign_priors;
+  return options;
+}
+
+// `scene`: what data_document() made of them.
+LoadOptions options_of(const Json& scene, const std::string& loader) {
+  LoadOptions options;
+  options.max_pixels = scene.at("max_pixels");
+  options.image_ratio = scene.value("image_ratio", 1.0);
+  options.loader = loader;
+  options.priors = priors_of(scene);
+  return options;
 }
 
 SceneIdentity made_identity(const SceneSource& source, const fs::path& data_folder) {
@@ -110,19 +165,23 @@ SceneIdentity identify_source(const SceneSource& source, const fs::path& data_fo
     return {
         {{"scene", {{"max_pixels", source.max_pixels}}}},
         folder.string() + ": no such folder or file"};
-  return {data_document(folder, source.max_pixels, data_folder, source.loader), ""};
+  const PriorOptions& priors = source.foreign_priors;
+  const std::string prior_folder = placed_priors(priors, data_folder).folder;
+  if (!prior_folder.empty() && !fs::exists(prior_folder))
+    return {{{"scene", {{"max_pixels", source.max_pixels}}}}, prior_folder + ": no such folder"};
+  return {data_document(folder, options_of(source), data_folder), ""};
 }
 
 Json data_document(
-    const fs::path& dataset,
-    double max_pixels,
-    const fs::path& data_folder,
-    const std::string& loader
+    const fs::path& dataset, const LoadOptions& options, const fs::path& data_folder
 ) {
-  return {
-      {"scene", {{"max_pixels", max_pixels}}},
+  Json document = {
+      {"scene", {{"max_pixels", options.max_pixels}}},
       {"content", content_hash(dataset, hash_cache(data_folder))},
-      {"code", load_code(dataset, loader)}};
+      {"code", load_code(dataset, options.loader)}};
+  if (options.image_ratio != 1) document["scene"]["image_ratio"] = options.image_ratio;
+  add_priors(options.priors, data_folder, document);
+  return document;
 }
 
 Json data_document_now(
@@ -132,22 +191,24 @@ Json data_document_now(
     const std::string& loader
 ) {
   const Json& scene = then.at("scene");
-  if (!scene.contains("spp"))
-    return data_document(dataset, scene.at("max_pixels"), data_folder, loader);
+  if (!scene.contains("spp")) return data_document(dataset, options_of(scene, loader), data_folder);
   return {
       {"scene", scene}, {"content", made_content(dataset)}, {"code", load_code(dataset, loader)}};
 }
 
 LoadedScene load_source(const SceneSource& source, const fs::path& data_folder) {
   LoadedScene loaded;
-  LoadOptions options;
-  options.max_pixels = source.max_pixels;
-  options.loader = source.loader;
+  LoadOptions options = options_of(source);
+  options.priors = placed_priors(source.foreign_priors, data_folder);
   loaded.folder = folder_of(source, data_folder);
   if (source.made()) make_source(source, loaded.folder, data_folder);
   loaded.scene = load_scene(loaded.folder, options);
   loaded.scene.name = source.scene;
   loaded.scene.dataset = source.dataset;
+  if (source.image_ratio != 1)
+    loaded.scene.data_notes.push_back(
+        fmt::format("pictures: {} of the stored sides, area average", source.image_ratio)
+    );
   if (source.made()) loaded.scene.spec_hash = glassroom_hash(glassroom_options(source));
   return loaded;
 }

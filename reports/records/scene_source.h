@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "datasets/dataset.h"
 #include "glint/core/files.h"
 #include "glint/scene/scene.h"
 #include "reports/records/profile.h"
@@ -27,13 +28,11 @@ struct SceneIdentity {
 SceneIdentity identify_source(const SceneSource& source, const fs::path& data_folder);
 using SceneIdentifier = std::function<SceneIdentity(const SceneSource&)>;
 
-// Of a folder or packed file of the user's; hashes are kept below `data_folder`. `loader`: as
-// find_loader's. Errors (kBadReference): as identify_source, and nothing there that a loader knows.
+// Of a folder or packed file of the user's; hashes are kept below `data_folder`. Of the options the
+// loader, the sizes and the priors count; their folder is as of SceneSource. Errors
+// (kBadReference): as identify_source, and nothing there that a loader knows.
 Json data_document(
-    const fs::path& dataset,
-    double max_pixels,
-    const fs::path& data_folder,
-    const std::string& loader = ""
+    const fs::path& dataset, const LoadOptions& options, const fs::path& data_folder
 );
 
 // What a training's data are now, to be compared with `then`, its document of them: of a room that

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "reports/records/manifest.h"
 #include "reports/tables/method_title.h"
 #include "reports/tables/published.h"
 #include "reports/tables/statistics.h"
@@ -15,7 +16,9 @@ namespace glint {
 namespace {
 
 std::string dataset_title_of(const TableDefinition& definition, const std::string& dataset) {
-  return dataset == definition.dataset ? definition.dataset_title : dataset;
+  if (dataset == definition.dataset) return definition.dataset_title;
+  const Manifest* manifest = find_manifest(dataset);
+  return manifest == nullptr ? dataset : manifest->title;
 }
 
 TableColumn published_column(

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reports/verbs/dataset_export.h"
 
+#include "reports/verbs/load_options.h"
+
 #include <memory>
 
 #include "datasets/dataset.h"
@@ -12,8 +14,8 @@ namespace glint {
 namespace {
 
 struct ExportArguments {
-  std::string folder, format, loader, split = "all";
-  double max_pixels = 0;
+  std::string folder, format, split = "all";
+  LoadOptions load;  // loader, priors, size
   bool force = false;
 };
 
@@ -44,12 +46,9 @@ void print_report_json(
 
 int run_export(const CommonOptions& common, const ExportArguments& arguments, bool out_given) {
   GLINT_CHECK(out_given, kUsage, "dataset export: give --out FOLDER, where the export goes");
-  LoadOptions load;
-  load.loader = arguments.loader;
-  load.max_pixels = arguments.max_pixels;
   const ExportOptions options = export_options(arguments);
   check_export(common.out, options);
-  const Scene scene = load_scene(arguments.folder, load);
+  const Scene scene = load_scene(arguments.folder, arguments.load);
   const ExportReport report = export_scene(scene, common.out, options);
   (common.json ? print_report_json : print_report)(common.out, arguments.format, report);
   return 0;
@@ -81,8 +80,8 @@ void add_dataset_export(CommandLine& line, CLI::App& dataset) {
   app.add_option("--split", arguments->split, "views that are written")
       ->check(CLI::IsMember({"all", "train", "test"}))
       ->capture_default_str();
-  app.add_option("--loader", arguments->loader, "loader that reads it, by id; empty: the surest");
-  app.add_option("--max-pixels", arguments->max_pixels, "shrink images below this area")
+  add_load_options(app, arguments->load);
+  app.add_option("--max-pixels", arguments->load.max_pixels, "shrink images below this area")
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--force", arguments->force, "replace an earlier export in --out");
 }

@@ -8,6 +8,9 @@
 #include "glint/core/progress.h"
 #include "reports/verbs/dataset_export.h"
 #include "reports/verbs/dataset_import.h"
+#include "reports/verbs/dataset_manifest.h"
+#include "reports/verbs/load_options.h"
+#include "reports/verbs/print_findings.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -90,19 +93,20 @@ Json scene_json(const Scene& scene, const std::string& loader, const std::string
       {"height", any ? scene.train[0].camera.height : 0},
       {"points", scene.points.positions.size()},
       {"simulated_priors", scene.simulated_priors},
+      {"data_notes", scene.data_notes},
       {"spatial_scale", scene.spatial_scale},
       {"hash", scene.spec_hash}};
 }
 
 struct FolderOptions {
-  std::string folder, loader;
+  std::string folder;
+  LoadOptions load;  // loader, priors, size
 };
 
 int run_info(const CommonOptions& common, const FolderOptions& options) {
-  const LoaderSpec& loader = find_loader(options.folder, options.loader);
-  LoadOptions load;
-  load.loader = loader.name;
-  const Scene scene = load_scene(options.folder, load);
+  if (const auto code = show_manifest(common, options.folder)) return *code;
+  const LoaderSpec& loader = find_loader(options.folder, options.load.loader);
+  const Scene scene = loader.load(options.folder, options.load);
   const std::string split_rule = split_rule_of(loader, options.folder);
   if (common.json)
     print_json(scene_json(scene, loader.name, split_rule));
@@ -118,34 +122,18 @@ int run_info(const CommonOptions& common, const FolderOptions& options) {
 }
 
 int run_check(const CommonOptions& common, const FolderOptions& options) {
-  const std::string& folder = options.folder;
-  const std::vector<Finding> findings = check_dataset(folder, options.loader);
-  Json json = {{"folder", folder}, {"findings", Json::array()}};
-  std::string text;
-  for (const Finding& finding : findings) {
-    json["findings"].push_back(
-        {{"check", finding.check}, {"where", finding.where}, {"message", finding.message}}
-    );
-    text += fmt::format("{}: {}: {}\n", finding.check, finding.where, finding.message);
-  }
-  if (common.json)
-    print_json(json);
-  else
-    print_text(findings.empty() ? fmt::format("{}: nothing wrong\n", folder) : text);
-  return static_cast<int>(findings.empty() ? ExitCode::kSuccess : ExitCode::kCheckFailed);
+  if (const auto code = check_manifest(common, options.folder)) return *code;
+  const std::vector<Finding> findings = check_dataset(options.folder, options.load);
+  return print_findings(common, options.folder, findings, "nothing wrong");
 }
 
 struct PackOptions : FolderOptions {
   std::string file;
-  double max_pixels = 0;
   bool test_truth_only = false;
 };
 
 int run_pack(const CommonOptions& common, const PackOptions& options) {
-  LoadOptions load;
-  load.max_pixels = options.max_pixels;
-  load.loader = options.loader;
-  Scene scene = load_scene(options.folder, load);
+  Scene scene = load_scene(options.folder, options.load);
   if (options.test_truth_only)
     for (View& view : scene.train) view.truth = {};
   write_packed_scene(options.file, scene);
@@ -160,10 +148,6 @@ int run_pack(const CommonOptions& common, const PackOptions& options) {
   return 0;
 }
 
-void add_loader_option(CLI::App& verb, std::string& loader) {
-  verb.add_option("--loader", loader, "loader that reads it, by id; empty: the surest");
-}
-
 void add_pack(CommandLine& line, CLI::App& dataset) {
   auto options = std::make_shared<PackOptions>();
   CLI::App* pack = line.add_verb(
@@ -175,8 +159,8 @@ void add_pack(CommandLine& line, CLI::App& dataset) {
   );
   pack->add_option("folder", options->folder, "dataset folder")->required();
   pack->add_option("file", options->file, "for example room_1.safetensors")->required();
-  add_loader_option(*pack, options->loader);
-  pack->add_option("--max-pixels", options->max_pixels, "shrink images below this area")
+  add_load_options(*pack, options->load);
+  pack->add_option("--max-pixels", options->load.max_pixels, "shrink images below this area")
       ->check(CLI::NonNegativeNumber);
   pack->add_flag(
       "--test-truth-only",
@@ -224,10 +208,13 @@ void add_folder_verb(
       name,
       help,
       [&line, options, action] { return action(line.common, *options); },
-      kDatasetOptions
+      kDatasetOptions | kDataOption
   );
-  verb->add_option("folder", options->folder, "dataset folder or packed scene")->required();
-  add_loader_option(*verb, options->loader);
+  verb->add_option(
+          "folder", options->folder, "dataset folder or packed scene; or ref-dl3dv, 3d-front-t"
+  )
+      ->required();
+  add_load_options(*verb, options->load);
 }
 
 void add_dataset_verb(CommandLine& line) {

@@ -114,6 +114,7 @@ Record single_record(const SingleRun& single, const Json& score_document, const 
     record.warnings = cost->warnings;
     record.notes = cost->notes;
     if (cost->seconds > 0) record.timings["train"] = cost->seconds;
+    record.data_notes = cost->data_notes;
   }
   return record;
 }

@@ -31,6 +31,7 @@ fs::path folder_with_records(const CommonOptions& common) {
 Scene load_run_data(const RunSpec& spec) {
   LoadOptions options;
   options.max_pixels = spec.max_pixels;
+  options.image_ratio = spec.image_ratio;
   options.with_priors = false;
   return load_scene(spec.dataset_folder, options);
 }

@@ -2,10 +2,14 @@
 #include "reports/verbs/run_options.h"
 
 #include <cstdlib>
+#include <map>
+#include <set>
 
 #include "glint/core/interrupt.h"
 #include "glint/core/parallel.h"
+#include "glint/core/progress.h"
 #include "reports/bench/child_process.h"
+#include "reports/records/manifest.h"
 
 namespace glint {
 namespace {
@@ -114,16 +118,52 @@ void add_cell_run_options(CLI::App& verb, CellRunOptions& options) {
   verb.add_option("--sbatch", options.sbatch, "option for sbatch, as --sbatch=--partition=gpu");
 }
 
+int leave_out_missing(const fs::path& data_folder, RunnerOptions& options) {
+  std::map<std::string, bool> missing;  // by scene
+  std::set<std::string> manifests;
+  int count = 0;
+  const auto plan = make_plan(options.profile, options.filter, options.assignments);
+  for (const PlanCell& cell : plan) {
+    const Manifest* manifest = find_manifest(cell.source.manifest);
+    if (manifest == nullptr) continue;
+    const auto [known, is_new] = missing.try_emplace(cell.cell.scene, false);
+    if (is_new) {
+      const ManifestScene scene{cell.source.scene, cell.source.folder};
+      known->second = !fs::exists(manifest_scene_folder(*manifest, scene, data_folder));
+    }
+    if (!known->second) continue;
+    ++count;
+    manifests.insert(manifest->id);
+  }
+  std::string text;
+  for (const std::string& id : manifests) {
+    const std::string of_manifest = missing_scenes_text(*find_manifest(id), data_folder);
+    text += (text.empty() ? "" : "\n") + of_manifest;
+    log::warn(of_manifest);
+  }
+  GLINT_CHECK(
+      static_cast<std::size_t>(count) < plan.size(), kBadReference, "no cell has data\n{}", text
+  );
+  for (const auto& [scene, is_missing] : missing)
+    if (is_missing) options.filter.skip.push_back(scene + "/*");
+  return count;
+}
+
 RunSummary run_cells(
     const CommonOptions& common, const CellRunOptions& how, const RunnerOptions& options
 ) {
   install_interrupt_handler();
-  return find_executor(how.executor).run(options, executor_options(common, how));
+  RunnerOptions runnable = options;
+  const int without_data = leave_out_missing(common.data, runnable);
+  RunSummary summary = find_executor(how.executor).run(runnable, executor_options(common, how));
+  summary.without_data = without_data;
+  return summary;
 }
 
 int exit_code_of(const RunSummary& summary) {
   if (summary.interrupted) return interrupted_exit();
-  const bool partial = summary.failed > 0 || summary.elsewhere > 0 || summary.not_begun > 0;
+  const bool partial = summary.failed > 0 || summary.elsewhere > 0 || summary.not_begun > 0 ||
+                       summary.without_data > 0;
   return static_cast<int>(partial ? ExitCode::kPartial : ExitCode::kSuccess);
 }
 
@@ -134,6 +174,7 @@ Json summary_json(const RunSummary& summary) {
       {"failed", summary.failed},
       {"elsewhere", summary.elsewhere},
       {"not_begun", summary.not_begun},
+      {"without_data", summary.without_data},
       {"submitted", summary.submitted},
       {"interrupted", summary.interrupted}};
 }
@@ -141,6 +182,7 @@ Json summary_json(const RunSummary& summary) {
 std::string summary_text(const RunSummary& summary) {
   std::string text =
       fmt::format("{} run, {} reused, {} failed", summary.ran, summary.reused, summary.failed);
+  if (summary.without_data > 0) text += fmt::format(", {} without data", summary.without_data);
   if (summary.not_begun > 0) text += fmt::format(", {} not begun", summary.not_begun);
   if (summary.elsewhere > 0) text += fmt::format(", {} left to other processes", summary.elsewhere);
   if (summary.interrupted) text += ", interrupted (the same command goes on)";

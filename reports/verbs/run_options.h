@@ -24,13 +24,18 @@ void add_cell_run_options(CLI::App& verb, CellRunOptions& options);
 
 RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& how);
 
-// Runs the cells that `options` chooses, by the executor that is asked for. Errors:
-// run_profile()'s; kUsage: no such executor, no time.
+// Cells of published datasets whose scenes are not below `data_folder` are told once, not one by
+// one, and left out of the filter. Returns how many. Errors (kBadReference): no other cell is left.
+int leave_out_missing(const fs::path& data_folder, RunnerOptions& options);
+
+// Runs the cells that `options` chooses and whose data are there, by the executor that is asked
+// for. Errors: run_profile()'s; kUsage: no such executor, no time.
 RunSummary run_cells(
     const CommonOptions& common, const CellRunOptions& how, const RunnerOptions& options
 );
 
-// 0; 5: some failed, were not begun or are another process's; 128 + signal: interrupted.
+// 0; 5: some failed, had no data, were not begun or are another process's; 128 + signal:
+// interrupted.
 int exit_code_of(const RunSummary& summary);
 
 Json summary_json(const RunSummary& summary);

@@ -18,8 +18,9 @@ struct ChosenCells {
 };
 
 // Makes what is not there yet.
-void make_data(const RunnerOptions& options) {
+void make_data(const fs::path& data_folder, RunnerOptions options) {
   install_interrupt_handler();
+  leave_out_missing(data_folder, options);
   std::set<std::string> scenes;
   for (const PlanCell& cell : make_plan(options.profile, options.filter, options.assignments))
     if (scenes.insert(cell.cell.scene).second) options.load(cell.source);
@@ -32,7 +33,7 @@ int run_chosen(const CommonOptions& common, const CellRunOptions& how, const Cho
   // Whoever asks for one cell in this process knows which.
   options.announced = how.executor == "inline" && options.filter.cells.size() == 1;
   if (chosen.data_only) {
-    make_data(options);
+    make_data(common.data, options);
     return 0;
   }
   const RunSummary summary = run_cells(common, how, options);

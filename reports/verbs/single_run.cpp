@@ -17,10 +17,13 @@ namespace {
 
 constexpr int kDefaultIterations = 7000;  // of `train` without --iterations
 
-Scene load_dataset(const fs::path& folder, double max_pixels) {
+Scene load_dataset(const RunSpec& spec) {
   LoadOptions options;
-  options.max_pixels = max_pixels;
-  return with_exit_code(ExitCode::kBadReference, [&] { return load_scene(folder, options); });
+  options.max_pixels = spec.max_pixels;
+  options.image_ratio = spec.image_ratio;
+  return with_exit_code(ExitCode::kBadReference, [&] {
+    return load_scene(spec.dataset_folder, options);
+  });
 }
 
 FileLock lock_of(const fs::path& run) {
@@ -55,11 +58,11 @@ void open_data(
   RunSpec& spec = single.spec;
   spec.dataset_folder = fs::absolute(dataset);
   spec.max_pixels = max_pixels;
-  single.scene = load_dataset(spec.dataset_folder, max_pixels);
+  single.scene = load_dataset(spec);
   spec.dataset = single.scene.dataset;
   spec.scene = single.scene.name;
   spec.dataset_hash = single.scene.spec_hash;
-  const Json data = data_document(spec.dataset_folder, max_pixels, common.data);
+  const Json data = data_document(spec.dataset_folder, {.max_pixels = max_pixels}, common.data);
   spec.train_document = train_document(spec.method, spec.config, spec.options, data);
 }
 
@@ -119,7 +122,7 @@ SingleRun open_single_run(const std::string& run_folder, const std::string& data
       spec.dataset_folder.string(),
       run_folder
   );
-  single.scene = load_dataset(spec.dataset_folder, spec.max_pixels);
+  single.scene = load_dataset(spec);
   const std::string& hash = single.scene.spec_hash;
   if (!dataset.empty() && !spec.dataset_hash.empty() && hash != spec.dataset_hash)
     log::warn(fmt::format(

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "datasets/dataset.h"
+#include "datasets/prior_maps.h"
 #include "datasets/scene_index.h"
 #include "glint/core/parallel.h"
 #include "glint/scene/image_files.h"
@@ -341,7 +342,7 @@ TEST_CASE("the loader that is surest of a folder reads it, and a tie names both 
     LoadOptions options;
     options.loader = id;
     CHECK(load_scene(folder.path(), options).dataset == id);
-    CHECK(check_dataset(folder.path(), id).empty());
+    CHECK(check_dataset(folder.path(), options).empty());
   }
   write_file(folder / "transforms.json", "{}");
   CHECK(find_loader(folder.path()).name == "easyvolcap");

@@ -14,7 +14,7 @@ inline bool read_dataset(const std::string& loader, const fs::path& folder) {
   const LoaderSpec& spec = find_loader(folder, loader);
   const bool loaded = accepts([&] { spec.load(folder, {}); });
   bool nothing_found = false;
-  accepts([&] { nothing_found = spec.check(folder).empty(); });
+  accepts([&] { nothing_found = spec.check(folder, {}).empty(); });
   if (nothing_found && !loaded) throw Finding("it is refused, and the check finds nothing");
   return loaded;
 }
