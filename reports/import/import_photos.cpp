@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <set>
 
 #include "datasets/colmap_model.h"
 #include "glint/core/error.h"
+#include "glint/core/file_lock.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
@@ -144,6 +146,15 @@ class PhotoImport {
         "{}: holds files; name another folder with --out",
         out.string()
     );
+    auto lock = FileLock::take(FileLock::file_beside(out));
+    if (const auto* holder = std::get_if<std::string>(&lock))
+      throw Error(
+          ExitCode::kUsage,
+          fmt::format(
+              "{}: {} is at work there; wait for it, or choose another --out", out.string(), *holder
+          )
+      );
+    lock_.emplace(std::get<FileLock>(std::move(lock)));
     photos_ = find_photos(photos);
     result_.photos = photos_.size();
     result_.matcher = options.matcher != "auto"         ? options.matcher
@@ -276,6 +287,7 @@ class PhotoImport {
   }
 
   fs::path folder_, out_, work_;
+  std::optional<FileLock> lock_;  // nobody else's COLMAP works on the same database
   PhotoOptions options_;
   Colmap colmap_;
   std::vector<fs::path> photos_;

@@ -27,9 +27,9 @@ struct PhotoModel {
 
 // Fills `out` with images/ (those that have poses) and sparse/0/ as the colmap loader reads it.
 // Work lies in OUT.colmap meanwhile, with COLMAP's words in colmap.log, and stays there when
-// something goes wrong: the same call goes on from it. Errors: kUsage (`out` holds files);
-// kBadReference (no photos, fewer than three, photos that COLMAP cannot place); kEnvironment (no
-// COLMAP; it crashed).
+// something goes wrong: the same call goes on from it. Errors: kUsage (`out` holds files; another
+// process is at work there); kBadReference (no photos, fewer than three, photos that COLMAP cannot
+// place); kEnvironment (no COLMAP; it crashed).
 PhotoModel import_photos(const fs::path& photos, const fs::path& out, const PhotoOptions& options);
 
 }  // namespace glint
