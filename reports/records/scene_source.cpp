@@ -83,29 +83,28 @@ Json load_code(const fs::path& folder, const std::string& loader) {
   return code_json({"load", code_entry_of(find_loader(folder, loader).source)});
 }
 
-// Nothing where there are none of other programs, so that earlier keys go on.
-void add_priors(const PriorOptions& priors, const fs::path& data_folder, Json& document) {
-  if (priors == PriorOptions{}) return;
-  document["scene"]["priors"] = {
-      {"folder", priors.folder},
-      {"axes", priors.axes},
-      {"depth", priors.depth},
-      {"overlap", priors.overlap},
-      {"albedo_from_basecolor", priors.albedo_from_basecolor}};
+// How pictures and priors are read besides max_pixels. Only what is not as always, so that earlier
+// keys go on. Of a folder of priors the place below --data and the content.
+void add_reading(const LoadOptions& options, const fs::path& data_folder, Json& scene) {
+  const PriorOptions& priors = options.priors;
+  if (options.image_ratio != 1) scene["image_ratio"] = options.image_ratio;
+  if (!priors.axes.empty()) scene["prior_axes"] = priors.axes;
+  if (!priors.depth.empty()) scene["prior_depth"] = priors.depth;
+  if (priors.overlap >= 0) scene["prior_overlap"] = priors.overlap;
+  if (priors.albedo_from_basecolor) scene["albedo_from_basecolor"] = true;
   if (!priors.folder.empty())
-    document["prior_content"] =
-        content_hash(placed_priors(priors, data_folder).folder, hash_cache(data_folder));
+    scene["prior_folder"] = {
+        priors.folder,
+        content_hash(placed_priors(priors, data_folder).folder, hash_cache(data_folder))};
 }
 
 PriorOptions priors_of(const Json& scene) {
-  if (!scene.contains("priors")) return {};
-  const Json& json = scene["priors"];
   return {
-      json.value("folder", ""),
-      json.value("axes", ""),
-      json.value("depth", ""),
-      json.value("overlap", -1),
-      json.value("albedo_from_basecolor", false)};
+      scene.contains("prior_folder") ? scene["prior_folder"].at(0).get<std::string>() : "",
+      scene.value("prior_axes", ""),
+      scene.value("prior_depth", ""),
+      scene.value("prior_overlap", -1),
+      scene.value("albedo_from_basecolor", false)};
 }
 
 // Folders of priors as of the source.
@@ -133,6 +132,7 @@ SceneIdentity made_identity(const SceneSource& source, const fs::path& data_fold
   SceneIdentity identity{
       {{"scene", room_json(source, data_folder)}}, why_make(source, folder, data_folder)};
   identity.document["scene"]["max_pixels"] = source.max_pixels;
+  add_reading(options_of(source), data_folder, identity.document["scene"]);
   if (!identity.why_not.empty()) return identity;
   identity.document["content"] = made_content(folder);
   identity.document["code"] = load_code(folder, source.loader);
@@ -179,8 +179,7 @@ Json data_document(
       {"scene", {{"max_pixels", options.max_pixels}}},
       {"content", content_hash(dataset, hash_cache(data_folder))},
       {"code", load_code(dataset, options.loader)}};
-  if (options.image_ratio != 1) document["scene"]["image_ratio"] = options.image_ratio;
-  add_priors(options.priors, data_folder, document);
+  add_reading(options, data_folder, document["scene"]);
   return document;
 }
 

@@ -137,6 +137,7 @@ TEST_CASE("every field of a profile changes the keys that go by it and no other"
       {"gpus", {[](Profile& p) { p.gpus += 1; }, kNone, ""}},
       {"defaults", {[](Profile& p) { p.defaults["max_pixels"] = 9; }, kTrain, "scene.max_pixels"}},
       {"scenes", {[](Profile& p) { p.scenes.push_back("room_2"); }, kNone, ""}},
+      {"manifests", {[](Profile& p) { p.manifests = {"3d-front-t"}; }, kNone, ""}},
       {"overrides",
        {[](Profile& p) {
           p.overrides["fake"] = {{"grey", 0.25}};
@@ -209,11 +210,18 @@ TEST_CASE("every field of every method's config changes the training's key") {
 TEST_CASE("every field of a room counts, where it lies and what it is called do not") {
   const test::TempFolder data;
   write_file(data.path() / "furniture/chair.gltf", "{}");
+  write_file(data.path() / "priors/normal/0000.png", "{}");
   const std::map<std::string, std::pair<Json, bool>> places = {
       {"dataset", {"other", false}},
       {"scene", {"room_2", true}},
       {"loader", {"nerfstudio", false}},  // of folders, where the code of the loader counts
       {"max_pixels", {100.0, true}},
+      {"image_ratio", {0.5, true}},
+      {"prior_folder", {(data.path() / "priors").string(), true}},
+      {"prior_axes", {"opengl", true}},
+      {"prior_depth", {"inverted", true}},
+      {"prior_overlap", {3, true}},
+      {"albedo_from_basecolor", {true, true}},
       {"width", {161, true}},
       {"height", {91, true}},
       {"views", {65, true}},

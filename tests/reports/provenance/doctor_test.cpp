@@ -136,3 +136,25 @@ TEST_CASE("a cell that took more memory than there is, is found") {
   append_record(place / "out/mine/records.jsonl", record);
   CHECK(place.doctor(6)["memory of cells"]["state"] == "BAD");
 }
+
+TEST_CASE("a published dataset is one row: missing scenes are a note, other data are bad") {
+  const Place place;
+  place.write_profile("\"room_1\"");
+  const fs::path profile = place.path() / "mine.toml";
+  write_file(profile, "manifests = [\"3d-front-t\"]\n" + read_file(profile));
+  Json json = place.doctor(0);
+  CHECK(json["dataset 3d-front-t"]["state"] == "note");
+  const std::string missing = json["dataset 3d-front-t"]["value"];
+  CHECK(missing.find("5 of 5 scenes are missing") != std::string::npos);
+  CHECK_FALSE(json.contains("scene scene_1"));
+  fs::create_directories(place.path() / "data/3d-front-t");
+  fs::copy(
+      test::small_room_folder(),
+      place.path() / "data/3d-front-t/scene_1",
+      fs::copy_options::recursive
+  );
+  json = place.doctor(6);
+  CHECK(json["dataset 3d-front-t"]["ok"] == false);
+  const std::string wrong = json["dataset 3d-front-t"]["value"];
+  CHECK(wrong.find("scene_1: 14 training and 2 test views; the release has 149") == 0);
+}
