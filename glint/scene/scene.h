@@ -33,8 +33,8 @@ struct Scene {
   Vec3f bounds_min{}, bounds_max{};  // metres; see set_extent
   float spatial_scale = 1;           // 1.1 x largest distance of train cameras to their mean
   std::string spec_hash;             // identifies the data; part of every record
-  // For people: how priors that others made were read and why, how many pixels have one, how pictures
-  // were shrunk.
+  // For people: how priors that others made were read and why, how many pixels have one, how
+  // pictures were shrunk.
   std::vector<std::string> data_notes;
 };
 

@@ -8,6 +8,7 @@ const std::vector<StageSources>& stage_sources() {
       {"make", {"datasets/glassroom/*.cpp"}},
       {"load", {"datasets/dataset.h", "reports/records/scene_source.cpp"}},
       {"cuda", {"glint/cuda/*"}},
+      {"model", {"glint/scene/gaussian_ply.h", "reports/import/import_model.cpp"}},
       {"render",
        {"glint/method.h",
         "glint/scene/image_files.h",

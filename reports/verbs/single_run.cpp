@@ -8,6 +8,7 @@
 #include "glint/train/checkpoint.h"
 #include "reports/bench/stage_documents.h"
 #include "reports/import/import_model.h"
+#include "reports/records/code_hashes.h"
 #include "reports/records/earlier_run.h"
 #include "reports/records/stage_files.h"
 
@@ -101,7 +102,9 @@ SingleRun new_model_run(const CommonOptions& common, const ModelRunOptions& opti
   spec.row = options.row;
   spec.options = {.iterations = 0, .seed = common.seed.value_or(0)};
   open_data(common, options.dataset, options.max_pixels, single);
-  spec.train_document["model"] = content_hash(options.model, fs::path(common.data) / ".hashes");
+  spec.train_document["model"] = {
+      {"content", content_hash(options.model, fs::path(common.data) / ".hashes")},
+      {"code", code_json({"model"})}};
   take_folder(common, options.run, single);
   check_new_run(spec.folder, options.force, {});
   for (const std::string& note : import_model(options.model, files, spec)) log::info(note);

@@ -203,7 +203,8 @@ TEST_CASE("StableNormal's normals beside the pictures are read, in either layout
   const PriorFolder folder(6);
   const bool in_folders = GENERATE(false, true);
   for (const View& view : folder.views) {
-    const fs::path name = in_folders ? fs::path(view.name) / "000000.png" : fs::path(view.name + ".png");
+    const fs::path name =
+        in_folders ? fs::path(view.name) / "000000.png" : fs::path(view.name + ".png");
     write_png(
         folder.scene() / "normals" / name,
         encoded(stored_normals(view.truth["normal"], PriorAxes::kStableNormal, view.camera))
