@@ -3,9 +3,11 @@
 """Tables of runs of one room with several seeds: those of docs/GLINT_NOTES_TABLES.md.
 
     scripts/seed_table.py RECORDS.jsonl [--base NAME]
+    scripts/seed_table.py docs/results/priors.jsonl --scenes perfect good default poor bad
 
 Mean and standard deviation over seeds of each variant (the record's `name`, else its method); with --base the
-differences of runs with the same seed to that variant, from the smallest to the largest.
+differences of runs with the same seed to that variant, from the smallest to the largest; with --scenes a table for
+each metric, a column for each of the scenes.
 """
 
 import argparse
@@ -53,6 +55,22 @@ def difference_cell(runs, base, metric, decimals):
     return f"{min(pairs):+.{decimals}f} to {max(pairs):+.{decimals}f}" if pairs else "-"
 
 
+def print_scenes(path, scenes, titles):
+    with open(path, encoding="utf-8") as lines:
+        records = [record for record in map(json.loads, lines) if record["status"] == "ok"]
+    for title, metric, decimals in COLUMNS:
+        if titles and title not in titles:
+            continue
+        print_row([title] + scenes)
+        print_row(["---"] + ["---:"] * len(scenes))
+        for method in dict.fromkeys(record["method"] for record in records):
+            runs = {(r["scene"], r["seed"]): value(r, metric) for r in records if r["method"] == method}
+            cells = [mean_cell([v for (s, _), v in runs.items() if s == scene], decimals) for scene in scenes]
+            if set(cells) != {"-"}:
+                print_row([method] + cells)
+        print()
+
+
 def print_row(cells):
     print("| " + " | ".join(cells) + " |")
 
@@ -61,7 +79,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("records")
     parser.add_argument("--base", help="variant that the others are compared with")
+    parser.add_argument("--scenes", nargs="+", help="a table for each metric, with these columns")
+    parser.add_argument("--only", nargs="+", metavar="TITLE", help="of those tables")
     arguments = parser.parse_args()
+    if arguments.scenes:
+        return print_scenes(arguments.records, arguments.scenes, arguments.only)
     variants = by_variant(arguments.records)
     if arguments.base and arguments.base not in variants:
         parser.error(f"no variant '{arguments.base}' in {arguments.records}; it has: {'; '.join(variants)}")
