@@ -19,10 +19,11 @@ LoaderMatch match(const fs::path& folder) {
   std::error_code code;
   const fs::path model = find_colmap_model(folder);
   if (model.empty()) return {};
-  const bool has_pictures =
-      fs::is_directory(folder / "images", code) || fs::is_directory(folder / "images_2", code) ||
-      fs::is_directory(folder / "images_4", code) || fs::is_directory(folder / "images_8", code);
-  if (!has_pictures) return {Sureness::kName, "a COLMAP model"};
+  const char* const pictures[] = {"images", "images_2", "images_4", "images_8"};
+  if (std::none_of(std::begin(pictures), std::end(pictures), [&](const char* name) {
+        return fs::is_directory(folder / name, code);
+      }))
+    return {Sureness::kName, "a COLMAP model"};
   // Folders of other formats often keep the model that they were made from.
   for (const char* other : {"transforms.json", "transforms_train.json", "intri.yml"})
     if (fs::exists(folder / other, code))

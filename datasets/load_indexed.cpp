@@ -328,20 +328,21 @@ namespace {
 // else of the machine. Links in the folder are its owner's.
 void refuse_outside(const fs::path& folder, SceneIndex& index) {
   const fs::path inside = fs::absolute(folder / "").lexically_normal();
-  for (const ViewSource& view : index.views) {
-    const fs::path relative =
-        fs::absolute(view.image).lexically_normal().lexically_relative(inside);
-    if (!relative.empty() && *relative.begin() != "..") continue;
+  const auto refuse = [&](const fs::path& file, const std::string& where) {
+    const fs::path relative = fs::absolute(file).lexically_normal().lexically_relative(inside);
+    if (!relative.empty() && *relative.begin() != "..") return;
     index.problems.push_back(
         {"path-outside",
-         view.where,
+         where,
          fmt::format(
-             "{} lies outside of {}; move the pictures into the folder, or link them there",
-             view.image.string(),
+             "{} lies outside of {}; move the files into the folder, or link them there",
+             file.string(),
              folder.string()
          )}
     );
-  }
+  };
+  for (const ViewSource& view : index.views) refuse(view.image, view.where);
+  if (!index.points.empty()) refuse(index.points, folder.string());
 }
 
 // Evidence of a second kind for what a check has told already is no second finding: the message
@@ -376,7 +377,6 @@ LoaderSpec indexed_loader(
   loader.looks_for = looks_for;
   const auto index_with_priors = [index](const fs::path& folder, const LoadOptions& options) {
     SceneIndex of_folder = index(folder, options);
-    of_folder.folder = folder;
     attach_priors(folder, options.priors, of_folder);
     return of_folder;
   };
@@ -391,9 +391,7 @@ LoaderSpec indexed_loader(
     return load_indexed(of_folder, options);
   };
   loader.outline = [index](const fs::path& folder, const LoadOptions& options) {
-    SceneIndex of_folder = index(folder, options);
-    of_folder.folder = folder;
-    return outline_indexed(of_folder);
+    return outline_indexed(index(folder, options));
   };
   loader.check = [index_with_priors](const fs::path& folder, const LoadOptions& options) {
     SceneIndex of_folder = index_with_priors(folder, options);

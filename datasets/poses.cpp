@@ -123,8 +123,10 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   for (const fs::path& picture : list_files(folder / "images", kPictures)) {
     add_view(folder, picture, index);
     std::error_code code;
-    const fs::path pose = folder / "poses" / (picture.stem().string() + ".txt");
-    if (fs::exists(pose, code)) text += read_file(pose);
+    for (const char* part : {"poses", "intrinsics"})
+      if (const fs::path file = folder / part / (picture.stem().string() + ".txt");
+          fs::exists(file, code))
+        text += read_file(file);
   }
   sort_naturally(index.views);
   index.split_rule = split_every(index.views, options.test_every);

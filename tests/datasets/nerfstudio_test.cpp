@@ -293,6 +293,10 @@ TEST_CASE("pictures outside of the folder are refused, links inside are not") {
   folder.json["frames"][0]["file_path"] =
       "../" + outside.path().filename().string() + "/secret.png";
   CHECK_THAT(folder.load_error(), Contains("lies outside of"));
+  folder.json["frames"][0]["file_path"] = "images/0000.png";
+  folder.json["ply_file_path"] = "../elsewhere.ply";
+  CHECK_THAT(folder.load_error(), Contains("elsewhere.ply lies outside of"));
+  folder.json.erase("ply_file_path");
   fs::create_symlink(outside / "secret.png", folder / "images/link.png");
   folder.json["frames"][0]["file_path"] = "images/link.png";
   CHECK(folder.load().test.size() == 2);

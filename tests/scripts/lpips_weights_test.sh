@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # scripts/fetch_lpips_weights.sh and convert_lpips_weights.py, on files in the formats of torch.save: lpips_weights_test.sh GLINT_LPIPS
 set -euo pipefail
-command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
+for program in python3 curl; do
+  command -v "$program" >/dev/null || { echo "skipped: no $program"; exit 77; }
+done
 lpips=$(readlink -f "$1")
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$(mktemp -d)

@@ -123,7 +123,7 @@ TEST_CASE("a model is scored, recorded under its own name, and verified") {
   CHECK(records[0].metrics.contains("psnr"));
   CHECK_FALSE(records[0].metrics.contains("train-minutes"));
   CHECK_THAT(records[0].notes.at(0), Contains("trained by another program"));
-  const std::string said = captured(1, [&] { run({"verify", theirs, "--quiet"}); });
+  const std::string said = captured(1, [&] { CHECK(run({"verify", theirs, "--quiet"}) == 0); });
   CHECK_THAT(said, !Contains("BAD") && !Contains("bad "));
 }
 
