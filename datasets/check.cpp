@@ -123,6 +123,7 @@ void check_points(const SceneIndex& index, std::vector<Finding>& findings) {
 
 std::vector<Finding> check_indexed(const SceneIndex& index) {
   std::vector<Finding> findings = index.problems;
+  findings.insert(findings.end(), index.remarks.begin(), index.remarks.end());
   check_names(index, findings);
   std::vector<std::vector<Finding>> of_views(index.views.size());
   parallel_for(index.views.size(), 1, [&](std::size_t i) {

@@ -137,13 +137,14 @@ std::string describe_scene(const Scene& scene) {
       describe_maps(scene.train, &View::priors),
       scene.simulated_priors ? ", simulated" : ""
   );
-  for (const std::string& note : scene.data_notes) text += fmt::format("               {}\n", note);
   text += fmt::format("ground truth   {}\n", describe_maps(scene.test, &View::truth));
   text += fmt::format("points         {}\n", scene.points.positions.size());
   text += fmt::format(
       "bounds         {} to {}\n", format_vector(scene.bounds_min), format_vector(scene.bounds_max)
   );
   text += fmt::format("camera extent  {:.4f}\n", scene.spatial_scale);
+  for (std::size_t i = 0; i < scene.data_notes.size(); ++i)
+    text += fmt::format("{:<15}{}\n", i == 0 ? "notes" : "", scene.data_notes[i]);
   return text;
 }
 

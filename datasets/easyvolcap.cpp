@@ -5,6 +5,9 @@
 // and, of GlassRoom and of what `dataset export` writes:
 //   gt/<truth>/<view>.exr (masks: .png)   scene.json
 // Priors and truth are those of the table (glint/scene/maps.h).
+#include <algorithm>
+#include <set>
+
 #include "datasets/dataset.h"
 #include "datasets/opencv_yaml.h"
 #include "datasets/scene_index.h"
@@ -64,6 +67,50 @@ ViewSource make_view(const fs::path& folder, const OpencvCamera& camera) {
   return view;
 }
 
+std::vector<fs::path> list_folders(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code))
+    if (entry.is_directory(code)) folders.push_back(entry.path());
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+// EasyVolcap is made for videos; a scene here stands still. Both remarks name the first folder.
+void remark_passed_over(const fs::path& folder, SceneIndex& index) {
+  std::set<std::string> cameras;
+  for (const ViewSource& view : index.views) cameras.insert(view.name);
+  std::vector<fs::path> videos, strangers;
+  for (const fs::path& pictures : list_folders(folder / "images")) {
+    const std::size_t frames = list_files(pictures, kPictures).size();
+    if (!cameras.contains(pictures.filename().string())) {
+      if (frames > 0) strangers.push_back(pictures);
+    } else if (frames > 1) {
+      videos.push_back(pictures);
+    }
+  }
+  if (!videos.empty())
+    index.remarks.push_back(
+        {"extra-frames",
+         videos.front().string(),
+         fmt::format(
+             "{} frames, of {} views several: each view's first is read, here {}",
+             list_files(videos.front(), kPictures).size(),
+             videos.size(),
+             first_frame(videos.front()).filename().string()
+         )}
+    );
+  if (!strangers.empty())
+    index.remarks.push_back(
+        {"picture-without-camera",
+         strangers.front().string(),
+         fmt::format(
+             "no camera of this name in extri.yml, one of {} such folders; they are not read",
+             strangers.size()
+         )}
+    );
+}
+
 SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   const fs::path intri = folder / "intri.yml", extri = folder / "extri.yml";
   SceneIndex index;
@@ -75,6 +122,7 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
       index.problems.push_back({"camera-field", "camera " + camera.name, problem});
   }
   sort_naturally(index.views);
+  remark_passed_over(folder, index);
   index.split_rule = split_every(index.views, options.test_every);
   const fs::path points = folder / "sparse" / "0" / "points3D.ply";
   std::error_code code;

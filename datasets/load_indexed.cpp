@@ -133,6 +133,17 @@ void check_index(const SceneIndex& index) {
   GLINT_CHECK(has_train, kBadReference, "{}: no train views", index.folder.string());
 }
 
+// What was passed over, and how priors are read.
+void note_data(const SceneIndex& index, const LoadOptions& options, Scene& scene) {
+  std::vector<std::string>& notes = scene.data_notes;
+  for (const Finding& remark : index.remarks)
+    notes.push_back(fmt::format("{}: {}", remark.where, remark.message));
+  if (!options.with_priors || index.simulated_priors || index.prior_notes.empty()) return;
+  notes.insert(notes.end(), index.prior_notes.begin(), index.prior_notes.end());
+  const std::vector<std::string> coverage = prior_coverage(scene);
+  notes.insert(notes.end(), coverage.begin(), coverage.end());
+}
+
 }  // namespace
 
 bool file_contains(const fs::path& file, std::string_view part) {
@@ -256,11 +267,7 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options) {
     else if (index.views[i].is_test)
       scene.test.push_back(std::move(views[i]));
   }
-  if (options.with_priors && !index.simulated_priors && !index.prior_notes.empty()) {
-    scene.data_notes = index.prior_notes;
-    const std::vector<std::string> coverage = prior_coverage(scene);
-    scene.data_notes.insert(scene.data_notes.end(), coverage.begin(), coverage.end());
-  }
+  note_data(index, options, scene);
   if (options.test_only) return scene;  // nobody starts a training from it
   add_points_and_extent(index, scene);
   return scene;

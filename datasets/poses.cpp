@@ -16,7 +16,6 @@
 #include "datasets/scene_index.h"
 #include "datasets/scene_json.h"
 #include "glint/core/error.h"
-#include "glint/core/progress.h"
 
 namespace glint {
 namespace {
@@ -105,7 +104,7 @@ void add_view(const fs::path& folder, const fs::path& picture, SceneIndex& index
   view.where = pose.string();
   try {
     if (!read_pose(pose, view.camera)) {
-      log::warn(fmt::format("{}: not finite; its view is left out", pose.string()));
+      index.remarks.push_back({"lost-pose", view.where, "not finite; its view is left out"});
       return;
     }
     read_intrinsics(folder, stem, view.camera);

@@ -43,7 +43,8 @@ struct SceneIndex {
   fs::path points;                // empty: none
   std::vector<ViewSource> views;  // natural order of names
   std::string split_rule;         // how test views were chosen, for people
-  std::vector<Finding> problems;  // found while reading the camera files
+  std::vector<Finding> problems;  // found while reading the camera files; the first stops load()
+  std::vector<Finding> remarks;   // files passed over: check() names them, load() notes them
   PriorOptions stated_priors;     // by scene.json
   // What the format says of its priors, before options and evidence.
   PriorReading documented_priors;

@@ -388,3 +388,34 @@ TEST_CASE("YAML of another kind, or nested deeply, is the file's error") {
     CHECK_THAT(bad_reference([&] { load_scene(folder.path(), {}); }), Contains("intri.yml"));
   }
 }
+
+TEST_CASE("further frames and pictures without cameras are passed over and named") {
+  const RoomFolder folder;
+  CHECK(check_dataset(folder.path()).empty());
+  const std::string picture = read_file(folder / "images/0003/000000.png");
+  write_file(folder / "images/0003/000001.png", picture);
+  write_file(folder / "images/0003/000002.png", "not even a picture");
+  fs::create_directories(folder / "images/camera_z");
+  write_file(folder / "images/camera_z/000000.png", picture);
+  const std::vector<Finding> findings = check_dataset(folder.path());
+  REQUIRE(findings.size() == 2);
+  CHECK(findings[0].check == "extra-frames");
+  CHECK_THAT(findings[0].where, Contains("images/0003"));
+  CHECK_THAT(findings[0].message, Contains("3 frames, of 1 views") && Contains("000000.png"));
+  CHECK(findings[1].check == "picture-without-camera");
+  CHECK_THAT(findings[1].where, Contains("camera_z"));
+  const Scene scene = load_scene(folder.path(), {});
+  CHECK(scene.train.size() + scene.test.size() == 10);
+  REQUIRE(scene.data_notes.size() > 2);  // what is found out of its priors follows
+  CHECK_THAT(scene.data_notes[0], Contains("images/0003: 3 frames"));
+  CHECK_THAT(describe_scene(scene), Contains("notes          ") && Contains("camera_z: no camera"));
+}
+
+TEST_CASE("a camera without its picture is a finding and an error") {
+  const RoomFolder folder;
+  fs::remove_all(folder / "images/0004");
+  const std::vector<Finding> findings = check_dataset(folder.path());
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].check == "missing-file");
+  CHECK_THAT(folder.load_error(), Contains("camera 0004"));
+}

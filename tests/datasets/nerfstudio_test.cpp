@@ -325,3 +325,14 @@ TEST_CASE("true depth beside a capture is EXR, NPY or PNG in stated steps, where
   write_file(folder / "scene.json", R"({"side_maps": true, "depth_scale": 0})");
   CHECK_THAT(folder.load_error(), Contains("depth_scale is 0"));
 }
+
+TEST_CASE("masks are not read, and check and notes say so") {
+  RoomFolder folder;
+  for (const int i : {2, 5}) folder.json["frames"][i]["mask_path"] = "masks/2.png";
+  const Scene scene = folder.load();
+  REQUIRE(scene.data_notes.size() == 1);
+  CHECK_THAT(scene.data_notes[0], Contains("mask_path: of 2 frames, is not read"));
+  const std::vector<Finding> findings = check_dataset(folder.path());
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].check == "mask-path");
+}

@@ -71,6 +71,8 @@ TEST_CASE("views may have intrinsics of their own, points are read, lost frames 
   write_point_ply(folder / "points.ply", points);
   const Scene scene = load_scene(folder.path(), {});
   CHECK(scene.train.size() + scene.test.size() == 9);
+  REQUIRE(scene.data_notes.size() == 1);
+  CHECK_THAT(scene.data_notes[0], Contains("0005.txt: not finite"));
   CHECK(scene.train[2].camera.fx == 99);
   CHECK(scene.train[2].camera.fy == 98);
   CHECK(scene.points.positions.size() == 5);
