@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Cameras as OpenCV's YAML, and scene.json beside them.
+// Cameras as OpenCV's YAML, scene.json beside them, and the names of files of priors.
+#include <sstream>
+
 #include "datasets/opencv_yaml.h"
 #include "tests/fuzz/dataset_folder.h"
 
@@ -55,12 +57,42 @@ std::vector<FuzzInput> scene_json_seeds() {
       {"split",
        R"({"name": "room_1", "dataset": "glassroom", "hash": "ab", "test_views": ["0001"]})"},
       {"maps", R"({"name": "room_1", "simulated_priors": true, "side_maps": true})"},
-      {"no priors", R"({"simulated_priors": true, "without_priors": ["0000"]})"}};
+      {"no priors", R"({"simulated_priors": true, "without_priors": ["0000"]})"},
+      {"of others",
+       R"({"prior_axes": "opengl", "prior_depth": "auto", "prior_overlap": 2, "depth_scale": 0.01})"}};
+}
+
+// Each line names a picture of a clip of DiffusionRenderer's.
+bool read_prior_names(std::string_view bytes) {
+  static const fs::path folder = folder_of("clip");
+  static const std::string picture = read_file(folder / "images/0000/000000.png");
+  constexpr int kMostFiles = 12;
+  constexpr std::size_t kLongestName = 250;  // bytes; file systems end there
+  fs::remove_all(folder / "diffrens");
+  fs::create_directories(folder / "diffrens");
+  std::istringstream lines{std::string(bytes)};
+  std::string name;
+  for (int i = 0; i < kMostFiles && std::getline(lines, name); ++i) {
+    const bool is_name = !name.empty() && name.size() <= kLongestName && name != "." &&
+                         name != ".." && name.find_first_of({"/\0", 2}) == std::string::npos;
+    if (is_name) input_file(picture, fs::path("clip/diffrens") / name);
+  }
+  return read_dataset("easyvolcap", folder);
+}
+
+std::vector<FuzzInput> prior_name_seeds() {
+  return {
+      {"one chunk", "0000.0000.normal.png\n0000.0001.normal.png\n"},
+      {"jpeg",
+       "0000.0000.depth.jpg\n0000.0001.depth.jpg\n0000.0000.basecolor.jpg\n"
+       "0000.0001.basecolor.jpg\n0000.0000.metallic.jpg\n0000.0001.metallic.jpg"},
+      {"two chunks", "0000.0000.normal.png\n0001.0000.normal.png\n"}};
 }
 
 }  // namespace
 
 GLINT_REGISTER(FuzzTarget, {"opencv_yaml", read_yaml, yaml_seeds})
 GLINT_REGISTER(FuzzTarget, {"scene_json", read_scene_json, scene_json_seeds})
+GLINT_REGISTER(FuzzTarget, {"prior_names", read_prior_names, prior_name_seeds})
 
 }  // namespace glint::fuzz

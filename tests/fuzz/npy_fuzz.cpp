@@ -18,6 +18,9 @@ std::vector<FuzzInput> seeds() {
     seeds.push_back({std::string(type + 1), npy_bytes(type, "2, 3", std::string(6 * bytes, '\x3e'))}
     );
   }
+  std::string by_columns = npy_bytes("<f4", "2, 3", std::string(24, '\x3e'));
+  by_columns.replace(by_columns.find("False"), 5, "True ");
+  seeds.push_back({"by columns", by_columns});
   seeds.push_back({"rgba", npy_bytes("|u1", "1, 2, 4", "abcdefgh")});
   seeds.push_back(written("own", [](const fs::path& p) { write_npy(p, ramp(3, 2, 3)); }));
   return seeds;

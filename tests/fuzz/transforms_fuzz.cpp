@@ -29,6 +29,8 @@ std::vector<FuzzInput> seeds() {
        with(R"("w": 3, "h": 2, "fl_x": 3, "fl_y": 3.0, "cx": 1.5, "cy": 1, "camera_model": "OPENCV",
  "test_filenames": ["images/0001"])")},
       {"angle", with(R"("camera_angle_x": 0.9, "val_filenames": [])")},
+      {"lens list", with(R"("w": 30, "h": 20, "fl_x": 30, "camera_model": "OPENCV",
+ "distortion_params": [-0.001, 0, 0, 0, 0, 0])")},
       {"lens", with(R"("w": 30, "h": 20, "fl_x": 30, "k1": -0.001, "k2": 0, "p1": 0, "p2": 0)")}};
 }
 
