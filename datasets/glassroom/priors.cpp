@@ -280,16 +280,26 @@ struct LevelRates {
   float noise, failure, missing = 0, dark_leak = 0, bright_leak = 0;
 };
 
-// In the order of kPriorLevels.
-constexpr std::array<LevelRates, kPriorLevels.size()> kLevelRates{
-    {{0, 0}, {0.5f, 0.05f}, {1, 0.1f}, {2, 0.2f, 0.1f, 0.02f, 0.1f}, {4, 0.4f, 0.3f, 0.1f, 0.3f}}};
+// In the order of kPriorLevels, then of kPriorFlaws.
+constexpr std::array<LevelRates, kPriorLevels.size() + kPriorFlaws.size()> kLevelRates{
+    {{0, 0},
+     {0.5f, 0.05f},
+     {1, 0.1f},
+     {2, 0.2f, 0.1f, 0.02f, 0.1f},
+     {4, 0.4f, 0.3f, 0.1f, 0.3f},
+     {2, 0.1f},
+     {1, 0.2f},
+     {1, 0.1f, 0.1f},
+     {1, 0.1f, 0, 0.02f},
+     {1, 0.1f, 0, 0, 0.1f}}};
 
 }  // namespace
 
 PriorModel prior_level(const std::string& name) {
   check_prior_level(name, "glassroom");
-  const auto place = std::find(kPriorLevels.begin(), kPriorLevels.end(), name);
-  const LevelRates& rates = kLevelRates[static_cast<std::size_t>(place - kPriorLevels.begin())];
+  const std::vector<std::string> kinds = prior_kinds();
+  const auto place = std::find(kinds.begin(), kinds.end(), name);
+  const LevelRates& rates = kLevelRates[static_cast<std::size_t>(place - kinds.begin())];
   PriorModel model = scaled_model(rates.noise, rates.failure);
   model.missing_rate = rates.missing;
   model.dark_leak = rates.dark_leak;

@@ -48,7 +48,9 @@ struct SceneSource {
     v("seed", seed, "varies the layout of a room");
     v("assets", assets, "folder with glTF furniture");
     v("room", room, "room that is made, where the scene is called otherwise");
-    v("priors", priors, "how good simulated priors are: perfect, good, default, poor, bad");
+    v("priors",
+      priors,
+      "how good simulated priors are: perfect, good, default, poor, bad, or one flaw");
     v("prior_folder", foreign_priors.folder, "folder with priors as other programs write them");
     v("prior_axes", foreign_priors.axes, "of normals: auto, opencv, opengl, stablenormal, world");
     v("prior_depth", foreign_priors.depth, "of depth: auto, linear, disparity, inverted");

@@ -192,7 +192,7 @@ void add_make(CommandLine& line, CLI::App& dataset) {
   make.add_option("--spp", room.spp, "samples a pixel")->capture_default_str();
   make.add_option("--assets", room.assets, "folder with glTF furniture");
   make.add_option(
-          "--priors", room.priors, "how good simulated priors are: " + comma_list(prior_levels())
+          "--priors", room.priors, "how good simulated priors are: " + comma_list(prior_kinds())
   )
       ->capture_default_str();
 }

@@ -251,6 +251,24 @@ TEST_CASE("Perfect priors are the truth but for the tones of glass and an affine
     }
 }
 
+TEST_CASE("A flaw is the default with one kind of error as it is at poor") {
+  const Json plain = config_to_json(prior_level("default")),
+             poor = config_to_json(prior_level("poor"));
+  std::vector<std::string> touched;
+  for (const std::string name : kPriorFlaws) {
+    const Json model = config_to_json(prior_level(name));
+    for (const auto& [field, value] : model.items()) {
+      INFO(name << " " << field);
+      CHECK((value == plain.at(field) || value == poor.at(field)));
+      if (value != plain.at(field)) touched.push_back(field);
+    }
+  }
+  // Together they are all of poor, and no two have an error in common.
+  std::sort(touched.begin(), touched.end());
+  CHECK(std::adjacent_find(touched.begin(), touched.end()) == touched.end());
+  CHECK(touched.size() == poor.size());
+}
+
 TEST_CASE("Levels are in order of their errors, and one that there is not is named") {
   REQUIRE(prior_levels() == std::vector<std::string>{"perfect", "good", "default", "poor", "bad"});
   Json before;
