@@ -3,6 +3,7 @@
 #include "datasets/dataset.h"
 #include "datasets/packed_scene.h"
 #include "datasets/view_maps.h"
+#include "glint/core/error.h"
 
 namespace glint {
 namespace {
@@ -14,6 +15,13 @@ LoaderMatch match(const fs::path& path) {
 }
 
 Scene load(const fs::path& path, const LoadOptions& options) {
+  GLINT_CHECK(
+      options.priors == PriorOptions{},
+      kUsage,
+      "{}: a packed scene keeps the priors that it was packed with; give options of priors to "
+      "`dataset pack`",
+      path.string()
+  );
   Scene scene = read_packed_scene(path);
   for (std::vector<View>* views : {&scene.train, &scene.test})
     for (View& view : *views) {

@@ -333,6 +333,8 @@ Json run_commands(const PageRun& run, const PageOptions& options) {
       folder};
   if (run.spec->max_pixels > 0)
     train.insert(train.end(), {"--max-pixels", fmt::format("{}", run.spec->max_pixels)});
+  if (run.spec->image_ratio != 1)
+    train.insert(train.end(), {"--image-ratio", fmt::format("{}", run.spec->image_ratio)});
   train.insert(train.end(), changes.begin(), changes.end());
   add("train", train);
   add("render", {"render", "--run", folder});

@@ -54,16 +54,20 @@ void check_new_run(const fs::path& folder, bool force, const std::string& identi
 // The scene of single.spec, whose method, config and options are known, and the training's
 // document.
 void open_data(
-    const CommonOptions& common, const std::string& dataset, double max_pixels, SingleRun& single
+    const CommonOptions& common,
+    const std::string& dataset,
+    const LoadOptions& shrinking,
+    SingleRun& single
 ) {
   RunSpec& spec = single.spec;
   spec.dataset_folder = fs::absolute(dataset);
-  spec.max_pixels = max_pixels;
+  spec.max_pixels = shrinking.max_pixels;
+  spec.image_ratio = shrinking.image_ratio;
   single.scene = load_dataset(spec);
   spec.dataset = single.scene.dataset;
   spec.scene = single.scene.name;
   spec.dataset_hash = single.scene.spec_hash;
-  const Json data = data_document(spec.dataset_folder, {.max_pixels = max_pixels}, common.data);
+  const Json data = data_document(spec.dataset_folder, shrinking, common.data);
   spec.train_document = train_document(spec.method, spec.config, spec.options, data);
 }
 
@@ -85,7 +89,10 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
   spec.config = method_overrides(Profile{}, options.method, common.set);
   spec.options.iterations = common.iterations > 0 ? common.iterations : kDefaultIterations;
   spec.options.seed = common.seed.value_or(0);
-  open_data(common, options.dataset, options.max_pixels, single);
+  LoadOptions shrinking;
+  shrinking.max_pixels = options.max_pixels;
+  shrinking.image_ratio = options.image_ratio;
+  open_data(common, options.dataset, shrinking, single);
   take_folder(common, options.run, single);
   spec.checkpoint_seconds = common.checkpoint_seconds;
   spec.anew = options.force;
@@ -101,7 +108,7 @@ SingleRun new_model_run(const CommonOptions& common, const ModelRunOptions& opti
   spec.method = files.method;
   spec.row = options.row;
   spec.options = {.iterations = 0, .seed = common.seed.value_or(0)};
-  open_data(common, options.dataset, options.max_pixels, single);
+  open_data(common, options.dataset, {.max_pixels = options.max_pixels}, single);
   spec.train_document["model"] = {
       {"content", content_hash(options.model, fs::path(common.data) / ".hashes")},
       {"code", code_json({"model"})}};

@@ -11,9 +11,9 @@ namespace glint {
 struct SingleRunOptions {
   std::string dataset;  // folder
   std::string method = "2dgs";
-  std::string run;  // run folder; empty: OUT/single/runs/SCENE/METHOD/SEED
-  double max_pixels = 0;
-  bool force = false;  // train again where a run is
+  std::string run;                         // run folder; empty: OUT/single/runs/SCENE/METHOD/SEED
+  double max_pixels = 0, image_ratio = 1;  // how pictures are shrunk (LoadOptions)
+  bool force = false;                      // train again where a run is
 };
 
 // Errors (kUsage): no --dataset, unknown method or field, a run in the folder without `force`,

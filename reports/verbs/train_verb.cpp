@@ -61,6 +61,12 @@ void add_train_verb(CommandLine& line) {
   verb->add_flag("--force", options->force, "train again in a folder that holds a run");
   verb->add_option("--max-pixels", options->max_pixels, "shrink images below this area")
       ->check(CLI::NonNegativeNumber);
+  verb->add_option(
+          "--image-ratio", options->image_ratio, "shrink both sides of images to this share"
+  )
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 1.0))
+      ->excludes("--max-pixels");
 }
 
 }  // namespace

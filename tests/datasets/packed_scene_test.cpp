@@ -142,6 +142,20 @@ TEST_CASE("options drop priors and truth and resize, as with folders") {
   CHECK(scene.test[0].camera.width == 4);
 }
 
+TEST_CASE("options of priors are refused: a packed scene has the priors that it was packed with") {
+  const TempFolder folder;
+  write_packed_scene(folder / "x", box_scene());
+  LoadOptions options;
+  options.priors.axes = "opengl";
+  try {
+    load_scene(folder / "x", options);
+    FAIL("took them");
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::kUsage);
+    CHECK_THAT(error.what(), Contains("dataset pack"));
+  }
+}
+
 TEST_CASE("a header that is not a scene's is an error that names the tensor") {
   const PackedFile f;
   const auto error = [&](const std::function<void(Json&)>& change) {

@@ -152,7 +152,7 @@ TEST_CASE("commands of a run quote every word and name its settings") {
   const Record record = record_of("room_1", "fake");
   write_run(store.options.folder, record);
   const std::vector<Record> records{record};
-  const auto scenes = page_scenes(records, store.options.folder);
+  auto scenes = page_scenes(records, store.options.folder);
   const Json commands = run_commands(scenes[0].runs[0], store.options);
   CHECK(
       commands[0]["command"] ==
@@ -162,6 +162,11 @@ TEST_CASE("commands of a run quote every word and name its settings") {
   CHECK(
       commands[1]["command"].get<std::string>().find("--dataset 'data of it'\\''s own'") !=
       std::string::npos
+  );
+  scenes[0].runs[0].spec->image_ratio = 0.25;
+  CHECK_THAT(
+      run_commands(scenes[0].runs[0], store.options)[1]["command"].get<std::string>(),
+      Catch::Contains(" --image-ratio 0.25 ")
   );
 }
 
