@@ -72,12 +72,6 @@ void read_lens(const ColmapCamera& from, const std::string& where, ViewSource& v
     view.distortion = distortion;
 }
 
-// Quaternions in files are as long as their digits.
-Mat3d rotation_of(Vec4<double> q) {
-  const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  return rotation_from_quaternion({q.w / norm, q.x / norm, q.y / norm, q.z / norm});
-}
-
 ViewSource make_view(
     const ColmapModel& model, const ColmapImage& image, const fs::path& folder, std::string where
 ) {
@@ -95,7 +89,7 @@ ViewSource make_view(
       image.camera_id
   );
   read_lens(camera->second, fmt::format("{}: camera {}", view.where, image.camera_id), view);
-  view.camera.rotation_cam_from_world = rotation_of(image.rotation_cam_from_world);
+  view.camera.rotation_cam_from_world = rotation_of(image);
   view.camera.translation_cam_from_world = image.translation_cam_from_world;
   return view;
 }
@@ -131,16 +125,6 @@ std::string split_views(const fs::path& list, int test_every, std::vector<ViewSo
   return "sparse/0/test.txt";
 }
 
-// Empty: none; also where points3D.bin is there, as the format asks, and holds no point.
-fs::path find_points(const fs::path& model) {
-  std::error_code code;
-  for (const char* name : {"points3D.bin", "points3D.txt", "points3D.ply"})
-    if (const fs::path path = model / name; fs::exists(path, code))
-      return path.extension() == ".bin" && read_file(path) == std::string(8, '\0') ? fs::path()
-                                                                                   : path;
-  return {};
-}
-
 std::string model_text(const ColmapModel& model) {
   std::string text;
   for (const auto& [id, camera] : model.cameras) {
@@ -174,7 +158,7 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   index.split_rule = split_views(files / "test.txt", options.test_every, index.views);
   sort_naturally(index.views);
   shorten_names(index.views);
-  index.points = find_points(files);
+  index.points = find_colmap_points(files);
   index.spec_hash = hash_of_files(model_text(model), index.views);
   read_scene_json(folder, index);
   return index;

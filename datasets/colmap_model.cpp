@@ -214,11 +214,26 @@ fs::path binary_or_text(const fs::path& model, const std::string& name) {
 
 }  // namespace
 
+Mat3d rotation_of(const ColmapImage& image) {
+  const Vec4<double>& q = image.rotation_cam_from_world;
+  const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  return rotation_from_quaternion({q.w / norm, q.x / norm, q.y / norm, q.z / norm});
+}
+
 fs::path find_colmap_model(const fs::path& folder) {
   for (const char* model : {"sparse/0", "sparse"})
     if (!binary_or_text(folder / model, "cameras").empty() &&
         !binary_or_text(folder / model, "images").empty())
       return folder / model;
+  return {};
+}
+
+fs::path find_colmap_points(const fs::path& model) {
+  std::error_code code;
+  for (const char* name : {"points3D.bin", "points3D.txt", "points3D.ply"})
+    if (const fs::path path = model / name; fs::exists(path, code))
+      return path.extension() == ".bin" && read_file(path) == std::string(8, '\0') ? fs::path()
+                                                                                   : path;
   return {};
 }
 

@@ -49,6 +49,9 @@ struct ColmapImage {
   Vec3d translation_cam_from_world{};
 };
 
+// World to camera; quaternions in files are as long as their digits.
+Mat3d rotation_of(const ColmapImage& image);
+
 struct ColmapModel {
   std::map<std::uint32_t, ColmapCamera> cameras;
   std::vector<ColmapImage> images;  // as in the file
@@ -58,6 +61,8 @@ struct ColmapModel {
 fs::path find_colmap_model(const fs::path& folder);
 // cameras and images there; .bin where there are both.
 ColmapModel read_colmap_model(const fs::path& model);
+// points3D.bin, .txt or .ply there; empty: none, also where the file holds no point.
+fs::path find_colmap_points(const fs::path& model);
 // points3D.bin or .txt, by extension.
 PointCloud read_colmap_points(const fs::path& path);
 
