@@ -5,7 +5,6 @@
 // and, of GlassRoom and of what `dataset export` writes:
 //   gt/<truth>/<view>.exr (masks: .png)   scene.json
 // Priors and truth are those of the table (glint/scene/maps.h).
-#include <algorithm>
 #include <set>
 
 #include "datasets/dataset.h"
@@ -65,15 +64,6 @@ ViewSource make_view(const fs::path& folder, const OpencvCamera& camera) {
   view.priors = find_priors(folder / "diffrens", camera.name);
   view.truth = find_truth(folder / "gt", camera.name);
   return view;
-}
-
-std::vector<fs::path> list_folders(const fs::path& folder) {
-  std::vector<fs::path> folders;
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code))
-    if (entry.is_directory(code)) folders.push_back(entry.path());
-  std::sort(folders.begin(), folders.end());
-  return folders;
 }
 
 // EasyVolcap is made for videos; a scene here stands still. Both remarks name the first folder.

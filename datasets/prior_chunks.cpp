@@ -69,19 +69,10 @@ Clip read_clip(const fs::path& folder) {
   return clip;
 }
 
-std::vector<fs::path> folders_in(const fs::path& folder) {
-  std::vector<fs::path> folders;
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code))
-    if (entry.is_directory(code)) folders.push_back(entry.path());
-  std::sort(folders.begin(), folders.end());
-  return folders;
-}
-
 std::vector<Clip> find_clips(const fs::path& folder) {
   std::vector<Clip> clips;
   for (const fs::path& place : {folder, folder / "gbuffer_frames"}) {
-    std::vector<fs::path> folders = folders_in(place);
+    std::vector<fs::path> folders = list_folders(place);
     folders.insert(folders.begin(), place);
     for (const fs::path& candidate : folders)
       if (Clip clip = read_clip(candidate); !clip.passes.empty()) clips.push_back(std::move(clip));
