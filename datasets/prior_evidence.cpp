@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "datasets/disparity_shift.h"
 #include "datasets/known_surfaces.h"
 #include "datasets/prior_files.h"
 #include "datasets/prior_maps.h"
@@ -352,6 +353,8 @@ void settle_readings(
     );
   }
   for (ViewSource& view : index.views) view.prior_reading = reading;
+  if (has_prior(index, "depth") && reading.depth == PriorDepth::kDisparity)
+    tell_disparity_shifts(index);
 }
 
 std::vector<Finding> check_readings(

@@ -85,17 +85,18 @@ Image albedo_of(Image basecolor, const fs::path& metallic_file) {
   return basecolor;
 }
 
-void convert_depth(PriorDepth stored, Image& depth) {
+void convert_depth(const PriorReading& reading, Image& depth) {
   constexpr float kFarthest = 50;  // in units of the nearest, of disparities
-  if (stored == PriorDepth::kLinear) return;
-  const float largest = *std::max_element(depth.values().begin(), depth.values().end());
+  if (reading.depth == PriorDepth::kLinear) return;
+  const bool inverted = reading.depth == PriorDepth::kInverted;
+  const float shift = inverted ? 0 : reading.disparity_shift;
+  const float largest = shift + *std::max_element(depth.values().begin(), depth.values().end());
   if (!(largest > 0)) return;
   for (float& value : depth.values()) {
     if (!(value > 0)) continue;
+    const float share = (value + shift) / largest;
     // Affine maps change nothing: losses fit scale and shift. The nearest stays above 0, "nothing".
-    value = stored == PriorDepth::kInverted ? 1 - value / largest + 1.0f / 1024
-                                            : 1 / std::max(value / largest, 1 / kFarthest);
-    if (stored == PriorDepth::kDisparity) value /= kFarthest;
+    value = inverted ? 1 - share + 1.0f / 1024 : 1 / (kFarthest * std::max(share, 1 / kFarthest));
   }
 }
 
@@ -143,7 +144,7 @@ Vec3d normal_in_cam(Vec3d stored, PriorAxes axes, const Camera& camera) {
 }
 
 void convert_prior(MapKind kind, const PriorReading& reading, const Camera& camera, Image& map) {
-  if (kind == MapKind::kDepth) convert_depth(reading.depth, map);
+  if (kind == MapKind::kDepth) convert_depth(reading, map);
   if (kind != MapKind::kNormal || reading.axes == PriorAxes::kOpencv) return;
   for (std::size_t i = 0; i < map.num_pixels(); ++i) {
     float* n = map.data() + 3 * i;

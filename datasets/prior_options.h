@@ -44,6 +44,8 @@ void check_prior_options(const PriorOptions& options, std::string_view where);
 struct PriorReading {
   PriorAxes axes = PriorAxes::kOpencv;
   PriorDepth depth = PriorDepth::kLinear;
+  // Of one view: what is added to its stored disparities before they are inverted, in their units.
+  float disparity_shift = 0;
 };
 
 }  // namespace glint
