@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "datasets/front3d/model_files.h"
-#include "datasets/glassroom/fixtures.h"
 #include "datasets/glassroom/import_model.h"
 #include "datasets/glassroom/room_programs.h"
 #include "glint/scene/image_files.h"
@@ -15,7 +14,7 @@ namespace glint {
 namespace {
 
 constexpr float kPicturePeriod = 1.5f;  // metres that a picture of the folder covers
-constexpr Vec3f kSlab{0.5f, 0.5f, 0.5f};
+constexpr Vec3f kGrey{0.5f, 0.5f, 0.5f};
 
 Vec3f linear(Vec3f srgb) {
   Vec3f result{};
@@ -55,6 +54,13 @@ Finish Finishes::patterned(const std::string& name, PatternSpec spec) {
 
 Finish Finishes::plain(Material material) { return {add_material(scene_, std::move(material)), 1}; }
 
+int Finishes::emitter(const std::string& name, Vec3f radiance) {
+  const auto known = own_.find("emitter " + name);
+  if (known != own_.end()) return known->second;
+  return own_["emitter " + name] =
+             add_material(scene_, {.name = name, .albedo = kGrey, .emission = radiance});
+}
+
 // Patterns are those of GlassRoom's rooms, of any of them for each kind.
 Finish Finishes::make(const std::string& kind) {
   const std::vector<RoomProgram>& programs = room_programs();
@@ -70,6 +76,7 @@ Finish Finishes::make(const std::string& kind) {
   if (kind == "wall") return patterned(kind, wall.finish);
   if (kind == "fabric") return patterned(kind, program.fabric);
   if (kind == "wood" || kind == "door" || kind == "baseboard") return patterned(kind, program.wood);
+  if (kind == "slab") return plain({.name = kind, .albedo = kGrey});
   if (kind == "metal")
     return plain(
         {.name = kind,
@@ -77,9 +84,6 @@ Finish Finishes::make(const std::string& kind) {
          .albedo = {0.6f, 0.6f, 0.62f},
          .roughness = 0.45f}
     );
-  if (kind == "light") return plain({.name = kind, .albedo = kSlab, .emission = kCeilingLight});
-  if (kind == "sky") return plain({.name = kind, .albedo = kSlab, .emission = kWindowLight[2]});
-  if (kind == "slab") return plain({.name = kind, .albedo = kSlab});
   return plain({.name = kind, .albedo = srgb_hex(kind == "ceiling" ? 0xEEECE6 : 0xE8E2D4)});
 }
 

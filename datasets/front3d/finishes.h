@@ -20,9 +20,10 @@ class Finishes {
   // or empty. Deterministic in the seed.
   Finishes(TraceScene& scene, const fs::path& textures, std::uint64_t seed);
 
-  // Of all surfaces of a kind (surface_kind()), or "fabric", "wood", "metal", "slab", "light",
-  // "sky".
+  // Of all surfaces of a kind (surface_kind()), or "fabric", "wood", "metal".
   Finish of(const std::string& kind);
+  // A material that shines.
+  int emitter(const std::string& name, Vec3f radiance);
 
   // The picture of the house's own material, <textures>/<jid>/texture.png; its texture coordinates
   // are the file's. None: no such file.
@@ -40,7 +41,7 @@ class Finishes {
   fs::path textures_;
   Rng rng_;
   std::map<std::string, Finish> known_;
-  std::map<std::string, int> own_;  // by jid or uid
+  std::map<std::string, int> own_;  // by what it is and its jid, uid or name
   std::vector<fs::path> pictures_;
 };
 

@@ -108,6 +108,7 @@ class HouseRoomBuilder {
       if ((kind == "door" || kind == "window") && touches(house_.meshes[i])) chosen.insert(i);
     }
     Bounds reach = floor_.grown(kSurfaceReach);
+    reach.high.z = 10 * kHighestRoom;  // so that walls in another unit are found
     float walls = 0;
     for (const std::size_t i : chosen) {
       const HouseMesh& mesh = house_.meshes[i];
@@ -126,7 +127,7 @@ class HouseRoomBuilder {
     GLINT_CHECK(
         height_ >= kLowestRoom && height_ <= kHighestRoom,
         kBadReference,
-        "{}: its walls are {} m high, expected {} to {} m (the unit is the metre); choose another "
+        "{}: its walls are {:.1f} m high, expected {} to {} m (the unit is the metre); choose another "
         "room",
         where_,
         height_,
@@ -199,16 +200,18 @@ class HouseRoomBuilder {
       const Vec2f p = side->start + along * side->along + away * side->outward;
       return Vec3f{p.x, p.y, z};
     };
-    const float left = local.low.x - kSkyAround, bottom = local.low.z - kSkyAround;
-    const Vec3f corner = at(left, bottom);
-    TraceMesh sky = quad_mesh(
-        corner,
-        at(local.high.x + kSkyAround, bottom) - corner,
-        {0, 0, local.size().z + 2 * kSkyAround}
-    );
-    closed_.include(bounds_of(sky).low);
-    closed_.include(bounds_of(sky).high);
-    add(std::move(sky), "sky", finishes_->of("sky"));
+    // In rows of other brightness, as GlassRoom's windows have them.
+    const float left = local.low.x - kSkyAround, right = local.high.x + kSkyAround;
+    const float row = (local.size().z + 2 * kSkyAround) / kWindowRows;
+    for (std::size_t i = 0; i < kWindowRows; ++i) {
+      const float low = local.low.z - kSkyAround + static_cast<float>(i) * row;
+      const Vec3f corner = at(left, low);
+      TraceMesh sky = quad_mesh(corner, at(right, low) - corner, {0, 0, row});
+      closed_.include(bounds_of(sky).low);
+      closed_.include(bounds_of(sky).high);
+      const int light = finishes_->emitter(fmt::format("sky {}", i), kWindowLight[i]);
+      add_mesh(room_->scene, std::move(sky), "sky", light);
+    }
   }
 
   // The lowest thing above a square, no lower than a person.
@@ -262,7 +265,7 @@ class HouseRoomBuilder {
     Palette palette;
     palette.metal = finishes_->of("metal");
     FixturePalette fixtures;
-    fixtures.ceiling_light = finishes_->of("light").material;
+    fixtures.ceiling_light = finishes_->emitter("ceiling light", kCeilingLight);
     const float z = ceiling_above(place, half + kLightMargin);
     for (FurniturePart& part : make_ceiling_light(palette, fixtures, half)) {
       transform(part.mesh, translated({place.x, place.y, z - 0.001f}));
