@@ -122,6 +122,7 @@ bool usable(
 ) {
   const Vec3d eye = camera.center();
   return room.grown(-static_cast<float>(options.clearance) * 0.7f).contains(cast<float>(eye)) &&
+         (!options.above_floor || options.above_floor({eye.x, eye.y})) &&
          !container.grown(0.3f).contains(cast<float>(eye)) &&
          nearest_surface(tracer, eye) > 0.6 * options.clearance &&
          container_visibility(tracer, container, camera) >= options.min_visible;

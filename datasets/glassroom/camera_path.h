@@ -5,6 +5,7 @@
 // evenly over the rest.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "datasets/glassroom/path_tracer.h"
@@ -21,6 +22,8 @@ struct CameraPathOptions {
   double min_radius = 1.4, max_radius = 2.3;    // metres from the container's axis
   double clearance = 0.35;                      // to anything, metres
   double min_visible = 0.7;  // share of probe points in the container that must be seen
+  // Whether the floor is below a point (x, y), where that is not all of the room's box.
+  std::function<bool(Vec2d)> above_floor = {};
 };
 
 // The room's inside and the container's box in the world (both axis-aligned).

@@ -11,6 +11,11 @@ namespace glint {
 
 inline constexpr int kWindowRows = 4;
 
+// Radiance in arbitrary units; the exposure is fitted to the finished room.
+inline constexpr Vec3f kCeilingLight{10.0f, 9.4f, 8.4f};
+inline constexpr std::array<Vec3f, kWindowRows> kWindowLight{
+    {{0.9f, 1.3f, 0.6f}, {1.2f, 1.7f, 1.1f}, {3.2f, 3.5f, 3.7f}, {3.0f, 3.9f, 5.0f}}};
+
 // Materials that only fixtures use.
 struct FixturePalette {
   std::array<int, kWindowRows> window_rows{};  // emitters from the sill up

@@ -13,29 +13,9 @@ namespace {
 
 constexpr int kLayoutTries = 16;
 constexpr int kObjects = 6;
-constexpr double kMinGlass = 0.15, kMaxGlass = 0.40;
 constexpr float kMiddle = 0.2f;       // linear luminance that the median pixel gets
 constexpr double kMaxClipped = 0.04;  // share of pixels
 constexpr ImageSize kProbeSize{64, 36};
-
-void check_options(const GlassRoomOptions& o) {
-  const auto in_range = [](const char* field, int value, int low, int high) {
-    GLINT_CHECK(
-        value >= low && value <= high,
-        kUsage,
-        "glassroom: {} is {}, expected {} to {}",
-        field,
-        value,
-        low,
-        high
-    );
-  };
-  in_range("width", o.width, 8, 8192);
-  in_range("height", o.height, 8, 8192);
-  in_range("views", o.views, 2, 9999);
-  in_range("spp", o.spp, 1, 1 << 20);
-  check_prior_level(o.priors, "glassroom");
-}
 
 Bounds container_bounds(const ContainerShape& shape, const Pose& pose) {
   Bounds bounds;
@@ -63,29 +43,33 @@ double mean_glass_share(const PathTracer& tracer, const std::vector<Camera>& cam
   return static_cast<double>(glass) / static_cast<double>(total);
 }
 
-std::unique_ptr<GlassRoomScene> try_layout(const GlassRoomOptions& options, std::uint64_t seed) {
+std::unique_ptr<GlassRoomScene> try_layout(
+    const LayoutRecipe& recipe, const ShotOptions& shots, std::uint64_t seed
+) {
   auto scene = std::make_unique<GlassRoomScene>();
   scene->layout_seed = seed;
-  const AssetSource assets = options.assets.empty() ? AssetSource() : gltf_assets(options.assets);
-  RoomModel& room = scene->room = build_room(room_program(options.scene), seed, assets);
-  Rng rng(seed, hash_name(options.scene + "/container"));
-  scene->container = random_container(rng);
+  RoomModel& room = scene->room = recipe.room(seed);
+  Rng rng(seed, hash_name(recipe.name + "/container"));
+  scene->container = recipe.container(room, rng);
   std::vector<ContainerObject> objects = random_objects(scene->container, kObjects, rng);
+  for (const ContainerObject& object : objects) scene->objects.push_back(object.name);
   const SettleOptions drop{
       .support_height = room.support_height,
       .place = room.container_place,
-      .yaw = rng.uniform(-0.6f, 0.6f)};
+      .yaw = room.container_yaw + rng.uniform(-room.yaw_range, room.yaw_range)};
   scene->settled = settle(scene->container, objects, drop, rng);
   GLINT_CHECK(scene->settled.at_rest, kEnvironment, "settle: not at rest in time");
   scene->container_bounds = container_bounds(scene->container, scene->settled.container);
   add_container(room.scene, scene->container, scene->settled.container);
   add_objects(room.scene, std::move(objects), scene->settled.objects, rng);
   scene->tracer = std::make_unique<PathTracer>(room.scene);
-  const CameraPathOptions path{.size = {options.width, options.height}, .views = options.views};
+  CameraPathOptions path = recipe.path ? recipe.path(room, scene->container) : CameraPathOptions();
+  path.size = {shots.width, shots.height};
+  path.views = shots.views;
   scene->cameras = camera_path(*scene->tracer, room.bounds(), scene->container_bounds, path, rng);
   scene->glass_share = mean_glass_share(*scene->tracer, scene->cameras);
   GLINT_CHECK(
-      scene->glass_share >= kMinGlass && scene->glass_share <= kMaxGlass,
+      scene->glass_share >= recipe.min_glass && scene->glass_share <= recipe.max_glass,
       kEnvironment,
       "glass covers {:.0f} % of the images",
       100 * scene->glass_share
@@ -95,26 +79,63 @@ std::unique_ptr<GlassRoomScene> try_layout(const GlassRoomOptions& options, std:
 
 }  // namespace
 
-std::unique_ptr<GlassRoomScene> build_glassroom_scene(const GlassRoomOptions& options) {
-  check_options(options);
-  room_program(options.scene);
+void check_shots(const ShotOptions& shots, const std::string& generator) {
+  const auto in_range = [&](const char* field, int value, int low, int high) {
+    GLINT_CHECK(
+        value >= low && value <= high,
+        kUsage,
+        "{}: {} is {}, expected {} to {}",
+        generator,
+        field,
+        value,
+        low,
+        high
+    );
+  };
+  in_range("width", shots.width, 8, 8192);
+  in_range("height", shots.height, 8, 8192);
+  in_range("views", shots.views, 2, 9999);
+  in_range("spp", shots.spp, 1, 1 << 20);
+  check_prior_level(shots.priors, generator);
+}
+
+std::unique_ptr<GlassRoomScene> build_layout(const LayoutRecipe& recipe, const ShotOptions& shots) {
   std::string reason;
   for (int attempt = 0; attempt < kLayoutTries; ++attempt) try {
-      return try_layout(options, options.seed * 1000 + static_cast<std::uint64_t>(attempt));
+      return try_layout(recipe, shots, recipe.seed * 1000 + static_cast<std::uint64_t>(attempt));
     } catch (const Error& error) {
       if (error.code() != ExitCode::kEnvironment) throw;
       reason = error.what();
-      log::info(fmt::format("{}: layout {} rejected: {}", options.scene, attempt, reason));
+      log::info(fmt::format("{}: layout {} rejected: {}", recipe.name, attempt, reason));
     }
   throw Error(
       ExitCode::kEnvironment,
       fmt::format(
-          "glassroom: none of {} layouts of {} worked (the last: {}); try another seed",
+          "{}: none of {} layouts of {} worked (the last: {}); try another seed",
+          recipe.generator,
           kLayoutTries,
-          options.scene,
+          recipe.name,
           reason
       )
   );
+}
+
+std::unique_ptr<GlassRoomScene> build_glassroom_scene(const GlassRoomOptions& options) {
+  check_shots(shots_of(options), "glassroom");
+  const RoomProgram& program = room_program(options.scene);
+  const LayoutRecipe recipe{
+      .generator = "glassroom",
+      .name = options.scene,
+      .room =
+          [&](std::uint64_t seed) {
+            const AssetSource assets =
+                options.assets.empty() ? AssetSource() : gltf_assets(options.assets);
+            return build_room(program, seed, assets);
+          },
+      .container = [](const RoomModel&, Rng& rng) { return random_container(rng); },
+      .path = {},
+      .seed = options.seed};
+  return build_layout(recipe, shots_of(options));
 }
 
 float fit_exposure(const GlassRoomScene& scene, std::uint64_t seed) {

@@ -22,9 +22,10 @@ struct PlacedItem {
 struct RoomModel {
   Vec3f size{};  // width, depth, height in metres
   TraceScene scene;
-  std::vector<PlacedItem> items;  // pairwise disjoint; the rug is not among them
-  Vec2f container_place{};        // where the container is dropped
-  float support_height = 0;       // top of the rug that it lands on
+  std::vector<PlacedItem> items;              // pairwise disjoint; the rug is not among them
+  Vec2f container_place{};                    // where the container is dropped
+  float container_yaw = 0, yaw_range = 0.6f;  // turned by the first, give or take the second
+  float support_height = 0;                   // top of the rug that it lands on
   Bounds bounds() const {
     return {
         .low = {-0.5f * size.x, -0.5f * size.y, 0}, .high = {0.5f * size.x, 0.5f * size.y, size.z}};

@@ -6,6 +6,7 @@ namespace glint {
 const std::vector<StageSources>& stage_sources() {
   static const std::vector<StageSources> all = {
       {"make", {"datasets/glassroom/*.cpp"}},
+      {"front3d", {"datasets/front3d/*.cpp"}},
       {"load", {"datasets/dataset.h", "reports/records/scene_source.cpp"}},
       {"cuda", {"glint/cuda/*"}},
       {"model", {"glint/scene/gaussian_ply.h", "reports/import/import_model.cpp"}},

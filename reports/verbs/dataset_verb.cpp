@@ -2,11 +2,11 @@
 #include <memory>
 
 #include "datasets/dataset.h"
-#include "datasets/glassroom/glassroom.h"
 #include "datasets/packed_scene.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "reports/verbs/dataset_export.h"
+#include "reports/verbs/dataset_front3d.h"
 #include "reports/verbs/dataset_import.h"
 #include "reports/verbs/dataset_manifest.h"
 #include "reports/verbs/load_options.h"
@@ -23,6 +23,7 @@ struct MakeOptions {
   std::string dataset;
   std::vector<std::string> scenes{"room_1"};
   GlassRoomOptions room;
+  Front3dOptions front3d;
 };
 
 fs::path folder_for(
@@ -33,23 +34,34 @@ fs::path folder_for(
          fmt::format("{}-{}", room.scene, glassroom_hash(room).substr(0, 8));
 }
 
+// `scene`: a room of GlassRoom; 3D-FRONT has its own.
+MadeScene make_scene_of(
+    const CommonOptions& common, MakeOptions& options, const std::string& scene, bool out_given
+) {
+  if (options.dataset == "front3d")
+    return make_front3d_scene(common, options.front3d, options.room, out_given);
+  options.room.scene = scene;
+  const fs::path folder = folder_for(common, options.room, out_given, options.scenes.size() == 1);
+  return {scene, folder, make_glassroom(options.room, folder, false)};
+}
+
 int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
   GLINT_CHECK(
-      options.dataset == "glassroom",
+      options.dataset == "glassroom" || options.dataset == "front3d",
       kUsage,
-      "dataset make {}: no such generator; expected glassroom",
+      "dataset make {}: no such generator; expected glassroom or front3d",
       options.dataset
   );
   install_interrupt_handler();
   options.room.seed = common.seed.value_or(0);
+  if (options.dataset == "front3d") options.scenes.resize(1);
   Json made = Json::array();
-  for (const std::string& scene : options.scenes) {
-    options.room.scene = scene;
-    const fs::path folder = folder_for(common, options.room, out_given, options.scenes.size() == 1);
-    const bool is_new = make_glassroom(options.room, folder, false);
-    made.push_back({{"scene", scene}, {"folder", folder.string()}, {"made", is_new}});
+  for (const std::string& name : options.scenes) {
+    const MadeScene scene = make_scene_of(common, options, name, out_given);
+    const std::string folder = scene.folder.string();
+    made.push_back({{"scene", scene.name}, {"folder", folder}, {"made", scene.is_new}});
     if (!common.json)
-      print_text(fmt::format("{} {}\n", folder.string(), is_new ? "made" : "was there already"));
+      print_text(fmt::format("{} {}\n", folder, scene.is_new ? "made" : "was there already"));
   }
   if (common.json) print_json({{"scenes", made}});
   return 0;
@@ -175,7 +187,7 @@ void add_make(CommandLine& line, CLI::App& dataset) {
   *verb = line.add_verb(
       dataset,
       "make",
-      "render GlassRoom scenes (--seed varies the layout)",
+      "render GlassRoom scenes, or a room of 3D-FRONT (--seed varies the layout)",
       [&line, options, verb] {
         return run_make(line.common, *options, (*verb)->count("--out") > 0);
       },
@@ -183,7 +195,7 @@ void add_make(CommandLine& line, CLI::App& dataset) {
   );
   CLI::App& make = **verb;
   GlassRoomOptions& room = options->room;
-  make.add_option("dataset", options->dataset, "glassroom")->required();
+  make.add_option("dataset", options->dataset, "glassroom or front3d")->required();
   make.add_option("--scene", options->scenes, "room_1 ... room_5; several make several")
       ->capture_default_str();
   make.add_option("--width", room.width, "pixels")->capture_default_str();
@@ -195,6 +207,7 @@ void add_make(CommandLine& line, CLI::App& dataset) {
           "--priors", room.priors, "how good simulated priors are: " + comma_list(prior_kinds())
   )
       ->capture_default_str();
+  add_front3d_options(make, options->front3d);
 }
 
 using FolderAction = int (*)(const CommonOptions&, const FolderOptions&);

@@ -86,6 +86,47 @@ TEST_CASE("dataset make takes a level of priors, and no other word") {
   CHECK(Json::parse(read_file(folder / "poor/scene.json"))["prior_level"] == "poor");
 }
 
+TEST_CASE("dataset make front3d takes a house, and says what is wrong with one") {
+  const TempFolder folder;
+  const std::string out = folder / "room";
+  const auto make = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{
+        "dataset",
+        "make",
+        "front3d",
+        "--width",
+        "32",
+        "--height",
+        "18",
+        "--spp",
+        "1",
+        "--views",
+        "8",
+        "--quiet",
+        "--json",
+        "--out",
+        out};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  const std::string house = "tests/datasets/front3d/house_rows.json", bad = folder / "bad.json";
+  write_file(bad, "{}");
+  CHECK(run(make({})) == 1);
+  CHECK(run(make({"--house", "nowhere.json"})) == 3);
+  CHECK(run(make({"--house", bad})) == 3);
+  CHECK(run(make({"--house", house, "--room", "Attic"})) == 1);
+  CHECK(run(make({"--house", house, "--models", folder / "nowhere"})) == 3);
+  CHECK(run(make({"--house", house, "--textures", folder / "nowhere"})) == 3);
+  CHECK(run(make({"--house", house, "--priors", "awful"})) == 1);
+  CHECK_FALSE(fs::exists(out));
+  const Json json = Json::parse(output_of(make({"--house", house})));
+  CHECK(json["scenes"][0]["scene"] == "house_rows-LivingDiningRoom-2");
+  CHECK(json["scenes"][0]["folder"] == out);
+  CHECK(json["scenes"][0]["made"] == true);
+  CHECK(run({"dataset", "check", out, "--quiet"}) == 0);
+  CHECK(run({"dataset", "make", "ikea", "--out", out}) == 1);
+}
+
 TEST_CASE("dataset info says the format, the split's rule and the test views") {
   const std::string room = small_room_folder().string();
   CHECK_THAT(

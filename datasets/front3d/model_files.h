@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Where the models and textures of a house lie: a folder for each, named by its jid.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "glint/core/files.h"
+
+namespace glint {
+
+// A name that cannot lead anywhere else: letters, digits, '-', '_' and '.', not "." or "..".
+inline bool is_plain_name(std::string_view name) {
+  constexpr std::string_view kAllowed =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
+  return !name.empty() && name != "." && name != ".." && name.size() <= 200 &&
+         name.find_first_not_of(kAllowed) == std::string_view::npos;
+}
+
+struct ModelFiles {
+  fs::path model, texture;  // texture: empty where there is none for the whole model
+};
+
+// <models>/<jid>/raw_model.obj, .glb or .gltf, and texture.png; none: not there, no plain name.
+inline std::optional<ModelFiles> find_model(const fs::path& models, const std::string& jid) {
+  std::error_code code;
+  if (models.empty() || !is_plain_name(jid)) return std::nullopt;
+  for (const char* name : {"raw_model.obj", "raw_model.glb", "raw_model.gltf"}) {
+    const fs::path model = models / jid / name, texture = models / jid / "texture.png";
+    if (!fs::is_regular_file(model, code)) continue;
+    return ModelFiles{model, fs::is_regular_file(texture, code) ? texture : fs::path()};
+  }
+  return std::nullopt;
+}
+
+}  // namespace glint

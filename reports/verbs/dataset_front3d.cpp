@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "reports/verbs/dataset_front3d.h"
+
+namespace glint {
+
+void add_front3d_options(CLI::App& make, Front3dOptions& options) {
+  make.add_option("--house", options.house, "front3d: JSON file of a house of 3D-FRONT");
+  make.add_option("--room", options.room, "front3d: instanceid of a room; none: the largest");
+  make.add_option("--models", options.models, "front3d: folder of 3D-FUTURE's models; none: boxes");
+  make.add_option(
+      "--textures", options.textures, "front3d: folder of pictures for surfaces; none: patterns"
+  );
+}
+
+MadeScene make_front3d_scene(
+    const CommonOptions& common,
+    Front3dOptions options,
+    const GlassRoomOptions& room,
+    bool out_given
+) {
+  options.width = room.width;
+  options.height = room.height;
+  options.views = room.views;
+  options.spp = room.spp;
+  options.seed = room.seed;
+  options.priors = room.priors;
+  MadeScene made{.name = front3d_name(options), .folder = common.out};
+  if (!out_given)
+    made.folder = fs::path(common.data) / "front3d" /
+                  fmt::format("{}-{}", made.name, front3d_hash(options).substr(0, 8));
+  made.is_new = make_front3d(options, made.folder, false);
+  return made;
+}
+
+}  // namespace glint
