@@ -26,7 +26,7 @@ Vec3f linear(Vec3f srgb) {
 
 Finishes::Finishes(TraceScene& scene, const fs::path& textures, std::uint64_t seed)
     : scene_(scene), textures_(textures), rng_(seed, hash_name("front3d/finishes")) {
-  if (!textures_.empty()) pictures_ = list_files(textures_, {".png", ".jpg", ".jpeg"});
+  if (!textures_.empty()) pictures_ = surface_pictures(textures_);
 }
 
 Finish Finishes::of(const std::string& kind) {
@@ -88,13 +88,11 @@ Finish Finishes::make(const std::string& kind) {
 }
 
 std::optional<int> Finishes::own_picture(const HouseMaterial& material) {
-  if (textures_.empty() || !is_plain_name(material.jid)) return std::nullopt;
   const auto known = own_.find("picture " + material.jid);
   if (known != own_.end()) return known->second;
-  const fs::path picture = textures_ / material.jid / "texture.png";
-  std::error_code code;
-  if (!fs::is_regular_file(picture, code)) return std::nullopt;
-  const int texture = add_texture(scene_, read_reflectance(picture));
+  const auto picture = find_picture(textures_, material.jid);
+  if (!picture) return std::nullopt;
+  const int texture = add_texture(scene_, read_reflectance(*picture));
   const int made =
       add_material(scene_, {.name = material.jid, .albedo = {1, 1, 1}, .texture = texture});
   return own_["picture " + material.jid] = made;

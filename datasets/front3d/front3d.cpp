@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/front3d/front3d.h"
 
+#include <optional>
 #include <set>
 
 #include "datasets/front3d/front3d_scene.h"
@@ -17,6 +18,12 @@ namespace {
 // Part of every cache key: raise it whenever the same options give other files.
 constexpr int kGeneratorVersion = 1;
 
+std::string hash_of_file(const fs::path& file) {
+  return fmt::format("{:016x}", hash_name(read_file(file)));
+}
+
+std::string hash_of(const Json& hashes) { return fmt::format("{:016x}", hash_name(hashes.dump())); }
+
 // Of the folders of models that the room's furniture names; the rest of 3D-FUTURE does not count.
 std::string models_hash(const ChosenRoom& chosen, const std::string& models) {
   if (models.empty()) return {};
@@ -27,7 +34,19 @@ std::string models_hash(const ChosenRoom& chosen, const std::string& models) {
   Json hashes = Json::object();
   for (const std::string& jid : jids)
     if (find_model(models, jid)) hashes[jid] = asset_hash(fs::path(models) / jid);
-  return fmt::format("{:016x}", hash_name(hashes.dump()));
+  return hash_of(hashes);
+}
+
+// Of the pictures for kinds of surfaces, and of those that the house's materials name.
+std::string textures_hash(const ChosenRoom& chosen, const std::string& textures) {
+  if (textures.empty()) return {};
+  Json hashes = Json::object();
+  for (const fs::path& picture : surface_pictures(textures))
+    hashes[picture.filename().string()] = hash_of_file(picture);
+  for (const HouseMaterial& material : chosen.house.materials)
+    if (const auto picture = find_picture(textures, material.jid))
+      hashes[material.jid + "/"] = hash_of_file(*picture);
+  return hash_of(hashes);
 }
 
 // The options; of files the content counts, not where they lie.
@@ -36,7 +55,7 @@ Json spec_json(const ChosenRoom& chosen, const Front3dOptions& options) {
       {"house", chosen.house.sha256},
       {"room", chosen.room.instanceid},
       {"models", models_hash(chosen, options.models)},
-      {"textures", options.textures.empty() ? "" : asset_hash(options.textures)},
+      {"textures", textures_hash(chosen, options.textures)},
       {"width", options.width},
       {"height", options.height},
       {"views", options.views},
@@ -45,9 +64,8 @@ Json spec_json(const ChosenRoom& chosen, const Front3dOptions& options) {
       {"priors", options.priors}};
 }
 
-std::string hash_of(const Json& spec) {
-  const Json key{{"generator", "front3d"}, {"options", spec}, {"version", kGeneratorVersion}};
-  return fmt::format("{:016x}", hash_name(key.dump()));
+std::string key_of(const Json& spec) {
+  return hash_of({{"generator", "front3d"}, {"options", spec}, {"version", kGeneratorVersion}});
 }
 
 // Of a folder, so without anything that folders or terminals take amiss.
@@ -107,7 +125,7 @@ std::string named(const Front3dOptions& options) {
 }
 
 std::string hashed(const Front3dOptions& options) {
-  return hash_of(spec_json(choose_front3d_room(options), options));
+  return key_of(spec_json(choose_front3d_room(options), options));
 }
 
 bool make_room(const Front3dOptions& options, const fs::path& folder, bool again) {
@@ -118,7 +136,7 @@ bool make_room(const Front3dOptions& options, const fs::path& folder, bool again
       .name = name_of(chosen, options),
       .dataset = "front3d",
       .title = "3D-FRONT",
-      .hash = hash_of(spec),
+      .hash = key_of(spec),
       .version = kGeneratorVersion,
       .options = spec,
       .shots = shots_of(options),

@@ -127,7 +127,8 @@ class HouseRoomBuilder {
     GLINT_CHECK(
         height_ >= kLowestRoom && height_ <= kHighestRoom,
         kBadReference,
-        "{}: its walls are {:.1f} m high, expected {} to {} m (the unit is the metre); choose another "
+        "{}: its walls are {:.1f} m high, expected {} to {} m (the unit is the metre); choose "
+        "another "
         "room",
         where_,
         height_,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "glint/core/files.h"
 
@@ -18,20 +19,33 @@ inline bool is_plain_name(std::string_view name) {
          name.find_first_not_of(kAllowed) == std::string_view::npos;
 }
 
-struct ModelFiles {
+struct FurnitureModel {
   fs::path model, texture;  // texture: empty where there is none for the whole model
 };
 
 // <models>/<jid>/raw_model.obj, .glb or .gltf, and texture.png; none: not there, no plain name.
-inline std::optional<ModelFiles> find_model(const fs::path& models, const std::string& jid) {
+inline std::optional<FurnitureModel> find_model(const fs::path& models, const std::string& jid) {
   std::error_code code;
   if (models.empty() || !is_plain_name(jid)) return std::nullopt;
   for (const char* name : {"raw_model.obj", "raw_model.glb", "raw_model.gltf"}) {
     const fs::path model = models / jid / name, texture = models / jid / "texture.png";
     if (!fs::is_regular_file(model, code)) continue;
-    return ModelFiles{model, fs::is_regular_file(texture, code) ? texture : fs::path()};
+    return FurnitureModel{model, fs::is_regular_file(texture, code) ? texture : fs::path()};
   }
   return std::nullopt;
+}
+
+// <textures>/<jid>/texture.png, of a material; none: not there, no plain name.
+inline std::optional<fs::path> find_picture(const fs::path& textures, const std::string& jid) {
+  std::error_code code;
+  if (textures.empty() || !is_plain_name(jid)) return std::nullopt;
+  const fs::path picture = textures / jid / "texture.png";
+  return fs::is_regular_file(picture, code) ? std::optional(picture) : std::nullopt;
+}
+
+// Pictures in the folder itself: what their names begin with says for which kind of surface.
+inline std::vector<fs::path> surface_pictures(const fs::path& textures) {
+  return list_files(textures, {".png", ".jpg", ".jpeg"});
 }
 
 }  // namespace glint

@@ -114,6 +114,15 @@ TEST_CASE("the cache key follows what files hold, not where they lie") {
   CHECK(front3d_hash(options) == with_sofa);
   write_sofa(options.models, "Ns 5\n");
   CHECK(front3d_hash(options) != with_sofa);
+  options = kTiny;
+  options.textures = (temporary / "textures").string();
+  write_file(temporary / "textures" / "wall-jid" / "texture.png", "a");
+  write_file(temporary / "textures" / "not-of-the-house" / "texture.png", "a");
+  const std::string with_wall = front3d_hash(options);
+  write_file(temporary / "textures" / "not-of-the-house" / "texture.png", "b");
+  CHECK(front3d_hash(options) == with_wall);
+  write_file(temporary / "textures" / "wall-jid" / "texture.png", "b");
+  CHECK(front3d_hash(options) != with_wall);
 }
 
 TEST_CASE("a room without a free place, a wrong room and foreign folders are errors") {
