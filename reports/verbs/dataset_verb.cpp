@@ -2,10 +2,12 @@
 #include <memory>
 
 #include "datasets/dataset.h"
+#include "datasets/exchange/exchange_scene.h"
 #include "datasets/glassroom/glassroom.h"
 #include "datasets/packed_scene.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
+#include "reports/verbs/dataset_compare.h"
 #include "reports/verbs/dataset_export.h"
 #include "reports/verbs/dataset_import.h"
 #include "reports/verbs/dataset_manifest.h"
@@ -23,6 +25,7 @@ struct MakeOptions {
   std::string dataset;
   std::vector<std::string> scenes{"room_1"};
   GlassRoomOptions room;
+  std::string write_scene;  // folder; empty: the scene is rendered
 };
 
 fs::path folder_for(
@@ -31,6 +34,21 @@ fs::path folder_for(
   if (out_given) return single ? fs::path(common.out) : fs::path(common.out) / room.scene;
   return fs::path(common.data) / "glassroom" /
          fmt::format("{}-{}", room.scene, glassroom_hash(room).substr(0, 8));
+}
+
+// The scenes for other renderers, in place of our pictures of them.
+int write_scenes(const CommonOptions& common, MakeOptions& options) {
+  Json written = Json::array();
+  for (const std::string& scene : options.scenes) {
+    options.room.scene = scene;
+    const fs::path root = options.write_scene;
+    const fs::path folder = options.scenes.size() == 1 ? root : root / scene;
+    write_exchange_scene(glassroom_for_exchange(options.room), folder);
+    written.push_back({{"scene", scene}, {"folder", folder.string()}});
+    if (!common.json) print_text(fmt::format("{} written\n", folder.string()));
+  }
+  if (common.json) print_json({{"scenes", written}});
+  return 0;
 }
 
 int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
@@ -42,6 +60,7 @@ int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
   );
   install_interrupt_handler();
   options.room.seed = common.seed.value_or(0);
+  if (!options.write_scene.empty()) return write_scenes(common, options);
   Json made = Json::array();
   for (const std::string& scene : options.scenes) {
     options.room.scene = scene;
@@ -195,6 +214,12 @@ void add_make(CommandLine& line, CLI::App& dataset) {
           "--priors", room.priors, "how good simulated priors are: " + comma_list(prior_levels())
   )
       ->capture_default_str();
+  make.add_option(
+      "--write-scene",
+      options->write_scene,
+      "folder: no pictures, but meshes, materials and cameras for other renderers "
+      "(docs/DATASETS.md)"
+  );
 }
 
 using FolderAction = int (*)(const CommonOptions&, const FolderOptions&);
@@ -225,6 +250,7 @@ void add_dataset_verb(CommandLine& line) {
   add_folder_verb(line, *dataset, "info", "what a folder holds, as methods will see it", run_info);
   add_folder_verb(line, *dataset, "check", "everything wrong with a folder; exit 4", run_check);
   add_pack(line, *dataset);
+  add_dataset_compare(line, *dataset);
   add_dataset_export(line, *dataset);
   add_dataset_import(line, *dataset);
 }
