@@ -2,12 +2,17 @@
 """Materials of an exchange scene as nodes of Cycles, so that they scatter as ours do (datasets/glassroom/bsdf.h).
 
 diffuse          Lambert, and emission where there is any, on both sides
-conductor        GGX, F0 = albedo, with what single scattering loses given back: Principled, metallic
-plastic          dielectric GGX coat: Principled with a black base; below it Lambert, weighted by 1 - E(o), the coat's own
-                 albedo. Ours has the factor (1 - E(i)) / (1 - E_mean) besides, whose mean over diffuse light is 1
+conductor        GGX, F0 = albedo, with what single scattering loses given back: Principled, metallic, "Multiscatter GGX"
+plastic          dielectric GGX coat, scattered once: Principled with a black base; below it Lambert, weighted by 1 - E(o),
+                 the coat's own albedo. Ours has the factor (1 - E(i)) / (1 - E_mean) besides, whose mean over diffuse
+                 light is 1
 thin dielectric  straight on or mirrored, by the reflectance of a thin slab; shadow rays go straight on
 """
 import bpy
+
+# Blender 3 bends a metal's reflectance from F0 to 1 as that of a dielectric, not by Schlick's fifth power. With this
+# index the mean over diffuse light is Schlick's, 1/21 of the way.
+SCHLICK_IOR = 1.35
 
 
 class Nodes:
@@ -78,6 +83,7 @@ def albedo_color(nodes, spec, folder):
     node = nodes.nodes.new("ShaderNodeTexImage")
     node.image = bpy.data.images.load(str(folder / spec["texture"]), check_existing=True)
     node.image.colorspace_settings.name = "Non-Color"  # linear already
+    node.image.use_half_precision = False
     node.interpolation, node.extension = "Linear", "REPEAT"
     return nodes.scaled(node.outputs["Color"], spec["albedo"])
 
@@ -86,10 +92,9 @@ def diffuse(nodes, color):
     return nodes.add("ShaderNodeBsdfDiffuse", Color=color, Roughness=0).outputs[0]
 
 
-def principled(nodes, spec, **inputs):
+def principled(nodes, spec, distribution, ior, **inputs):
     node = nodes.add("ShaderNodeBsdfPrincipled", Roughness=spec["roughness"], **inputs)
-    node.distribution = "MULTI_GGX"
-    ior = spec.get("ior", 1.5)
+    node.distribution = distribution
     if "Specular IOR Level" in node.inputs:  # Blender 4
         node.inputs["IOR"].default_value = ior
     else:
@@ -98,7 +103,7 @@ def principled(nodes, spec, **inputs):
 
 
 def conductor(nodes, spec, color):
-    return principled(nodes, spec, Base_Color=color, Metallic=1)
+    return principled(nodes, spec, "MULTI_GGX", SCHLICK_IOR, Base_Color=color, Metallic=1)
 
 
 def base_share(nodes, coat_albedo):
@@ -116,7 +121,8 @@ def base_share(nodes, coat_albedo):
 
 def plastic(nodes, spec, color):
     base = diffuse(nodes, nodes.scaled(color, base_share(nodes, spec["coat_albedo"])))
-    return nodes.sum(principled(nodes, spec, Base_Color=rgba((0, 0, 0))), base)
+    coat = principled(nodes, spec, "GGX", spec["ior"], Base_Color=rgba((0, 0, 0)))
+    return nodes.sum(coat, base)
 
 
 def slab_reflectance(nodes, ior):
