@@ -2,9 +2,12 @@
 #include <memory>
 
 #include "datasets/dataset.h"
+#include "datasets/exchange/exchange_scene.h"
+#include "datasets/glassroom/glassroom.h"
 #include "datasets/packed_scene.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
+#include "reports/verbs/dataset_compare.h"
 #include "reports/verbs/dataset_export.h"
 #include "reports/verbs/dataset_front3d.h"
 #include "reports/verbs/dataset_import.h"
@@ -24,6 +27,7 @@ struct MakeOptions {
   std::vector<std::string> scenes{"room_1"};
   GlassRoomOptions room;
   Front3dOptions front3d;
+  std::string write_scene;  // folder; empty: the scene is rendered
 };
 
 fs::path folder_for(
@@ -45,6 +49,27 @@ MadeScene make_scene_of(
   return {scene, folder, make_glassroom(options.room, folder, false)};
 }
 
+// The scenes for other renderers, in place of our pictures of them.
+int write_scenes(const CommonOptions& common, MakeOptions& options) {
+  GLINT_CHECK(
+      options.dataset == "glassroom",
+      kUsage,
+      "dataset make: --write-scene writes rooms of glassroom, not of {}",
+      options.dataset
+  );
+  Json written = Json::array();
+  for (const std::string& scene : options.scenes) {
+    options.room.scene = scene;
+    const fs::path root = options.write_scene;
+    const fs::path folder = options.scenes.size() == 1 ? root : root / scene;
+    write_exchange_scene(glassroom_for_exchange(options.room), folder);
+    written.push_back({{"scene", scene}, {"folder", folder.string()}});
+    if (!common.json) print_text(fmt::format("{} written\n", folder.string()));
+  }
+  if (common.json) print_json({{"scenes", written}});
+  return 0;
+}
+
 int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
   GLINT_CHECK(
       options.dataset == "glassroom" || options.dataset == "front3d",
@@ -54,6 +79,7 @@ int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
   );
   install_interrupt_handler();
   options.room.seed = common.seed.value_or(0);
+  if (!options.write_scene.empty()) return write_scenes(common, options);
   if (options.dataset == "front3d") options.scenes.resize(1);
   Json made = Json::array();
   for (const std::string& name : options.scenes) {
@@ -208,6 +234,12 @@ void add_make(CommandLine& line, CLI::App& dataset) {
   )
       ->capture_default_str();
   add_front3d_options(make, options->front3d);
+  make.add_option(
+      "--write-scene",
+      options->write_scene,
+      "folder: no pictures, but meshes, materials and cameras for other renderers "
+      "(docs/DATASETS.md)"
+  );
 }
 
 using FolderAction = int (*)(const CommonOptions&, const FolderOptions&);
@@ -238,6 +270,7 @@ void add_dataset_verb(CommandLine& line) {
   add_folder_verb(line, *dataset, "info", "what a folder holds, as methods will see it", run_info);
   add_folder_verb(line, *dataset, "check", "everything wrong with a folder; exit 4", run_check);
   add_pack(line, *dataset);
+  add_dataset_compare(line, *dataset);
   add_dataset_export(line, *dataset);
   add_dataset_import(line, *dataset);
 }

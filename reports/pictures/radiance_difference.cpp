@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "reports/pictures/radiance_difference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "glint/core/error.h"
+#include "glint/core/vec.h"
+#include "glint/scene/image_files.h"
+
+namespace glint {
+
+namespace {
+
+constexpr int kBlock = 8;   // pixels
+constexpr int kRadius = 2;  // of the means in the picture
+constexpr int kGap = 4;     // pixels between panels
+
+double channel_sum(ImageView image, int x, int y) {
+  const float* rgb = image.pixel(x, y);
+  return static_cast<double>(rgb[0]) + static_cast<double>(rgb[1]) + static_cast<double>(rgb[2]);
+}
+
+// Over a rectangle that is cut off at the border.
+double mean_around(ImageView image, int left, int top, int size) {
+  double sum = 0;
+  int count = 0;
+  for (int y = std::max(top, 0); y < std::min(top + size, image.height); ++y)
+    for (int x = std::max(left, 0); x < std::min(left + size, image.width); ++x, ++count)
+      sum += channel_sum(image, x, y);
+  return sum / std::max(count, 1);
+}
+
+void add_blocks(ImageView first, ImageView second, RadianceDifference& difference) {
+  for (int y = 0; y + kBlock <= first.height; y += kBlock)
+    for (int x = 0; x + kBlock <= first.width; x += kBlock) {
+      const double a = mean_around(first, x, y, kBlock), b = mean_around(second, x, y, kBlock);
+      if (a <= 0) continue;
+      difference.block_squares += (b / a - 1) * (b / a - 1);
+      ++difference.blocks;
+    }
+}
+
+Image displayed(ImageView radiance) {
+  Image image(radiance.width, radiance.height, 3);
+  for (std::size_t i = 0; i < image.values().size(); ++i)
+    image.values()[i] = std::clamp(srgb_encode(radiance.data[i]), 0.0f, 1.0f);
+  return image;
+}
+
+// White at 0, blue down to -range, red up to range.
+Image colorize_signed(ImageView map, float range) {
+  constexpr Vec3f kBelow{0.02f, 0.19f, 0.38f}, kWhite{1, 1, 1}, kAbove{0.4f, 0, 0.12f};
+  Image image(map.width, map.height, 3);
+  for (std::size_t i = 0; i < map.num_pixels(); ++i) {
+    const float t = std::clamp(map.data[i] / range, -1.0f, 1.0f), share = std::abs(t);
+    const Vec3f color = (1 - share) * kWhite + share * (t < 0 ? kBelow : kAbove);
+    for (int c = 0; c < 3; ++c) image.values()[3 * i + static_cast<std::size_t>(c)] = color[c];
+  }
+  return image;
+}
+
+void place(Image& page, const Image& panel, int left, int top) {
+  for (int y = 0; y < panel.height(); ++y)
+    std::copy_n(panel.pixel(0, y), 3 * panel.width(), page.pixel(left, top + y));
+}
+
+Image below_each_other(const std::vector<Image>& pictures) {
+  int width = 0, height = -kGap;
+  for (const Image& picture : pictures) {
+    width = std::max(width, picture.width());
+    height += picture.height() + kGap;
+  }
+  Image page(width, height, 3, 1.0f);
+  int top = 0;
+  for (const Image& picture : pictures) {
+    place(page, picture, 0, top);
+    top += picture.height() + kGap;
+  }
+  return page;
+}
+
+std::vector<bool> glass_of(const fs::path& folder, const std::string& view, ImageSize size) {
+  const fs::path file = folder / "gt" / "glass" / (view + ".png");
+  std::error_code code;
+  if (!fs::exists(file, code)) return {};
+  const MaskImage mask = read_mask(file);
+  GLINT_CHECK(
+      mask.size() == size,
+      kBadReference,
+      "{}: {} x {} pixels, but the view has {} x {}",
+      file.string(),
+      mask.width(),
+      mask.height(),
+      size.width,
+      size.height
+  );
+  return {mask.values().begin(), mask.values().end()};
+}
+
+std::vector<std::string> common_views(const fs::path& first, const fs::path& second) {
+  const fs::path radiance = fs::path("gt") / "rgb";
+  std::vector<std::string> names;
+  std::error_code code;
+  for (const fs::path& file : list_files(first / radiance, {".exr"}))
+    if (fs::exists(second / radiance / file.filename(), code)) names.push_back(file.stem());
+  GLINT_CHECK(
+      !names.empty(),
+      kBadReference,
+      "{}: none of its gt/rgb/<view>.exr is in {}, too; expected two renderings of one scene",
+      first.string(),
+      second.string()
+  );
+  return names;
+}
+
+}  // namespace
+
+RadianceSums& RadianceSums::operator+=(const RadianceSums& other) {
+  first += other.first;
+  second += other.second;
+  pixels += other.pixels;
+  return *this;
+}
+
+std::optional<double> RadianceSums::ratio() const {
+  if (first <= 0) return std::nullopt;
+  return second / first;
+}
+
+RadianceDifference& RadianceDifference::operator+=(const RadianceDifference& other) {
+  opaque += other.opaque;
+  glass += other.glass;
+  block_squares += other.block_squares;
+  blocks += other.blocks;
+  return *this;
+}
+
+RadianceSums RadianceDifference::all() const {
+  RadianceSums sums = opaque;
+  return sums += glass;
+}
+
+std::optional<double> RadianceDifference::block_rms() const {
+  if (blocks == 0) return std::nullopt;
+  return std::sqrt(block_squares / static_cast<double>(blocks));
+}
+
+RadianceDifference radiance_difference(
+    ImageView first, ImageView second, const std::vector<bool>& glass
+) {
+  RadianceDifference difference;
+  for (int y = 0; y < first.height; ++y)
+    for (int x = 0; x < first.width; ++x) {
+      const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(first.width) +
+                     static_cast<std::size_t>(x);
+      RadianceSums& region = !glass.empty() && glass[i] ? difference.glass : difference.opaque;
+      region += {channel_sum(first, x, y), channel_sum(second, x, y), 1};
+    }
+  add_blocks(first, second, difference);
+  return difference;
+}
+
+Image difference_picture(ImageView first, ImageView second, float range) {
+  constexpr int kSize = 2 * kRadius + 1;
+  Image relative(first.width, first.height, 1);
+  for (int y = 0; y < first.height; ++y)
+    for (int x = 0; x < first.width; ++x) {
+      const double a = mean_around(first, x - kRadius, y - kRadius, kSize);
+      const double b = mean_around(second, x - kRadius, y - kRadius, kSize);
+      relative.at(x, y) = a > 0 ? static_cast<float>(b / a - 1) : b > 0 ? range : 0.0f;
+    }
+  Image page(3 * first.width + 2 * kGap, first.height, 3, 1.0f);
+  place(page, displayed(first), 0, 0);
+  place(page, displayed(second), first.width + kGap, 0);
+  place(page, colorize_signed(relative, range), 2 * (first.width + kGap), 0);
+  return page;
+}
+
+std::vector<ComparedView> compare_renderings(
+    const fs::path& first, const fs::path& second, const fs::path& picture, float range
+) {
+  std::vector<ComparedView> compared;
+  std::vector<Image> pictures;
+  for (const std::string& view : common_views(first, second)) {
+    const fs::path file = fs::path("gt") / "rgb" / (view + ".exr");
+    const Image a = read_image(first / file, 3), b = read_image(second / file, 3);
+    GLINT_CHECK(
+        a.size() == b.size(),
+        kBadReference,
+        "{}: {} x {} pixels, but {} has {} x {}; render both at one size",
+        (second / file).string(),
+        b.width(),
+        b.height(),
+        (first / file).string(),
+        a.width(),
+        a.height()
+    );
+    compared.push_back({view, radiance_difference(a, b, glass_of(first, view, a.size()))});
+    if (!picture.empty()) pictures.push_back(difference_picture(a, b, range));
+  }
+  if (!picture.empty()) write_png(picture, below_each_other(pictures));
+  return compared;
+}
+
+}  // namespace glint
