@@ -12,8 +12,9 @@ struct StageSources {
   std::vector<std::string> patterns;  // globs below the project's folder; what they include counts
 };
 
-// "make" (GlassRooms; "front3d": rooms of 3D-FRONT) and "load" of data, "cuda" (what a GPU adds to training and rendering), "render", "mesh",
-// "score". Besides, each file that registers a method or a loader is an entry under its own name.
+// "make" (GlassRooms; "front3d": rooms of 3D-FRONT) and "load" of data, "cuda" (what a GPU adds to
+// training and rendering), "render", "mesh", "score". Besides, each file that registers a method or
+// a loader is an entry under its own name.
 const std::vector<StageSources>& stage_sources();
 
 }  // namespace glint
