@@ -86,7 +86,14 @@ ResultsInfo read_results_info(const fs::path& file) {
   return info;
 }
 
-std::string results_part(const ResultsInfo& info, const std::vector<Record>& records) {
+std::string results_part(const ResultsInfo& info, std::vector<Record> records) {
+  const auto is_left_out = [&](const Record& record) {
+    return !info.cells.empty() &&
+           std::none_of(info.cells.begin(), info.cells.end(), [&](const std::string& glob) {
+             return glob_match(glob, record.cell.text());
+           });
+  };
+  std::erase_if(records, is_left_out);
   std::string text = info.title.empty() ? "" : fmt::format("# {}\n\n", info.title);
   text += facts(info, records);
   const auto is_shown = [&](const std::string& id) {
@@ -96,7 +103,7 @@ std::string results_part(const ResultsInfo& info, const std::vector<Record>& rec
   for (const TableDefinition& definition : table_definitions()) {
     if (!is_shown(definition.id)) continue;
     Table table = build_table(definition, records);
-    if (!info.title.empty()) table = of_other_data(table);
+    if (info.other_data) table = of_other_data(table);
     if (has_measurement(table)) text += fmt::format("\n{}", table_markdown(table));
   }
   return text;
@@ -107,7 +114,7 @@ std::string results_markdown(const fs::path& root) {
       "# Results\n\n"
       "Written by `glint-bench results` from the records named below; a test fails when the two "
       "differ.\n\n";
-  for (const char* name : {"results.json", "captures.json"}) {
+  for (const char* name : {"results.json", "five_rooms.json", "captures.json"}) {
     const fs::path file = root / "docs/results" / name;
     if (!fs::exists(file)) continue;
     const ResultsInfo info = read_results_info(file);

@@ -10,20 +10,24 @@
 
 namespace glint {
 
-// What the page says of some records besides their tables: docs/results/results.json (our rooms)
-// and captures.json.
+// What the page says of some records besides their tables: docs/results/results.json (our rooms),
+// five_rooms.json and captures.json.
 struct ResultsInfo {
   std::string records;              // "docs/results/small.jsonl"
   std::string command;              // that made them
   std::string remarks;              // what a reader has to know: what did not run, what was busy
-  std::string title;                // of their part of the page, on other data; empty: the first
+  std::string title;                // of their part of the page; empty: the first
   std::vector<std::string> tables;  // ids; empty: all in which something is measured
+  std::vector<std::string> cells;   // globs of scene/method/seed; empty: all
+  bool other_data = false;          // not our rooms: without published columns, captions and notes
   template <class V>
   void visit(V&& v) {
     v("records", records, "file of the records");
     v("command", command, "that made them");
     v("remarks", remarks, "what a reader has to know");
     v("title", title, "of their part of the page");
+    v("cells", cells, "globs of the scene/method/seed shown");
+    v("other_data", other_data, "true: not our rooms");
     v("tables", tables, "ids of the tables shown");
   }
 };
@@ -32,7 +36,7 @@ struct ResultsInfo {
 ResultsInfo read_results_info(const fs::path& file);
 
 // A part of docs/RESULTS.md: command, scenes, resolution, revisions, dates, machine, tables.
-std::string results_part(const ResultsInfo& info, const std::vector<Record>& records);
+std::string results_part(const ResultsInfo& info, std::vector<Record> records);
 // The whole page of a project's folder, from docs/results/. Errors (kBadPrediction): no records.
 std::string results_markdown(const fs::path& root);
 

@@ -47,4 +47,15 @@ TEST_CASE("A part of the page may have a title and some tables alone") {
   CHECK(part.starts_with("# Captures\n\n- Command"));
   CHECK_THAT(part, Catch::Contains("## Summary"));
   CHECK_THAT(part, !Catch::Contains("## Photometric evaluation"));
+  CHECK_THAT(part, Catch::Contains("Mean over test views"));
+  Record second = record;
+  second.cell.seed = 1;
+  second.metrics = {{"psnr", 40.0}};
+  ResultsInfo first = info;
+  first.cells = {"room_*/glint/0"};
+  CHECK(results_part(first, {record, second}) == part);
+  CHECK(results_part(info, {record, second}) != part);
+  ResultsInfo other = info;
+  other.other_data = true;
+  CHECK_THAT(results_part(other, {record}), !Catch::Contains("Mean over test views"));
 }
