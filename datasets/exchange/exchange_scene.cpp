@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/exchange/exchange_scene.h"
 
-#include <iterator>
-
 #include "datasets/exchange/exchange_mesh.h"
 #include "datasets/glassroom/bsdf.h"
 #include "datasets/glassroom/validate_scene.h"
