@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/exchange/exchange_scene.h"
 #include "datasets/glassroom/glassroom_scene.h"
+#include "datasets/glassroom/make_scene.h"
 #include "datasets/glassroom/write_scene.h"
 #include "glint/core/rng.h"
 
@@ -14,7 +15,9 @@ ExchangeScene room_for_exchange(const GlassRoomOptions& options) {
   const float exposure = fit_exposure(*room, options.seed + hash_name(options.scene));
   std::vector<ExchangeView> views;
   for (std::size_t i = 0; i < room->cameras.size(); ++i)
-    views.push_back({view_name(static_cast<int>(i)), room->cameras[i], i % 8 == 0});
+    views.push_back(
+        {view_name(static_cast<int>(i)), room->cameras[i], is_test_view(static_cast<int>(i))}
+    );
   const Json origin{
       {"dataset", "glassroom"},
       {"hash", glassroom_hash(options)},

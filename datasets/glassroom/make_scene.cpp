@@ -27,7 +27,6 @@ constexpr int kTestEvery = 8;
 constexpr int kTestSampleFactor = 4;
 constexpr int kSheetColumns = 8, kSheetTileWidth = 240;
 
-bool is_test_view(int view) { return view % kTestEvery == 0; }
 
 // Of a folder whose scene.json is damaged: what is left of it says so, or the key of the data.
 bool was_a_scene(
@@ -281,6 +280,8 @@ class SceneMaker {
 };
 
 }  // namespace
+
+bool is_test_view(int view) { return view % kTestEvery == 0; }
 
 Json vector_json(Vec3f v) { return Json::array({v.x, v.y, v.z}); }
 

@@ -13,6 +13,9 @@
 
 namespace glint {
 
+// Of a made scene: every 8th from the first on.
+bool is_test_view(int view);
+
 struct SceneRecipe {
   std::string name;     // of the scene
   std::string dataset;  // "glassroom": field of scene.json by which a folder is known again
