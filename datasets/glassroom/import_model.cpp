@@ -6,11 +6,14 @@
 
 #include <assimp/DefaultIOSystem.h>
 #include <algorithm>
+#include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <memory>
+#include <set>
 #include <utility>
 
 #include "glint/core/config.h"
@@ -45,19 +48,50 @@ void check_inside(const fs::path& file, const fs::path& folder) {
   );
 }
 
-// A model opens files of its own folder, and no others.
+// An open file that is on a list for as long as it lives.
+class ListedFile : public Assimp::IOStream {
+ public:
+  ListedFile(std::unique_ptr<Assimp::IOStream> file, std::set<ListedFile*>& list)
+      : file_(std::move(file)), list_(list) {
+    list_.insert(this);
+  }
+  ~ListedFile() override { list_.erase(this); }
+  std::size_t Read(void* to, std::size_t size, std::size_t count) override {
+    return file_->Read(to, size, count);
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    return file_->Seek(offset, origin);
+  }
+  std::size_t Tell() const override { return file_->Tell(); }
+  std::size_t FileSize() const override { return file_->FileSize(); }
+  void Flush() override {}
+
+ private:
+  std::unique_ptr<Assimp::IOStream> file_;
+  std::set<ListedFile*>& list_;
+};
+
+// A model opens files of its own folder, and no others. What assimp leaves open when it gives a
+// file up is closed here.
 class FolderFiles : public Assimp::DefaultIOSystem {
  public:
   explicit FolderFiles(fs::path folder) : folder_(std::move(folder)) {}
+  ~FolderFiles() override {
+    while (!open_.empty()) delete *open_.begin();
+  }
   bool Exists(const char* file) const override {
     return is_inside(file, folder_) && DefaultIOSystem::Exists(file);
   }
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    return is_inside(file, folder_) ? DefaultIOSystem::Open(file, mode) : nullptr;
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    if (!is_inside(name, folder_)) return nullptr;
+    std::unique_ptr<Assimp::IOStream> file(DefaultIOSystem::Open(name, mode));
+    return file == nullptr ? nullptr : new ListedFile(std::move(file), open_);
   }
 
  private:
   fs::path folder_;
+  std::set<ListedFile*> open_;
 };
 
 // The JSON of a .gltf, or of a .glb's first chunk: magic, version, length; length, type, bytes.
