@@ -27,7 +27,6 @@ constexpr int kTestEvery = 8;
 constexpr int kTestSampleFactor = 4;
 constexpr int kSheetColumns = 8, kSheetTileWidth = 240;
 
-
 // Of a folder whose scene.json is damaged: what is left of it says so, or the key of the data.
 bool was_a_scene(
     const SceneRecipe& recipe, const fs::path& folder, const std::string& description
