@@ -116,7 +116,7 @@ TEST_CASE("every source of this project that results depend on is behind some ke
       "datasets/check_views.cpp"};         // finds fault with data
   for (const char* folder : {"glint/*", "datasets/*", "baselines/*", "metrics/*"})
     for (const std::string& file : tree.matching(std::string(folder) + ".cpp")) {
-      const bool is_shown = file.starts_with("glint/drawing/");  // pictures for people
+      const bool is_shown = file.starts_with("glint/drawing/");           // pictures for people
       const bool is_for_others = file.starts_with("datasets/exchange/");  // for other renderers
       if (is_shown || is_for_others || file.starts_with("metrics/tools/") ||
           moves_no_number.contains(file))
