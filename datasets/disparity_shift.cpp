@@ -57,9 +57,7 @@ std::vector<std::size_t> nearest_to(
 std::optional<DisparityFit> fit_view(const ViewSource& view, const KnownPoints& points) try {
   const MapRow& row = MapId("depth").row();
   const Image map = read_stored_prior(view, row);
-  const bool stated = view.camera.width > 0 && view.camera.height > 0;
-  const ImageSize picture = stated ? view.camera.size() : read_image_size(view.image);
-  const Camera camera = resized(camera_at(view, picture), map.size());
+  const Camera camera = resized(camera_at(view, picture_size(view)), map.size());
   std::vector<double> disparity, z;
   for (const KnownPixel& pixel : points.seen_by(camera)) {
     const auto value = static_cast<double>(map.at(pixel.x, pixel.y));
@@ -72,12 +70,6 @@ std::optional<DisparityFit> fit_view(const ViewSource& view, const KnownPoints& 
   throw;
 } catch (const Error&) {
   return std::nullopt;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
@@ -108,7 +100,7 @@ void tell_disparity_shifts(SceneIndex& index) {
   std::vector<double> shifts;
   for (const auto& fit : fits)
     if (fit) shifts.push_back(fit->shift);
-  const double otherwise = shifts.empty() ? 0 : median(shifts);
+  const double otherwise = shifts.empty() ? 0 : median_of(shifts);
   for (std::size_t i = 0; i < index.views.size(); ++i)
     index.views[i].prior_reading.disparity_shift =
         static_cast<float>(fits[i] ? fits[i]->shift : otherwise);

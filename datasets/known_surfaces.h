@@ -34,6 +34,12 @@ class KnownPoints {
   std::vector<std::optional<Vec3d>> normals_;  // world, either side; nothing: no plane there
 };
 
+// The upper one of two in the middle; of none 0.
+double median_of(std::vector<double> values);
+
+// As stated with the camera, else as stored.
+ImageSize picture_size(const ViewSource& view);
+
 // Of a grid of about 64 pixels a side. `depth`: true, planar, 0: nothing.
 std::vector<KnownPixel> known_pixels(const Camera& camera, ImageView depth);
 

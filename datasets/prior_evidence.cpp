@@ -19,13 +19,6 @@ namespace {
 constexpr std::size_t kEnoughSamples = 100;
 constexpr std::size_t kMostViews = 8;
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Up to kMostViews views that have the prior, evenly spaced; training views where there are any.
 std::vector<const ViewSource*> sample_views(const SceneIndex& index, const MapRow& row) {
   std::vector<const ViewSource*> views;
@@ -38,11 +31,6 @@ std::vector<const ViewSource*> sample_views(const SceneIndex& index, const MapRo
   std::vector<const ViewSource*> sampled;
   for (std::size_t i = 0; i < count; ++i) sampled.push_back(views[i * views.size() / count]);
   return sampled;
-}
-
-ImageSize picture_size(const ViewSource& view) {
-  const bool stated = view.camera.width > 0 && view.camera.height > 0;
-  return stated ? view.camera.size() : read_image(view.image, 3).size();
 }
 
 // A prior as stored, and what is known of the surfaces at its pixels.
@@ -119,7 +107,7 @@ std::optional<NormalEvidence> PriorScale::weigh_normals() {
     const double sum = std::accumulate(cosines[i].begin(), cosines[i].end(), 0.0);
     evidence.mean_cosine[i] = sum / static_cast<double>(cosines[i].size());
     evidence.median_angle_deg[i] =
-        std::acos(std::clamp(median(cosines[i]), -1.0, 1.0)) * 180 / std::numbers::pi;
+        std::acos(std::clamp(median_of(cosines[i]), -1.0, 1.0)) * 180 / std::numbers::pi;
   }
   return evidence;
 }
