@@ -229,9 +229,21 @@ bool holds_work(const fs::path& folder) {
          (is_finished(folder) || fs::exists(folder / kCheckpointFile));
 }
 
-void check_run_folder(const fs::path& folder) {
+namespace {
+
+// What a process left that was killed while it wrote is nobody's work.
+bool holds_files(const fs::path& folder) {
   std::error_code code;
-  const bool used = fs::exists(folder, code) && !fs::is_empty(folder, code);
+  const std::vector<fs::path> left = list_left_behind(folder, false);
+  for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code))
+    if (!std::binary_search(left.begin(), left.end(), it->path())) return true;
+  return false;
+}
+
+}  // namespace
+
+void check_run_folder(const fs::path& folder) {
+  const bool used = holds_files(folder);
   GLINT_CHECK(
       !used || is_our_run(folder) || is_our_run(folder / kPreviousRun),
       kUsage,

@@ -147,6 +147,17 @@ TEST_CASE("what a killed process left half-written goes with the next stage") {
   CHECK_FALSE(fs::exists(half));
 }
 
+TEST_CASE("a training killed while it wrote its first file begins again") {
+  const Place place;
+  const fs::path half = place.mine / ".config.1-elsewhere.part.json";
+  write_file(half, "half");
+  CHECK(place.train() == 1);  // of another machine, and fresh: somebody may be writing it
+  fs::last_write_time(half, fs::file_time_type::clock::now() - std::chrono::hours(25));
+  CHECK(place.train() == 0);
+  CHECK_FALSE(fs::exists(half));
+  CHECK(fs::exists(place.mine / "interface.ply"));
+}
+
 TEST_CASE("a run that stops after its first steps leaves the one before beside it") {
   const Place place;
   REQUIRE(place.train() == 0);
