@@ -161,7 +161,7 @@ class TwoDgs final : public Method {
   void add_photometric(const View& view, const RasterOutput& out, StepStats& stats) {
     const PhotometricWeights weights{1 - config_.lambda_ssim, config_.lambda_ssim};
     const PhotometricTerms terms =
-        photometric_.evaluate(out.features, view.rgb, weights, gradient_.features);
+        photometric_.evaluate(out.features, view, weights, gradient_.features);
     stats.terms["photometric"] = terms.weighted(weights);
     stats.psnr = terms.psnr();
   }

@@ -169,11 +169,11 @@ class EnvGs final : public Method {
     clear_gradient(view.camera.size(), base_output_->features.channels(), dL_dbase_);
     clear_image(dL_dimage_, view.camera.size(), 3);
     const PhotometricWeights weights{1 - config_.lambda_ssim, config_.lambda_ssim};
-    const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);
+    const PhotometricTerms photo = photometric_.evaluate(image, view, weights, dL_dimage_);
     stats.terms["photometric"] = photo.weighted(weights);
     stats.psnr = photo.psnr();
     add_perceptual(
-        perceptual_.get(), windows_.perceptual, iteration, image, view.rgb, dL_dimage_, stats
+        perceptual_.get(), windows_.perceptual, iteration, image, view, dL_dimage_, stats
     );
     geometry_.add(view, iteration, *base_output_, transport_.buffer().depth, dL_dbase_, stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;

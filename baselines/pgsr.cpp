@@ -32,7 +32,7 @@ class Pgsr final : public Method {
   StepStats step(int iteration) override {
     StepStats stats;
     const View& view = model_.forward(iteration, stats);
-    model_.add_losses(view.rgb, stats);
+    model_.add_losses(view, stats);
     model_.backward(stats);
     return stats;
   }

@@ -142,7 +142,7 @@ class RefGs final : public Method {
     clear_gradient(view.camera.size(), output_->features.channels(), gradient_);
     clear_image(dL_dimage_, view.camera.size(), 3);
     const PhotometricWeights weights{1 - config_.lambda_ssim, config_.lambda_ssim};
-    const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);
+    const PhotometricTerms photo = photometric_.evaluate(image, view, weights, dL_dimage_);
     stats.terms["photometric"] = photo.weighted(weights);
     stats.psnr = photo.psnr();
     expected_depth_map(*output_, depth_);

@@ -152,11 +152,11 @@ class RtSplatting final : public Method {
     stats.iteration = iteration;
     clear_image(dL_dimage_, view.camera.size(), 3);
     const PhotometricWeights weights{1 - config_.lambda_ssim, config_.lambda_ssim};
-    const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);
+    const PhotometricTerms photo = photometric_.evaluate(image, view, weights, dL_dimage_);
     stats.terms["photometric"] = photo.weighted(weights);
     stats.psnr = photo.psnr();
     add_perceptual(
-        perceptual_.get(), windows_.perceptual, iteration, image, view.rgb, dL_dimage_, stats
+        perceptual_.get(), windows_.perceptual, iteration, image, view, dL_dimage_, stats
     );
     clear_gradient(view.camera.size(), kRtChannels, dL_dsurface_);
     if (stage_ != RtStage::kTransmission) {

@@ -155,7 +155,7 @@ class Tsgs final : public Method {
     if (iteration >= windows_.lobes_from && config_.lobes != kNoLobes && !lobes_)
       start_lobes(config_.lobes);
     const View& view = model_.forward(iteration, stats);
-    model_.add_losses(target_of(view, iteration), stats);
+    model_.add_losses({target_of(view, iteration), view.counted}, stats);
     if (windows_.lambda_normal > 0 && iteration < windows_.normal_until &&
         view.priors.has("normal"))
       add_normal_prior(view, iteration, stats);

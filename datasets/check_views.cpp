@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "datasets/check_geometry.h"
+#include "datasets/counted_pixels.h"
 #include "datasets/prior_maps.h"
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
@@ -105,6 +106,18 @@ bool check_map(
          fmt::format("{} values are not finite; store 0 where nothing is known", count)}
     );
   return count == 0;
+}
+
+void check_counted(const fs::path& path, ImageSize image, std::vector<Finding>& findings) {
+  if (is_missing(path)) {
+    findings.push_back({"missing-file", path.string(), "no such file; a mask names it"});
+    return;
+  }
+  try {
+    read_counted(path, image);
+  } catch (const Error& error) {
+    findings.push_back(make_finding("mask-path", path.string(), error.what()));
+  }
 }
 
 // Intrinsics that belong to another size show in the principal point when no size is stated.
@@ -329,6 +342,7 @@ std::vector<Finding> check_view_files(const ViewSource& view) {
   if (check_map("image", view.image, image, image.size(), findings))
     if (const std::string problem = color_range_problem(image); !problem.empty())
       findings.push_back({"color-values", view.image.string(), problem});
+  if (!view.counted.empty() && !image.empty()) check_counted(view.counted, image.size(), findings);
   view.priors.for_each([&](const MapRow& row, const fs::path& path) {
     // Depth comes in one channel or spread over three.
     const int channels = row.kind == MapKind::kDepth ? 0 : row.channels();

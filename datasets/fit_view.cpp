@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/counted_pixels.h"
 #include "datasets/map_resize.h"
 #include "datasets/view_maps.h"
 #include "glint/scene/image_files.h"
@@ -35,9 +36,12 @@ ImageSize target_size(ImageSize stored, const LoadOptions& options) {
 void fit_view(View& view, const LoadOptions& options) {
   const ImageSize size = target_size(view.camera.size(), options);
   if (size == view.camera.size()) return;
+  Image rgb;
+  if (!view.counted.empty()) rgb = resize_counted(view.rgb, view.counted, size);
   for_each_map(view, [&](const std::string&, Image& map, const MapRow& row) {
     if (!map.empty()) map = resize_map(map, row.kind, size);
   });
+  if (!rgb.empty()) view.rgb = std::move(rgb);
   view.camera = resized(view.camera, size);
 }
 

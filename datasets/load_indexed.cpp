@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "datasets/colmap_model.h"
+#include "datasets/counted_pixels.h"
 #include "datasets/map_files.h"
 #include "datasets/prior_evidence.h"
 #include "datasets/prior_files.h"
@@ -88,6 +89,7 @@ View load_view(const ViewSource& source, const LoadOptions& options) {
   if (!source.distortion.empty())
     at_place(source.where, [&] { undistort_view(view, source.distortion); });
   fit_view(view, options);
+  at_place(source.where, [&] { blank_uncounted(view); });
   return view;
 }
 
@@ -138,6 +140,7 @@ void note_data(const SceneIndex& index, const LoadOptions& options, Scene& scene
   std::vector<std::string>& notes = scene.data_notes;
   for (const Finding& remark : index.remarks)
     notes.push_back(fmt::format("{}: {}", remark.where, remark.message));
+  if (std::string note = counted_note(scene); !note.empty()) notes.push_back(std::move(note));
   if (!options.with_priors || index.simulated_priors || index.prior_notes.empty()) return;
   notes.insert(notes.end(), index.prior_notes.begin(), index.prior_notes.end());
   const std::vector<std::string> coverage = prior_coverage(scene);
@@ -217,6 +220,7 @@ std::string hash_of_files(const std::string& camera_text, const std::vector<View
   for (const ViewSource& view : views) {
     std::error_code code;
     text += fmt::format(" {}:{}", view.name, fs::file_size(view.image, code));
+    if (!view.counted.empty()) text += fmt::format("/{}", fs::file_size(view.counted, code));
   }
   return fmt::format("{:016x}", hash_name(text));
 }
@@ -257,6 +261,9 @@ View read_view(const ViewSource& source, const LoadOptions& options) {
   view.name = source.name;
   view.rgb = at_place(source.where, [&] { return read_image(source.image, 3); });
   view.camera = camera_at(source, view.rgb.size());
+  if (!source.counted.empty())
+    view.counted =
+        at_place(source.where, [&] { return read_counted(source.counted, view.rgb.size()); });
   if (options.with_priors) view.priors = read_priors(source, view.camera);
   if (options.with_truth) view.truth = read_truth(source, view.rgb.size());
   return view;
@@ -357,7 +364,10 @@ void refuse_outside(const fs::path& folder, SceneIndex& index) {
          )}
     );
   };
-  for (const ViewSource& view : index.views) refuse(view.image, view.where);
+  for (const ViewSource& view : index.views) {
+    refuse(view.image, view.where);
+    if (!view.counted.empty()) refuse(view.counted, view.where);
+  }
   if (!index.points.empty()) refuse(index.points, folder.string());
 }
 

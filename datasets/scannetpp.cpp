@@ -3,6 +3,8 @@
 //   dslr/nerfstudio/transforms_undistorted.json   intrinsics, `frames`, `test_frames`; file_path is
 //                                                 the picture's bare name
 //   dslr/resized_undistorted_images/ (of the release) or dslr/undistorted_images/ (of the toolkit)
+//   dslr/resized_undistorted_masks/, ...          masks beside those, of pixels that count (white):
+//                                                 faces and the like are made unrecognisable
 //   dslr/colmap/{images,points3D}.txt             poses and points in the frame of the laser scan
 // The toolkit lists test frames among `frames`, too: what `test_frames` has is no training view.
 // Poses of the JSON have other world axes than the points, so COLMAP's are taken where they are
@@ -22,6 +24,9 @@ namespace {
 constexpr const char* kCameras = "dslr/nerfstudio/transforms_undistorted.json";
 constexpr const char* kFisheye = "dslr/nerfstudio/transforms.json";
 constexpr const char* kModel = "dslr/colmap";
+constexpr const char* kNoMasks =
+    "names masks (mask_path), but there is no folder of masks beside that of pictures: all pixels "
+    "count";
 
 LoaderMatch match(const fs::path& folder) {
   std::error_code code;
@@ -58,14 +63,33 @@ std::set<std::string> test_names(const Json& json) {
   return names;
 }
 
+// Beside the pictures, "../NAME/"; empty: there is none.
+std::string mask_folder(const fs::path& pictures) {
+  std::error_code code;
+  std::string name = pictures.filename().string();
+  name.replace(name.find("images"), 6, "masks");
+  return fs::is_directory(pictures.parent_path() / name, code) ? "../" + name + "/" : "";
+}
+
+// mask_path, a bare name, from the file's folder on; without masks there is none.
+void place_mask(const std::string& masks, Json& frame) {
+  if (!frame.is_object() || !frame.contains("mask_path")) return;
+  if (masks.empty())
+    frame.erase("mask_path");
+  else if (frame["mask_path"].is_string())
+    frame["mask_path"] = masks + frame["mask_path"].get<std::string>();
+}
+
 // `frames` of all views, once each, with paths from the file's folder on.
 Json all_frames(const Json& json, const fs::path& pictures) {
   Json all = json;
   all["frames"] = Json::array();
   const std::set<std::string> test = test_names(json);
   const std::string prefix = "../" + pictures.filename().string() + "/";
+  const std::string masks = mask_folder(pictures);
   const auto add = [&](Json frame) {
     if (const std::string name = name_of(frame); !name.empty()) frame["file_path"] = prefix + name;
+    place_mask(masks, frame);
     all["frames"].push_back(std::move(frame));
   };
   for (const Json& frame : json["frames"])
@@ -136,6 +160,8 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   index.name = folder_name(folder);
   index.dataset = "scannetpp";
   read_frames(all_frames(json, pictures), file, index);
+  if (mask_folder(pictures).empty() && file_contains(file, "\"mask_path\""))
+    index.remarks.push_back({"mask-path", kCameras, kNoMasks});
   drop_hidden(test, index);
   sort_naturally(index.views);
   if (take_colmap_poses(folder, index)) index.points = find_colmap_points(folder / kModel);

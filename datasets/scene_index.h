@@ -22,7 +22,8 @@ struct ViewSource {
   std::string name;
   std::string where;  // the camera's place in its file, for messages
   fs::path image;
-  Camera camera;  // as stated; width and height 0 where not stated
+  fs::path counted;  // mask of the pixels that count (white); empty: all do
+  Camera camera;     // as stated; width and height 0 where not stated
   bool scales_with_image =
       false;  // intrinsics follow the image when its size is not the stated one
   std::vector<double> distortion;  // OpenCV's order k1 k2 p1 p2 k3; empty: none

@@ -13,6 +13,7 @@ namespace {
 void find_side_maps(const fs::path& folder, ViewSource& view) {
   const auto find = [&](MapFiles& files, const MapRow& row, const fs::path& file) {
     std::error_code code;
+    if (!file.empty() && folder / file == view.counted) return;  // masks/ of what counts
     if (file.empty() || !fs::is_directory((folder / file).parent_path(), code)) return;
     files[row] = folder / file;
     for (const char* extension : {".exr", ".npy"})

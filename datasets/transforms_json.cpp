@@ -183,6 +183,8 @@ ViewSource make_view(const FrameReader& reader, const fs::path& folder) {
   read_intrinsics(reader, view.image, view.camera);
   read_pose(reader, view.camera);
   view.distortion = read_distortion(reader);
+  if (reader.frame.contains("mask_path"))
+    view.counted = (folder / reader.text("mask_path")).lexically_normal();
   return view;
 }
 
@@ -209,20 +211,16 @@ Json parse_transforms(const fs::path& path) {
 }
 
 void read_frames(const Json& json, const fs::path& file, SceneIndex& index) {
-  std::size_t i = 0, masked = 0;
+  std::size_t i = 0;
   for (const Json& frame : json["frames"]) {
     const std::string where = fmt::format("{}: frame {}", file.string(), i++);
     try {
       GLINT_CHECK(frame.is_object(), kBadReference, "{}: expected an object", where);
       index.views.push_back(make_view({json, frame, where}, file.parent_path()));
-      if (frame.contains("mask_path")) ++masked;
     } catch (const Error& error) {
       index.problems.push_back(make_finding("camera-field", where, error.what()));
     }
   }
-  if (masked == 0) return;
-  const std::string message = fmt::format("of {} frames, is not read: all pixels count", masked);
-  index.remarks.push_back({"mask-path", file.string() + ": mask_path", message});
 }
 
 }  // namespace glint

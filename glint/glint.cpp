@@ -83,11 +83,11 @@ class Glint final : public Method {
     phase_.step.reset();
     clear_gradients(view.camera.size());
     const PhotometricWeights weights{config_.l1_weight, config_.ssim_weight};
-    const PhotometricTerms photo = photometric_.evaluate(image, view.rgb, weights, dL_dimage_);
+    const PhotometricTerms photo = photometric_.evaluate(image, view, weights, dL_dimage_);
     stats.terms["photometric"] = photo.weighted(weights);
     stats.psnr = photo.psnr();
     add_perceptual(
-        perceptual_.get(), windows_.perceptual, iteration, image, view.rgb, dL_dimage_, stats
+        perceptual_.get(), windows_.perceptual, iteration, image, view, dL_dimage_, stats
     );
     add_map_losses(view, iteration, weights, stats);
     float dL_dalpha = 0;

@@ -33,6 +33,22 @@ MaskImage select_pixels(MaskView glass, bool value) {
   return result;
 }
 
+// Empty masks: all pixels.
+MaskImage counted_part(MaskImage mask, MaskView counted) {
+  if (counted.empty()) return mask;
+  MaskImage part(counted.width, counted.height, 1);
+  for (int y = 0; y < counted.height; ++y)
+    for (int x = 0; x < counted.width; ++x)
+      part.at(x, y) = counts(mask, x, y) && counts(counted, x, y) ? 255 : 0;
+  return part;
+}
+
+// Empty: glass is not known, or all pixels count.
+MaskImage counted_glass(const ViewPair& pair) {
+  if (pair.glass.empty() || pair.counted.empty()) return {};
+  return counted_part(glass_region(pair.glass), pair.counted);
+}
+
 std::string keyed(const std::string& id, const Region& region) {
   return region.name.empty() ? id : id + "@" + region.name;
 }
@@ -49,11 +65,12 @@ MaskImage glass_border_region(MaskView glass, int radius_px) {
   return border;
 }
 
-std::vector<Region> evaluation_regions(MaskView glass) {
+std::vector<Region> evaluation_regions(MaskView glass, MaskView counted) {
   std::vector<Region> regions;
-  regions.push_back({"", {}});
+  regions.push_back({"", counted_part({}, counted)});
   if (glass.empty()) return regions;
   const auto add = [&](const char* name, MaskImage mask) {
+    mask = counted_part(std::move(mask), counted);
     const auto values = mask.values();
     if (std::any_of(values.begin(), values.end(), [](unsigned char v) { return v != 0; }))
       regions.push_back({name, std::move(mask)});
@@ -62,6 +79,13 @@ std::vector<Region> evaluation_regions(MaskView glass) {
   add("glass-border", glass_border_region(glass));
   add("opaque", opaque_region(glass));
   return regions;
+}
+
+void take_reference_where_uncounted(MaskView counted, ImageView reference, Image& prediction) {
+  for (int y = 0; y < counted.height; ++y)
+    for (int x = 0; x < counted.width; ++x)
+      if (counted.at(x, y) == 0)
+        std::copy_n(reference.pixel(x, y), reference.channels, prediction.pixel(x, y));
 }
 
 const std::vector<MetricFamily>& metric_families() {
@@ -85,9 +109,12 @@ const Metric* find_metric(const std::string& id) {
 
 std::map<std::string, double> evaluate_view(const ViewPair& pair) {
   std::map<std::string, double> scores;
-  const std::vector<Region> regions = evaluation_regions(pair.glass);
+  const std::vector<Region> regions = evaluation_regions(pair.glass, pair.counted);
+  const MaskImage glass = counted_glass(pair);
+  ViewPair counted_pair = pair;
+  if (!glass.empty()) counted_pair.glass = glass;
   for (const MetricFamily& family : metric_families()) {
-    const std::vector<MetricValues> values = family.evaluate(pair, regions);
+    const std::vector<MetricValues> values = family.evaluate(counted_pair, regions);
     for (std::size_t r = 0; r < values.size(); ++r)
       for (std::size_t m = 0; m < values[r].size(); ++m)
         if (values[r][m]) scores[keyed(family.metrics[m].id, regions[r])] = *values[r][m];

@@ -33,14 +33,18 @@ struct Region {
   MaskImage mask;    // empty: the whole image
 };
 // The whole image, then the three above that have a pixel; without a glass mask the whole image
-// alone.
-std::vector<Region> evaluation_regions(MaskView glass);
+// alone. Of each the pixels that count, where not all do.
+std::vector<Region> evaluation_regions(MaskView glass, MaskView counted = {});
+
+// Where a pixel does not count, the prediction is right: metrics with windows look at it.
+void take_reference_where_uncounted(MaskView counted, ImageView reference, Image& prediction);
 
 // What a method rendered and what is true, all of one size.
 struct ViewPair {
   MapViews rendered;  // rgb is not clamped; depth and normal: 0 or not finite where nothing is
   MapViews truth;     // "rgb" is the view's image
   MaskView glass;     // non-zero: the first surface is glass; empty: not known
+  MaskView counted;   // non-zero: the pixel counts; empty: all do
 
   // The rendered map, or `instead` of a method that renders none.
   ImageView rendered_or(MapId map, MapId instead) const {

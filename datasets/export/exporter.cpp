@@ -127,6 +127,17 @@ void add_scene_notes(const ExportInput& input, ExportReport& report) {
     );
 }
 
+void note_counted(const ExportInput& input, ExportReport& report) {
+  const bool any = std::any_of(input.views.begin(), input.views.end(), [](const ExportView& view) {
+    return !view.view->counted.empty();
+  });
+  if (any)
+    report.note(
+        "pixels that do not count are grey; the format has no place for their masks: trainers take "
+        "the grey for the scene"
+    );
+}
+
 }  // namespace
 
 void ExportReport::add(std::string_view files, std::string_view what) {
@@ -165,6 +176,7 @@ ExportReport export_scene(const Scene& scene, const fs::path& to, const ExportOp
   ExportReport report;
   const UnfinishedFolder unfinished(folder);
   exporter.write(input, unfinished.path, report);
+  if (!exporter.has_counted) note_counted(input, report);
   if (!exporter.has_scene_maps) write_side_maps(input, unfinished.path, report);
   write_scene_json(input, exporter, unfinished.path);
   add_scene_notes(input, report);

@@ -16,10 +16,16 @@
 
 namespace glint {
 
+// The kind of View::counted, which is neither rendered nor true nor a prior: no row of maps().
+inline constexpr MapRow kCountedRow{"counted", "Pixels that count", MapKind::kMask};
+
 struct View {
   std::string name;
   Camera camera;
-  Image rgb;      // [H][W][3] as displayed (sRGB-encoded), [0, 1]
+  Image rgb;  // [H][W][3] as displayed (sRGB-encoded), [0, 1]
+  // [H][W][1] 1: the pixel counts; 0: no loss and no score looks at it, and `rgb` is grey there.
+  // Empty: all count.
+  Image counted;
   MapSet priors;  // predictions of other networks, or simulated ones
   MapSet truth;   // both layers of glass; the true image is `rgb`
 };

@@ -38,14 +38,14 @@ PhotometricTerms ExposureLoss::evaluate(
     std::size_t view,
     int iteration,
     const Image& rendered,
-    const Image& target,
+    const Photo& photo,
     PhotometricWeights weights,
     Image& gradient
 ) {
   if (exposures_.empty() || iteration < config_.from)
-    return photometric_.evaluate(rendered, target, weights, gradient);
+    return photometric_.evaluate(rendered, photo, weights, gradient);
   PhotometricTerms terms =
-      photometric_.evaluate(rendered, target, {0, weights.ssim}, gradient, &ssim_sum_);
+      photometric_.evaluate(rendered, photo, {0, weights.ssim}, gradient, &ssim_sum_);
   GLINT_CHECK(view < exposures_.size(), kUsage, "exposure: there is no view {}", view);
   ViewExposure* exposure = exposures_.device_for_writing() + view;
   applied_.resize(1);
@@ -65,7 +65,7 @@ PhotometricTerms ExposureLoss::evaluate(
       3 * rendered.num_pixels(), 4096, Expose{rendered.on_device(), applied, exposed_.on_device()}
   );
   clear_image(dL_dexposed_, rendered.size(), 3);
-  terms.l1 = photometric_.evaluate(exposed_, target, {weights.l1, 0}, dL_dexposed_).l1;
+  terms.l1 = photometric_.evaluate(exposed_, photo, {weights.l1, 0}, dL_dexposed_).l1;
   sum_kernel_to(
       rendered.size(),
       ExposeVjp{rendered.on_device(), dL_dexposed_.on_device(), applied, gradient.on_device()},

@@ -39,7 +39,7 @@ class ExposureLoss {
       std::size_t view,
       int iteration,
       const Image& rendered,
-      const Image& target,
+      const Photo& photo,
       PhotometricWeights weights,
       Image& gradient
   );

@@ -109,6 +109,9 @@ struct PixelSample {
   }
 };
 
+// Of a pixel that does not count: what is interpolated from it is negative, too.
+inline constexpr float kNoGray = -1e30f;
+
 // w c of each sampled reference pixel with w > 0 and c < max_dissimilarity: c compares the patch
 // around it with the neighbour's, found by the homography of the pixel's plane n.p = -d,
 // H = K_n (R - t n^T / d) K_r^-1 [Chen24 Eq. 11]: the ray r of a patch pixel is the neighbour's
@@ -151,8 +154,8 @@ struct PatchSimilarityAt {
     dL_dd = -dot(dL_dm, m) / d;
     return {static_cast<double>(w * c), 1.0};
   }
-  // False: a pixel of the patch is not in the neighbour's image. Deviation: published patches see
-  // black beyond it.
+  // False: a pixel of the patch is not in the neighbour's image, or does not count in one of them.
+  // Deviation: published patches see black beyond it.
   GLINT_HD bool compare(int x, int y, Vec3<T> m, PatchSums<T>& sums) const {
     const T center = T(gray.at(x, y));
     for (int j = y - kPatchRadius; j <= y + kPatchRadius; ++j)
@@ -163,6 +166,7 @@ struct PatchSimilarityAt {
         const auto cell = bilinear_cell(neighbor_gray.size(), pair.neighbor.project(there));
         if (!cell.inside) return false;
         const BilinearSample<T> seen = bilinear<T>(neighbor_gray, cell);
+        if (gray.at(i, j) < 0 || seen.value < T(0)) return false;
         Vec3<T> dseen_dthere{};
         pair.neighbor.project_vjp(there, seen.slope, dseen_dthere);
         const T dseen_ds = dot(dseen_dthere, pair.translation);

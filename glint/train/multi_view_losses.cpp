@@ -115,11 +115,13 @@ MultiViewTerms MultiViewLosses::evaluate(
   return terms;
 }
 
-Image gray_of(const Image& rgb) {
+Image gray_of(const Photo& photo) {
+  const Image& rgb = photo.rgb;
   Image gray(rgb.width(), rgb.height(), 1);
   for (std::size_t i = 0; i < gray.num_pixels(); ++i) {
     const float* c = rgb.data() + 3 * i;
-    gray.data()[i] = 0.299f * c[0] + 0.587f * c[1] + 0.114f * c[2];
+    const bool counts = photo.all_count() || photo.counted.data()[i] != 0;
+    gray.data()[i] = counts ? 0.299f * c[0] + 0.587f * c[1] + 0.114f * c[2] : kNoGray;
   }
   return gray;
 }

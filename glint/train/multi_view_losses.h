@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "glint/scene/camera.h"
+#include "glint/train/counted_pixels.h"
 #include "glint/train/multi_view_kernels.h"
 
 namespace glint {
@@ -22,7 +23,7 @@ struct MultiViewSettings {
   std::size_t max_patches = 102400;  // a step
 };
 
-// A rendered view. depth: plane depth, [H][W][1]; 0: none. gray: the photo, [H][W][1].
+// A rendered view. depth: plane depth, [H][W][1]; 0: none. gray: the photo by gray_of().
 struct PlanarView {
   const Camera& camera;
   const Image& depth;
@@ -73,7 +74,7 @@ class MultiViewLosses {
   Array<PixelSample> sample_;
 };
 
-// 0.299 R + 0.587 G + 0.114 B, [H][W][1].
-Image gray_of(const Image& rgb);
+// 0.299 R + 0.587 G + 0.114 B, [H][W][1]; kNoGray where a pixel does not count.
+Image gray_of(const Photo& photo);
 
 }  // namespace glint

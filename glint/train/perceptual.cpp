@@ -19,12 +19,11 @@ class LpipsLoss final : public PerceptualLoss {
 
   bool accepts(ImageSize size) const override { return lpips_.accepts(size); }
 
-  double evaluate(const Image& rendered, const Image& target, float weight, Image& dL_drendered)
+ private:
+  double evaluate_all(const Image& rendered, const Image& target, float weight, Image& dL_drendered)
       override {
     return lpips_.evaluate(rendered, target, weight, dL_drendered, number_of(target));
   }
-
- private:
   std::optional<std::size_t> number_of(const Image& target) const {
     const auto found = photos_.find(&target);
     return found == photos_.end() ? std::nullopt : std::optional(found->second);
@@ -84,14 +83,14 @@ void add_perceptual(
     const PerceptualConfig& config,
     int iteration,
     const Image& rendered,
-    const Image& target,
+    const Photo& photo,
     Image& dL_drendered,
     StepStats& stats
 ) {
   if (loss == nullptr || iteration < config.lpips_from) return;
   const float weight = config.lambda_lpips;
   stats.terms["lpips"] =
-      static_cast<double>(weight) * loss->evaluate(rendered, target, weight, dL_drendered);
+      static_cast<double>(weight) * loss->evaluate(rendered, photo, weight, dL_drendered);
 }
 
 }  // namespace glint

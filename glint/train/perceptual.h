@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "glint/core/image.h"
 #include "glint/method.h"
+#include "glint/train/counted_pixels.h"
 
 namespace glint {
 
@@ -16,11 +16,21 @@ class PerceptualLoss {
   virtual ~PerceptualLoss() = default;
   // False: images too small for the network.
   virtual bool accepts(ImageSize size) const = 0;
-  // rendered, target: [H][W][3]. Adds weight * gradient to dL_drendered and returns the unweighted
-  // loss, which is only told (NaN in a silent step).
-  virtual double evaluate(
+  // rendered: [H][W][3], as the photo. Adds weight * gradient to dL_drendered and returns the
+  // unweighted loss, which is only told (NaN in a silent step). Where a pixel does not count it is
+  // right.
+  double evaluate(const Image& rendered, const Photo& photo, float weight, Image& dL_drendered) {
+    return counted_.evaluate(rendered, photo, dL_drendered, [&](const Image& picture, Image& dL) {
+      return evaluate_all(picture, photo.rgb, weight, dL);
+    });
+  }
+
+ private:
+  virtual double evaluate_all(
       const Image& rendered, const Image& target, float weight, Image& dL_drendered
   ) = 0;
+
+  CountedPixels counted_;
 };
 
 // When and how much of it a method wants.
@@ -70,7 +80,7 @@ void add_perceptual(
     const PerceptualConfig& config,
     int iteration,
     const Image& rendered,
-    const Image& target,
+    const Photo& photo,
     Image& dL_drendered,
     StepStats& stats
 );

@@ -8,6 +8,7 @@
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
 #include "glint/core/simd.h"
+#include "glint/render/map_kernels.h"
 #include "glint/train/photometric_kernels.h"
 
 namespace glint {
@@ -214,11 +215,12 @@ PhotometricTerms PhotometricLoss::evaluate_on_gpu(
 
 PhotometricTerms PhotometricLoss::evaluate(
     const Image& rendered,
-    const Image& target,
+    const Photo& photo,
     PhotometricWeights weights,
     Image& gradient,
     Array<double>* ssim_sum
 ) {
+  const Image& target = photo.rgb;
   const bool fits = rendered.size() == target.size() && rendered.size() == gradient.size() &&
                     rendered.channels() == 3 && target.channels() == 3 && gradient.channels() == 3;
   GLINT_CHECK(
@@ -230,6 +232,23 @@ PhotometricTerms PhotometricLoss::evaluate(
       target.width(),
       target.height()
   );
+  PhotometricTerms terms =
+      counted_.evaluate(rendered, photo, gradient, [&](const Image& picture, Image& dL_dpicture) {
+        return evaluate_all(picture, target, weights, dL_dpicture, ssim_sum);
+      });
+  if (!photo.all_count())
+    terms.mse *= static_cast<double>(rendered.num_pixels()) /
+                 sum_kernel(rendered.size(), SumPixels{photo.counted.on_device()});
+  return terms;
+}
+
+PhotometricTerms PhotometricLoss::evaluate_all(
+    const Image& rendered,
+    const Image& target,
+    PhotometricWeights weights,
+    Image& gradient,
+    Array<double>* ssim_sum
+) {
   width_ = rendered.width();
   height_ = rendered.height();
   if (on_gpu()) return evaluate_on_gpu(rendered, target, weights, gradient, ssim_sum);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "glint/core/image.h"
+#include "glint/train/counted_pixels.h"
 
 namespace glint {
 
@@ -18,7 +18,7 @@ struct PhotometricWeights {
 struct PhotometricTerms {
   double l1 = 0;         // mean absolute error over pixels and channels
   double ssim_loss = 0;  // 1 - mean SSIM (11x11 Gaussian, zero padding)
-  double mse = 0;        // of the render clamped to [0, 1]
+  double mse = 0;        // of the render clamped to [0, 1], over the pixels that count
   double weighted(PhotometricWeights w) const {
     return static_cast<double>(w.l1) * l1 + static_cast<double>(w.ssim) * ssim_loss;
   }
@@ -28,17 +28,25 @@ struct PhotometricTerms {
 // Keeps its buffers between calls: no allocation in steady state.
 class PhotometricLoss {
  public:
-  // rendered, target: [H][W][3]. Adds weight * dL/d(rendered) to `gradient` (same shape).
+  // rendered: [H][W][3], as the photo. Adds weight * dL/d(rendered) to `gradient` (same shape).
+  // Where a pixel does not count it is right; means are over all pixels, but for that of the PSNR.
   // ssim_sum: becomes the sum of SSIM over values [1], for kernels; null: nobody asks for it.
   PhotometricTerms evaluate(
       const Image& rendered,
-      const Image& target,
+      const Photo& photo,
       PhotometricWeights weights,
       Image& gradient,
       Array<double>* ssim_sum = nullptr
   );
 
  private:
+  PhotometricTerms evaluate_all(
+      const Image& rendered,
+      const Image& target,
+      PhotometricWeights weights,
+      Image& gradient,
+      Array<double>* ssim_sum
+  );
   PhotometricTerms evaluate_on_gpu(
       const Image& rendered,
       const Image& target,
@@ -62,6 +70,7 @@ class PhotometricLoss {
   FloatArray moments_;           // [5][H][stride] horizontally blurred x, y, xx, yy, xy
   FloatArray moment_gradients_;  // [3][H][stride] of x, xx, xy
   std::vector<double> row_ssim_, row_l1_, row_mse_;  // [H] sums, added in order
+  CountedPixels counted_;
 };
 
 }  // namespace glint

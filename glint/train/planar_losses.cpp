@@ -31,7 +31,7 @@ std::vector<std::string> PlanarLosses::set_up(
   for (std::size_t i = 0; i < scene.train.size(); ++i) {
     const Image& rgb = scene.train[i].rgb;
     alone += neighbors[i].empty() ? 1 : 0;
-    photos_.push_back({gray_of(rgb), flatness_weight(rgb), std::move(neighbors[i])});
+    photos_.push_back({gray_of(scene.train[i]), flatness_weight(rgb), std::move(neighbors[i])});
   }
   if (alone == 0) return {};
   return {fmt::format(

@@ -74,10 +74,10 @@ const View& PlanarModel::forward(int iteration, StepStats& stats) {
   return view;
 }
 
-void PlanarModel::add_losses(const Image& target, StepStats& stats) {
+void PlanarModel::add_losses(const Photo& photo, StepStats& stats) {
   const PhotometricWeights weights{1 - windows_.lambda_ssim, windows_.lambda_ssim};
   const PhotometricTerms terms = photometric_.evaluate(
-      view_, stats.iteration, output_->features, target, weights, gradient_.features
+      view_, stats.iteration, output_->features, photo, weights, gradient_.features
   );
   stats.terms["photometric"] = terms.weighted(weights);
   stats.psnr = terms.psnr();

@@ -55,7 +55,7 @@ class PlanarModel {
   // and by the method, backward() makes the step of the optimiser and of density control.
   const View& forward(int iteration, StepStats& stats);
   // target: the picture that the render is compared with, [H][W][3].
-  void add_losses(const Image& target, StepStats& stats);
+  void add_losses(const Photo& photo, StepStats& stats);
   void backward(StepStats& stats);
 
   // From now on their offsets are added to the colours of training views, render() and draw(), and

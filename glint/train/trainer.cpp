@@ -45,6 +45,7 @@ constexpr int kToldInterval = 20;
 template <class F>
 void for_each_image(const View& view, F&& f) {
   f(view.rgb);
+  if (!view.counted.empty()) f(view.counted);
   view.priors.for_each([&](const MapRow&, const Image& map) { f(map); });
   view.truth.for_each([&](const MapRow&, const Image& map) { f(map); });
 }

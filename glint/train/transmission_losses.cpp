@@ -84,6 +84,7 @@ TransparencyCues TransmissionLosses::cues(
   cues.interface_depth = buffer.depth;
   cues.transmission_depth = direct_depth_;
   cues.albedo = view.priors["albedo"];
+  cues.counted = view.counted;
   if (guidance_.kind == GuidanceKind::kL1) return cues;
   cues.basecolor = view.priors["basecolor"];
   cosine_ = viewing_cosines(view.camera, interface.normal);
@@ -120,13 +121,7 @@ void TransmissionLosses::add_direct_geometry(
 ) {
   StepStats terms;
   add_perceptual(
-      perceptual_,
-      perceptual_config_,
-      iteration,
-      out.features,
-      view.rgb,
-      dL_ddirect_.features,
-      terms
+      perceptual_, perceptual_config_, iteration, out.features, view, dL_ddirect_.features, terms
   );
   direct_geometry_.add(view, iteration, out, direct_depth_, dL_ddirect_, terms);
   add_terms("direct ", terms, stats);
@@ -147,7 +142,7 @@ void TransmissionLosses::add_direct(
     const PhotometricWeights direct{
         config_.lambda_direct * weights.l1, config_.lambda_direct * weights.ssim};
     const PhotometricTerms terms = photometric_.evaluate(
-        pass_.rasterizer.output().features, view.rgb, direct, dL_ddirect_.features
+        pass_.rasterizer.output().features, view, direct, dL_ddirect_.features
     );
     stats.terms["direct"] = terms.weighted(direct);
   }

@@ -4,6 +4,7 @@
 #include "glint/core/kernel.h"
 #include "glint/render/glass_transport.h"
 #include "glint/train/check_fits.h"
+#include "glint/train/counted_kernels.h"
 #include "glint/train/share_kernels.h"
 #include "glint/train/transparency_kernels.h"
 
@@ -23,11 +24,21 @@ Image eroded_and_weighed(const Image& mask, const Image& cosine) {
   return result;
 }
 
+void keep_counted(const Image& counted, Image& mask) {
+  run_kernel(mask.num_pixels(), kGrain, KeepCounted{counted.on_device(), mask.on_device()});
+}
+
 template <class T>
-double mean_l1(const BasicImage<T>& t, const Image& target, T weight, BasicImage<T>& dL_dt) {
+double mean_l1(
+    const BasicImage<T>& t, const TransparencyMasks& masks, T weight, BasicImage<T>& dL_dt
+) {
   const auto num_pixels = static_cast<double>(t.num_pixels());
   const GuideL1<T> loss_at{
-      t.on_device(), target.on_device(), weight / static_cast<T>(num_pixels), dL_dt.on_device()};
+      t.on_device(),
+      masks.transparent.on_device(),
+      masks.opaque.on_device(),
+      weight / static_cast<T>(num_pixels),
+      dL_dt.on_device()};
   return sum_kernel(t.size(), loss_at) / num_pixels;
 }
 
@@ -71,6 +82,19 @@ void TransparencyGuidance::label(const TransparencyCues& cues, TransparencyMasks
   check_fits("albedo prior", cues.albedo, size, 3);
   fit(masks.transparent, size, 1);
   fit(masks.opaque, size, 1);
+  label_pixels(cues, masks);
+  if (cues.counted.num_pixels() > 0) {
+    check_fits("mask of pixels that count", cues.counted, size, 1);
+    for (Image* mask : {&masks.transparent, &masks.opaque}) keep_counted(cues.counted.get(), *mask);
+  }
+  if (!is_bce) return;
+  masks.transparent = eroded_and_weighed(masks.transparent, cues.cosine.get());
+  masks.opaque = eroded_and_weighed(masks.opaque, cues.cosine.get());
+}
+
+void TransparencyGuidance::label_pixels(const TransparencyCues& cues, TransparencyMasks& masks)
+    const {
+  const ImageSize size = cues.interface_depth.size();
   const LabelMaps maps{
       cues.interface_depth.on_device(),
       cues.transmission_depth.on_device(),
@@ -78,7 +102,7 @@ void TransparencyGuidance::label(const TransparencyCues& cues, TransparencyMasks
       cues.basecolor.on_device(),
       masks.transparent.on_device(),
       masks.opaque.on_device()};
-  if (!is_bce)
+  if (kind == GuidanceKind::kL1)
     return run_kernel(size.num_pixels(), kGrain, LabelL1{maps, depth_threshold, low_albedo});
   check_fits("basecolor prior", cues.basecolor, size, 3);
   if (cues.cosine.num_pixels() > 0) check_fits("viewing cosines", cues.cosine, size, 1);
@@ -87,8 +111,6 @@ void TransparencyGuidance::label(const TransparencyCues& cues, TransparencyMasks
       kGrain,
       LabelBce{maps, depth_threshold, low_albedo, high_albedo, bright_basecolor}
   );
-  masks.transparent = eroded_and_weighed(masks.transparent, cues.cosine.get());
-  masks.opaque = eroded_and_weighed(masks.opaque, cues.cosine.get());
 }
 
 template <class T>
@@ -100,8 +122,7 @@ double TransparencyGuidance::evaluate(
 ) const {
   if (masks.transparent.empty()) return 0;
   check_fits("transparency mask", masks.transparent, transparency.size(), 1);
-  if (kind == GuidanceKind::kL1)
-    return mean_l1(transparency, masks.transparent, weight, dL_dtransparency);
+  if (kind == GuidanceKind::kL1) return mean_l1(transparency, masks, weight, dL_dtransparency);
   check_fits("opacity mask", masks.opaque, transparency.size(), 1);
   const T high = static_cast<T>(transparent_target), low = static_cast<T>(opaque_target);
   return mean_bce(transparency, masks.transparent, high, weight, dL_dtransparency) +

@@ -19,15 +19,18 @@ struct TransparencyCues {
   BorrowedImage albedo;              // [H][W][3] the prior's diffuse albedo as stored
   BorrowedImage basecolor;           // [H][W][3] the prior's; kBce only
   BorrowedImage cosine;              // [H][W][1] of viewing_cosines(), empty for 1; kBce only
+  BorrowedImage counted;             // [H][W][1] View::counted; empty: all pixels count
 };
 
-// [H][W][1] weights in [0, 1], for the loss and for figures. Empty: no guidance for this view.
+// [H][W][1] weights in [0, 1], for the loss and for figures. Empty: no guidance for this view; kL1
+// without `opaque`: what is not transparent is opaque.
 struct TransparencyMasks {
   Image transparent, opaque;
 };
 
 // kL1: transparent = |z_intr - z_trans| > depth_threshold and mean RGB albedo < low_albedo, and 0
-// where a depth is missing; opaque = 1 - transparent; loss = mean |transparent - t|.
+// where a depth is missing; opaque = 1 - transparent; loss = mean |transparent - t|, over all
+// pixels; one that does not count is neither, and adds nothing.
 //
 // kBce: transparent = low albedo, bright basecolor, both depths present and
 // z_trans > z_intr + depth_threshold; opaque = high albedo, or low albedo and basecolor not bright,
@@ -67,6 +70,9 @@ struct TransparencyGuidance {
       T weight,
       BasicImage<T>& dL_dtransparency
   ) const;
+
+ private:
+  void label_pixels(const TransparencyCues& cues, TransparencyMasks& masks) const;
 };
 
 // |cos| of the angle between each pixel's ray and its composited normal ([H][W][3], camera space);

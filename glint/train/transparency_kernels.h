@@ -95,11 +95,13 @@ struct ErodeAndWeigh {
 template <class T>
 struct GuideL1 {
   BasicImageView<T> t;
-  ImageView target;
+  ImageView target, opaque;  // opaque may be empty; neither: the pixel does not count
   T scale;
   BasicImageRef<T> dL_dt;
 
   GLINT_HD double operator()(int x, int y) const {
+    const bool counts = opaque.empty() || target.at(x, y) + opaque.at(x, y) > 0;
+    if (!counts) return 0;
     const T difference = t.at(x, y) - static_cast<T>(target.at(x, y));
     dL_dt.at(x, y) += scale * sign_of(difference);
     return static_cast<double>(abs_of(difference));

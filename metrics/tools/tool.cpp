@@ -55,26 +55,29 @@ void add_common_options(CLI::App& app, ToolOptions& options) {
   app.add_flag("--quiet", options.quiet, "no progress on standard error");
 }
 
+MaskView view_of(const MaskImage& mask) { return mask.empty() ? MaskView{} : MaskView(mask); }
+
+// Of a dataset's view; empty: all pixels count.
+MaskImage counted_of(const LoadedPair& pair) {
+  return pair.files.view == nullptr ? MaskImage() : mask_of_map(pair.files.view->counted);
+}
+
+// The pixels of the mask that the dataset counts; empty: all.
+MaskImage load_counted(const LoadedPair& pair) {
+  MaskImage mask = load_mask(pair.files.mask, pair.reference.size());
+  const MaskImage counted = counted_of(pair);
+  if (mask.empty() || counted.empty()) return mask.empty() ? counted : mask;
+  for (std::size_t i = 0; i < mask.num_pixels(); ++i) mask.data()[i] &= counted.data()[i];
+  return mask;
+}
+
 // The whole image (or the mask), and the glass regions inside it.
 std::vector<Region> load_regions(const LoadedPair& pair) {
-  const MaskImage mask = load_mask(pair.files.mask, pair.reference.size());
+  const MaskImage mask = load_counted(pair);
   const MaskImage glass = pair.files.glass_view
                               ? mask_of_map(map_of(*pair.files.glass_view, "glass"))
                               : load_mask(pair.files.glass, pair.reference.size());
-  std::vector<Region> regions = evaluation_regions(glass.empty() ? MaskView{} : MaskView(glass));
-  if (mask.empty()) return regions;
-  for (Region& region : regions) {
-    if (region.mask.empty())
-      region.mask = mask;
-    else
-      for (std::size_t i = 0; i < mask.num_pixels(); ++i) region.mask.data()[i] &= mask.data()[i];
-  }
-  std::erase_if(regions, [](const Region& region) {
-    const auto pixels = region.mask.values();
-    return !region.name.empty() && std::count(pixels.begin(), pixels.end(), 0) ==
-                                       static_cast<std::ptrdiff_t>(pixels.size());
-  });
-  return regions;
+  return evaluation_regions(view_of(glass), view_of(mask));
 }
 
 LoadedPair load_pair(const MetricTool& tool, const FilePair& files) {
@@ -97,6 +100,8 @@ LoadedPair load_pair(const MetricTool& tool, const FilePair& files) {
       pair.reference.width(),
       pair.reference.height()
   );
+  if (tool.reference_map() == "rgb")
+    take_reference_where_uncounted(view_of(counted_of(pair)), pair.reference, pair.prediction);
   return pair;
 }
 

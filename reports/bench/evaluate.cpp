@@ -8,6 +8,15 @@ namespace glint {
 
 namespace {
 
+// Pixels that do not count are right, and no glass, in whatever a metric makes of them.
+void settle_uncounted(const View& view, MaskView counted, MapSet& rendered) {
+  take_reference_where_uncounted(counted, view.rgb, rendered["rgb"]);
+  rendered.for_each([&](const MapRow& row, Image& map) {
+    if (row.kind == MapKind::kShare)
+      take_reference_where_uncounted(counted, Image(counted.width, counted.height, 1), map);
+  });
+}
+
 Image read_map(const fs::path& path, int channels, ImageSize size) {
   if (!fs::exists(path)) return {};
   Image map = read_image(path, channels);
@@ -51,8 +60,12 @@ ViewPair view_pair(const MapSet& rendered, const View& view, const MaskImage& gl
 }
 
 Scores score_view(const fs::path& folder, const View& view) {
-  const MapSet rendered = read_scored_maps(folder, view.rgb.size());
-  Scores scores = evaluate_view(view_pair(rendered, view, mask_of_map(view.truth["glass"])));
+  MapSet rendered = read_scored_maps(folder, view.rgb.size());
+  const MaskImage counted = mask_of_map(view.counted), glass = mask_of_map(view.truth["glass"]);
+  if (!counted.empty()) settle_uncounted(view, counted, rendered);
+  ViewPair pair = view_pair(rendered, view, glass);
+  if (!counted.empty()) pair.counted = counted;
+  Scores scores = evaluate_view(pair);
   if (is_eight_bit_render(folder))
     std::erase_if(scores, [](const auto& score) {
       return score.first == "psnr" || score.first.starts_with("psnr@");

@@ -49,7 +49,8 @@ SceneSize size_of(const Scene& scene) {
   for (const auto* views : {&scene.train, &scene.test})
     for (const View& view : *views) {
       size.view_pixels = std::max(size.view_pixels, double(view.camera.width) * view.camera.height);
-      size.image_bytes += bytes_of(view.rgb) + bytes_of(view.priors) + bytes_of(view.truth);
+      size.image_bytes += bytes_of(view.rgb) + bytes_of(view.counted) + bytes_of(view.priors) +
+                          bytes_of(view.truth);
     }
   size.points = double(scene.points.positions.size());
   if (!scene.test.empty()) {

@@ -7,6 +7,7 @@
 #include "glint/drawing/color_maps.h"
 #include "glint/drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
+#include "metrics/metric.h"
 #include "reports/pictures/layers.h"
 #include "reports/records/run_folder.h"
 
@@ -78,7 +79,10 @@ Image panel_of(const LayerMaps& maps, const MapRow& row, DepthScale scale) {
 PanelRow row_of(const StripPlan& plan, const View& view) {
   const fs::path folder = view_folder(plan.run, view.name);
   const Image render = read_image(render_file(folder, *find_map("rgb")), 3);
-  PanelRow row = {fit_panel(view.rgb), fit_panel(render), fit_panel(error_panel(render, view.rgb))};
+  Image scored = render;
+  if (const MaskImage counted = mask_of_map(view.counted); !counted.empty())
+    take_reference_where_uncounted(counted, view.rgb, scored);
+  PanelRow row = {fit_panel(view.rgb), fit_panel(render), fit_panel(error_panel(scored, view.rgb))};
   const LayerMaps rendered = rendered_layers(folder, &view), truth = true_layers(view);
   for (const MapPanel& panel : plan.panels) {
     row.push_back(panel_of(rendered, panel.map, plan.scale));

@@ -8,6 +8,7 @@
 
 #include "glint/core/parallel.h"
 #include "glint/method.h"
+#include "metrics/ssim_formula.h"
 #include "tests/support/small_room.h"
 
 using namespace glint;
@@ -113,6 +114,53 @@ TEST_CASE("Every method trains to the same bytes with one and two threads") {
     set_num_threads(0);
     CHECK(same_bytes(one["rgb"], two["rgb"]));
     CHECK(same_bytes(one["depth"], two["depth"]));
+  }
+}
+
+namespace {
+
+// The room with a left half of every training picture painted, which counts or does not: grey as
+// loaders make it where a window around a pixel that counts reaches, else in `color`.
+Scene half_painted(Vec3f color, bool counts) {
+  constexpr int kGrey = 2 * kSsimRadius;  // windows, and gradients through them
+  Scene scene = small_room();
+  for (View& view : scene.train) {
+    const int half = view.rgb.width() / 2;
+    if (!counts) view.counted = Image(view.rgb.width(), view.rgb.height(), 1, 1.0f);
+    for (int y = 0; y < view.rgb.height(); ++y)
+      for (int x = 0; x < half; ++x) {
+        for (int c = 0; c < 3; ++c) view.rgb.at(x, y, c) = x < half - kGrey ? color[c] : 0.5f;
+        if (!counts) view.counted.at(x, y) = 0;
+      }
+  }
+  return scene;
+}
+
+// Mean absolute difference of renders after a training with a red and a blue half.
+double difference_by_paint(const std::string& method_id, bool counts) {
+  RunOptions options;
+  options.iterations = 30;
+  Image renders[2];
+  for (const int blue : {0, 1}) {
+    const Scene scene = half_painted(blue != 0 ? Vec3f{0, 0, 1} : Vec3f{1, 0, 0}, counts);
+    const auto method = create_method(method_id);
+    method->initialize(scene, options);
+    for (int i = 0; i < options.iterations; ++i) method->step(i);
+    renders[blue] = method->render(scene.train.front().camera)["rgb"];
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < renders[0].values().size(); ++i)
+    sum += std::abs(static_cast<double>(renders[0].values()[i] - renders[1].values()[i]));
+  return sum / static_cast<double>(renders[0].values().size());
+}
+
+}  // namespace
+
+TEST_CASE("What a pixel shows that does not count leaves no trace in any method") {
+  CHECK(difference_by_paint("2dgs", true) > 0.01);
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
+    INFO(id);
+    CHECK(difference_by_paint(id, false) == 0);
   }
 }
 

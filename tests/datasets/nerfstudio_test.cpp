@@ -326,13 +326,97 @@ TEST_CASE("true depth beside a capture is EXR, NPY or PNG in stated steps, where
   CHECK_THAT(folder.load_error(), Contains("depth_scale is 0"));
 }
 
-TEST_CASE("masks are not read, and check and notes say so") {
+namespace {
+
+// White but for the left half.
+MaskImage left_half_out(ImageSize size) {
+  MaskImage mask(size.width, size.height, 1, 255);
+  for (int y = 0; y < size.height; ++y) std::fill_n(mask.pixel(0, y), size.width / 2, 0);
+  return mask;
+}
+
+}  // namespace
+
+TEST_CASE("masks say which pixels count; what others show is grey and in no map") {
   RoomFolder folder;
-  for (const int i : {2, 5}) folder.json["frames"][i]["mask_path"] = "masks/2.png";
-  const Scene scene = folder.load();
+  write_png(folder / "masks/2.png", map_of_mask(left_half_out(kSize)));
+  write_png(folder / "masks/all.png", Image(48, 36, 1, 1.0f));
+  folder.json["frames"][2]["mask_path"] = "masks/2.png";
+  folder.json["frames"][5]["mask_path"] = "./masks/all.png";
+  Scene scene = folder.load();
+  const View& view = scene.train[1];
+  REQUIRE(view.counted.size() == kSize);
+  CHECK(view.counted.at(23, 7) == 0);
+  CHECK(view.counted.at(24, 7) == 1);
+  CHECK(view.rgb.at(3, 7, 1) == 0.5f);
+  CHECK(view.rgb.at(30, 7, 1) == Approx(folder.views[2].rgb.at(30, 7, 1)).margin(0.003));
+  CHECK(scene.train[0].counted.empty());
+  CHECK(scene.train[4].counted.empty());  // all of its pixels count
   REQUIRE(scene.data_notes.size() == 1);
-  CHECK_THAT(scene.data_notes[0], Contains("mask_path: of 2 frames, is not read"));
-  const std::vector<Finding> findings = check_dataset(folder.path());
-  REQUIRE(findings.size() == 1);
-  CHECK(findings[0].check == "mask-path");
+  CHECK_THAT(scene.data_notes[0], Contains("1 of 8 train views (6.2 % of all their pixels)"));
+  CHECK(check_dataset(folder.path()).empty());
+  const std::string hash = scene.spec_hash;
+  write_png(folder / "masks/2.png", Image(48, 36, 1, 1.0f));
+  CHECK(folder.load().spec_hash != hash);
+}
+
+TEST_CASE("nothing that does not count bleeds into pixels of a smaller picture") {
+  RoomFolder folder;
+  Image picture(48, 36, 3, 0.25f);  // 16 columns of white, which do not count
+  MaskImage mask(48, 36, 1, 255);
+  for (int y = 0; y < 36; ++y)
+    for (int x = 0; x < 17; ++x) {
+      mask.at(x, y) = 0;
+      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = 1;
+    }
+  write_png(folder / "images/0002.png", picture);
+  write_png(folder / "masks/2.png", map_of_mask(mask));
+  folder.json["frames"][2]["mask_path"] = "masks/2.png";
+  LoadOptions options;
+  options.size = {16, 12};
+  const View view = folder.load(options).train[1];
+  CHECK(view.counted.at(5, 3) == 0);
+  CHECK(view.counted.at(6, 3) == 1);
+  for (int x = 6; x < 16; ++x) CHECK(view.rgb.at(x, 3, 0) == Approx(0.25f).margin(0.003));
+}
+
+TEST_CASE(
+    "a mask of another size but the same shape serves, one of another shape or without white "
+    "is an error that check names, too"
+) {
+  RoomFolder folder;
+  folder.json["frames"][2]["mask_path"] = "masks/2.png";
+  const auto check_ids = [&] {
+    std::vector<std::string> ids;
+    for (const Finding& finding : check_dataset(folder.path())) ids.push_back(finding.check);
+    return ids;
+  };
+  CHECK_THAT(folder.load_error(), Contains("masks/2.png: no such file"));
+  CHECK(check_ids() == std::vector<std::string>{"missing-file"});
+  write_png(folder / "masks/2.png", map_of_mask(left_half_out({96, 72})));
+  CHECK(folder.load().train[1].counted.at(23, 7) == 0);
+  CHECK(check_ids().empty());
+  write_png(folder / "masks/2.png", Image(36, 48, 1, 1.0f));
+  CHECK_THAT(folder.load_error(), Contains("36 x 48 pixels") && Contains("48 x 36"));
+  CHECK(check_ids() == std::vector<std::string>{"mask-path"});
+  write_png(folder / "masks/2.png", Image(48, 36, 1));
+  CHECK_THAT(folder.load_error(), Contains("no pixel counts"));
+  CHECK(check_ids() == std::vector<std::string>{"mask-path"});
+  folder.json["frames"][2]["mask_path"] = "../2.png";
+  CHECK_THAT(folder.load_error(), Contains("lies outside of"));
+  folder.json["frames"][2]["mask_path"] = 7;
+  CHECK_THAT(folder.load_error(), Contains("mask_path: expected a text"));
+}
+
+TEST_CASE("the mask of what counts is no mask of glass, whatever its folder") {
+  RoomFolder folder;
+  write_file(folder / "scene.json", R"({"side_maps": true})");
+  for (int i = 0; i < 10; ++i)
+    write_png(folder / fmt::format("masks/{:04}.png", i), map_of_mask(left_half_out(kSize)));
+  CHECK(folder.load().train[1].truth.has("glass"));
+  for (int i = 0; i < 10; ++i)
+    folder.json["frames"][i]["mask_path"] = fmt::format("masks/{:04}.png", i);
+  const Scene scene = folder.load();
+  CHECK_FALSE(scene.train[1].truth.has("glass"));
+  CHECK_FALSE(scene.train[1].counted.empty());
 }

@@ -5,6 +5,7 @@
 #include "datasets/dataset.h"
 #include "glint/core/config.h"
 #include "glint/scene/camera.h"
+#include "glint/scene/image_files.h"
 #include "tests/support/box_room.h"
 #include "tests/support/temp_folder.h"
 
@@ -113,4 +114,24 @@ TEST_CASE("what the toolkit has not undistorted, and views without a pose, are e
       folder / "dslr/nerfstudio/transforms.json"
   );
   CHECK_THAT(message(), Contains("dslr.undistort"));
+}
+
+TEST_CASE("masks beside the pictures say which pixels count; without their folder that is said") {
+  ScanFolder folder;
+  for (const char* list : {"frames", "test_frames"})
+    for (Json& frame : folder.json[list]) frame["mask_path"] = frame["file_path"];
+  folder.store();
+  const Scene without = load_scene(folder.path(), {});
+  CHECK(without.train[0].counted.empty());
+  REQUIRE(without.data_notes.size() == 1);
+  CHECK_THAT(without.data_notes[0], Contains("all pixels count"));
+  Image mask(48, 36, 1, 1.0f);
+  mask.at(3, 4) = 0;
+  for (const View& view : folder.views)
+    write_png(folder / ("dslr/undistorted_masks/" + view.name + ".png"), mask);
+  const Scene scene = load_scene(folder.path(), {});
+  CHECK(scene.train[0].counted.at(3, 4) == 0);
+  CHECK(scene.test[1].counted.at(3, 4) == 0);
+  REQUIRE(scene.data_notes.size() == 1);
+  CHECK_THAT(scene.data_notes[0], Contains("8 of 8 train views") && Contains("2 of 2 test views"));
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "datasets/counted_pixels.h"
 #include "datasets/dataset.h"
 #include "datasets/side_maps.h"
 #include "glint/core/config.h"
@@ -339,6 +340,24 @@ TEST_CASE("nerfstudio's file names depth where all views have it, and lists ever
   scene.train[2].truth["depth"] = {};
   json = transforms(Exported("nerfstudio", scene));
   CHECK_FALSE(json["frames"][4].contains("depth_file_path"));
+}
+
+TEST_CASE("masks of what counts go with nerfstudio's files; other formats say that they do not") {
+  Scene scene = room();
+  Image& counted = scene.train[2].counted;
+  counted = Image(scene.train[2].rgb.width(), scene.train[2].rgb.height(), 1, 1.0f);
+  counted.at(5, 6) = 0;
+  blank_uncounted(scene.train[2]);
+  for (const auto& [id, exporter] : Registry<ExporterSpec>::all()) {
+    INFO(id);
+    const Exported exported(id, scene);
+    CHECK(exported.notes("pixels that do not count") != exporter.has_counted);
+    if (!exporter.has_counted) continue;
+    const Scene loaded = load_scene(exported.folder, {});
+    const auto found = loaded.train[2].counted.values();
+    CHECK(std::equal(found.begin(), found.end(), counted.values().begin(), counted.values().end()));
+    CHECK(loaded.train[1].counted.empty());
+  }
 }
 
 TEST_CASE("only an earlier export is replaced, and only with --force") {

@@ -102,8 +102,16 @@ struct Patches {
   CountedSum sum;
 
   Patches(const TwoViews& views, const ImageD& normal, const ImageD& distance, const ImageD& weight)
+      : Patches(views, normal, distance, weight, views.photo(false), views.photo(true)) {}
+  Patches(
+      const TwoViews& views,
+      const ImageD& normal,
+      const ImageD& distance,
+      const ImageD& weight,
+      const Image& gray,
+      const Image& other
+  )
       : dL_dnormal(normal), dL_ddistance(distance) {
-    const Image gray = views.photo(false), other = views.photo(true);
     const PixelSample all;
     sum = sum_kernel(
         distance.size(),
@@ -395,4 +403,35 @@ TEST_CASE("The gray of a colour weighs green most") {
   CHECK(gray.at(0, 0) == Approx(0.299f));
   CHECK(gray.at(1, 0) == Approx(0.587f));
   CHECK(gray.at(2, 0) == Approx(1.0f));
+}
+
+TEST_CASE("Patches with a pixel that does not count, here or there, are not compared") {
+  const TwoViews views;
+  const Image counted = map_of<float>(3, 1, 1, {1, 0, 1});
+  const Image gray = gray_of({Image(3, 1, 3, 0.5f), counted});
+  CHECK(gray.at(0, 0) == Approx(0.5f));
+  CHECK(gray.at(1, 0) == kNoGray);
+  Image normal, distance;
+  views.planes(normal, distance, 0);
+  const ImageD weight(distance.width(), distance.height(), 1, 1.0);
+  const auto patches = [&](const Image& here, const Image& there) {
+    return Patches(views, in_double(normal), in_double(distance), weight, here, there);
+  };
+  const Image here = views.photo(false), there = views.photo(true);
+  const Patches all = patches(here, there);
+  const int x = here.width() / 2, y = here.height() / 2;
+  REQUIRE(all.sum.count > 60);
+  Image masked = here;
+  masked.at(x, y) = kNoGray;
+  const Patches less = patches(masked, there);
+  CHECK(less.sum.count < all.sum.count);
+  CHECK(less.sum.count >= all.sum.count - kPatchPixels);
+  for (int j = y - kPatchRadius; j <= y + kPatchRadius; ++j)
+    for (int i = x - kPatchRadius; i <= x + kPatchRadius; ++i)
+      CHECK(less.dL_ddistance.at(i, j) == 0.0);
+  masked = there;
+  masked.at(x, y) = kNoGray;
+  const double count = patches(here, masked).sum.count;
+  CHECK(count < all.sum.count);
+  CHECK(count > 0);
 }

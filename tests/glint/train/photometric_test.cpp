@@ -103,3 +103,38 @@ TEST_CASE("Images of different size are refused") {
   Image gradient(4, 4, 3);
   CHECK_THROWS_AS(PhotometricLoss().evaluate(Image(4, 4, 3), Image(5, 4, 3), {}, gradient), Error);
 }
+
+TEST_CASE("Pixels that do not count are right: no loss of theirs, no gradient, in windows neither"
+) {
+  const Image y = random_image(17, 12, 2);
+  Image x = random_image(17, 12, 1), counted(17, 12, 1, 1.0f), gradient(17, 12, 3, 5.0f);
+  for (int row = 3; row < 9; ++row)
+    for (int col = 4; col < 11; ++col) counted.at(col, row) = 0;
+  const auto with_photo = [&](const Image& image) {
+    Image picture = image;
+    for (std::size_t i = 0; i < picture.values().size(); ++i)
+      if (counted.data()[i / 3] == 0) picture.data()[i] = y.data()[i];
+    return picture;
+  };
+  const PhotometricWeights weights{0.8f, 0.2f};
+  const PhotometricTerms terms = PhotometricLoss().evaluate(x, {y, counted}, weights, gradient);
+  CHECK(
+      terms.weighted(weights) == Approx(loss_by_definition(with_photo(x), y, weights)).margin(2e-6)
+  );
+  double squared = 0;
+  for (std::size_t i = 0; i < x.values().size(); ++i)
+    squared += std::pow(static_cast<double>(with_photo(x).data()[i] - y.data()[i]), 2);
+  CHECK(terms.mse == Approx(squared / (3 * (17 * 12 - 6 * 7))));
+  for (std::size_t i = 0; i < x.values().size(); i += 5) {
+    const float at = x.values()[i], h = 1.0f / 1024;
+    x.values()[i] = at + h;
+    const double above = loss_by_definition(with_photo(x), y, weights);
+    x.values()[i] = at - h;
+    const double below = loss_by_definition(with_photo(x), y, weights);
+    x.values()[i] = at;
+    const double slope = (above - below) / (2 * static_cast<double>(h));
+    const double found = static_cast<double>(gradient.values()[i]) - 5;
+    CHECK(found == Approx(slope).epsilon(2e-3).margin(3e-6));
+    if (counted.data()[i / 3] == 0) CHECK(found == 0);
+  }
+}

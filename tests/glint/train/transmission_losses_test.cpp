@@ -76,7 +76,8 @@ double norm(std::span<const float> values) {
 // 0.5 x the mean of a picture.
 struct MeanBrightness final : PerceptualLoss {
   bool accepts(ImageSize) const override { return true; }
-  double evaluate(const Image& rendered, const Image&, float weight, Image& dL_drendered) override {
+  double evaluate_all(const Image& rendered, const Image&, float weight, Image& dL_drendered)
+      override {
     double sum = 0;
     const auto count = static_cast<double>(rendered.values().size());
     for (std::size_t i = 0; i < rendered.values().size(); ++i) {
@@ -231,7 +232,8 @@ TEST_CASE("LPIPS of the set on its own is that of the interface's picture") {
     const RasterOutput& out = f.transmission.forward(f.scene.train[0].camera, 0);
     Image gradient(kSize.width, kSize.height, 3);
     CHECK(
-        terms_at(3).at("direct lpips") == Approx(4 * loss.evaluate(out.features, {}, 0, gradient))
+        terms_at(3).at("direct lpips") ==
+        Approx(4 * loss.evaluate(out.features, Image(), 0, gradient))
     );
   }
 }

@@ -123,6 +123,25 @@ TEST_CASE("The paper's guidance is the mean distance of mask and transparency") 
   CHECK(gradient.at(2, 0) == 0.5f);
 }
 
+TEST_CASE("A pixel that does not count is neither transparent nor opaque, and guides nothing") {
+  Cues cues({3, 1}, {2, 3, 0.02f});
+  const Image counted = map_of<float>(3, 1, 1, {1, 0, 1});
+  for (int c = 0; c < 3; ++c) cues.albedo.at(2, 0, c) = 0.5f;
+  TransparencyCues views = cues.views();
+  views.counted = counted;
+  for (const TransparencyGuidance& guidance :
+       {TransparencyGuidance::paper(), TransparencyGuidance::release()}) {
+    const TransparencyMasks masks = guidance.masks(views);
+    CHECK(masks.transparent.at(1, 0) == 0.0f);
+    CHECK(masks.opaque.at(1, 0) == 0.0f);
+  }
+  const TransparencyMasks masks = TransparencyGuidance::paper().masks(views);
+  const Image t = map_of<float>(3, 1, 1, {0.25f, 0.9f, 0.5f});
+  const auto loss = loss_with(TransparencyGuidance::paper(), masks);
+  CHECK(value_of(loss, t) == Approx((0.75 + 0.5) / 3));
+  CHECK(gradient_of(loss, t).at(1, 0) == 0.0f);
+}
+
 TEST_CASE("The release's guidance is the weighted mean cross-entropy of each mask") {
   TransparencyMasks masks;
   masks.transparent = map_of<float>(4, 1, 1, {1, 0.5f, 0, 0});

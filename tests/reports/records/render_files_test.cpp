@@ -108,3 +108,31 @@ TEST_CASE("a map that no file is for is refused by name") {
       Catch::Contains("albedo, for which the table of maps")
   );
 }
+
+TEST_CASE("what a render has where pixels do not count moves no score") {
+  View view = glass_view();
+  view.truth["depth"] = map(2);
+  view.truth["glass"].at(5, 3) = 0;
+  view.counted = map(1);
+  for (int y = 0; y < kHeight; ++y) view.counted.at(0, y) = 0;
+  const auto scores_with = [&](float bad) {
+    MapSet output = decomposed();
+    output["depth"] = map(2.5f);
+    output["rgb"].at(3, 2, 1) = 0.1f;  // an error that counts
+    output.for_each([&](const MapRow& row, Image& map) {
+      for (int y = 0; y < kHeight; ++y)
+        for (int c = 0; c < row.channels(); ++c) map.at(0, y, c) = bad;
+    });
+    const test::TempFolder folder;
+    write_render(folder.path(), output);
+    return score_view(folder.path(), view);
+  };
+  const Scores scores = scores_with(0.05f);
+  CHECK(scores == scores_with(0.95f));
+  const double mse = 0.7 * 0.7 / (3 * (kWidth - 1) * kHeight);
+  CHECK(scores.at("psnr") == Approx(-10 * std::log10(mse)).epsilon(1e-5));
+  CHECK(scores.at("depth-absrel") == Approx(0.25));
+  CHECK(scores.at("psnr@opaque") == 100);
+  view.counted = {};
+  CHECK(scores.at("psnr") > scores_with(0.05f).at("psnr"));
+}
