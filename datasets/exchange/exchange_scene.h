@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "datasets/front3d/front3d.h"
 #include "datasets/glassroom/glassroom.h"
 #include "datasets/glassroom/trace_scene.h"
 #include "glint/core/config.h"
@@ -39,5 +40,8 @@ inline constinit Service<void(const ExchangeScene& scene, const fs::path& folder
 // The scene that make_glassroom renders with these options. Errors: build_glassroom_scene()'s.
 inline constinit Service<ExchangeScene(const GlassRoomOptions& options)> glassroom_for_exchange{
     "writing scenes for other renderers", kGlassRoomElsewhere};
+// The same of make_front3d().
+inline constinit Service<ExchangeScene(const Front3dOptions& options)> front3d_for_exchange{
+    "writing scenes for other renderers", kFront3dElsewhere};
 
 }  // namespace glint

@@ -140,7 +140,7 @@ bool make_room(const Front3dOptions& options, const fs::path& folder, bool again
       .version = kGeneratorVersion,
       .options = spec,
       .shots = shots_of(options),
-      .render_seed = options.seed + hash_name(chosen.house.sha256 + chosen.room.instanceid),
+      .render_seed = front3d_render_seed(chosen, options),
       .build =
           [&] {
             furnished.emplace(furnish_front3d_room(chosen, options));

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "glint/core/error.h"
+#include "glint/core/rng.h"
 
 namespace glint {
 
@@ -80,6 +81,10 @@ ChosenRoom choose_front3d_room(const Front3dOptions& options) {
   chosen.room = choose_room(chosen.house, options.room, options.house);
   chosen.where = fmt::format("{}: room '{}'", options.house, chosen.room.instanceid.substr(0, 80));
   return chosen;
+}
+
+std::uint64_t front3d_render_seed(const ChosenRoom& chosen, const Front3dOptions& options) {
+  return options.seed + hash_name(chosen.house.sha256 + chosen.room.instanceid);
 }
 
 FurnishedRoom furnish_front3d_room(const ChosenRoom& chosen, const Front3dOptions& options) {

@@ -25,6 +25,9 @@ std::unique_ptr<GlassRoomScene> build_front3d_scene(
     const FurnishedRoom& furnished, const ChosenRoom& chosen, const Front3dOptions& options
 );
 
+// What its pictures are drawn from.
+std::uint64_t front3d_render_seed(const ChosenRoom& chosen, const Front3dOptions& options);
+
 FurnishedRoom furnish_front3d_room(const ChosenRoom& chosen, const Front3dOptions& options);
 
 }  // namespace glint

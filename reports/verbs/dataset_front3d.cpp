@@ -12,18 +12,23 @@ void add_front3d_options(CLI::App& make, Front3dOptions& options) {
   );
 }
 
-MadeScene make_front3d_scene(
-    const CommonOptions& common,
-    Front3dOptions options,
-    const GlassRoomOptions& room,
-    bool out_given
-) {
+Front3dOptions front3d_shots(Front3dOptions options, const GlassRoomOptions& room) {
   options.width = room.width;
   options.height = room.height;
   options.views = room.views;
   options.spp = room.spp;
   options.seed = room.seed;
   options.priors = room.priors;
+  return options;
+}
+
+MadeScene make_front3d_scene(
+    const CommonOptions& common,
+    Front3dOptions options,
+    const GlassRoomOptions& room,
+    bool out_given
+) {
+  options = front3d_shots(std::move(options), room);
   MadeScene made{.name = front3d_name(options), .folder = common.out};
   if (!out_given)
     made.folder = fs::path(common.data) / "front3d" /

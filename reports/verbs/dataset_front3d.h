@@ -10,12 +10,14 @@ namespace glint {
 
 void add_front3d_options(CLI::App& make, Front3dOptions& options);
 
+// The options with the sizes, views, samples, seed and priors of `room`.
+Front3dOptions front3d_shots(Front3dOptions options, const GlassRoomOptions& room);
+
 struct MadeScene {
   std::string name;
   fs::path folder;
   bool is_new = false;
 };
-// Sizes, views, samples, seed and priors are those of `room`.
 MadeScene make_front3d_scene(
     const CommonOptions& common,
     Front3dOptions options,

@@ -49,21 +49,22 @@ MadeScene make_scene_of(
   return {scene, folder, make_glassroom(options.room, folder, false)};
 }
 
+ExchangeScene exchange_scene_of(MakeOptions& options, const std::string& scene) {
+  if (options.dataset == "front3d")
+    return front3d_for_exchange(front3d_shots(options.front3d, options.room));
+  options.room.scene = scene;
+  return glassroom_for_exchange(options.room);
+}
+
 // The scenes for other renderers, in place of our pictures of them.
 int write_scenes(const CommonOptions& common, MakeOptions& options) {
-  GLINT_CHECK(
-      options.dataset == "glassroom",
-      kUsage,
-      "dataset make: --write-scene writes rooms of glassroom, not of {}",
-      options.dataset
-  );
   Json written = Json::array();
   for (const std::string& scene : options.scenes) {
-    options.room.scene = scene;
     const fs::path root = options.write_scene;
     const fs::path folder = options.scenes.size() == 1 ? root : root / scene;
-    write_exchange_scene(glassroom_for_exchange(options.room), folder);
-    written.push_back({{"scene", scene}, {"folder", folder.string()}});
+    const ExchangeScene exchange = exchange_scene_of(options, scene);
+    write_exchange_scene(exchange, folder);
+    written.push_back({{"scene", exchange.name}, {"folder", folder.string()}});
     if (!common.json) print_text(fmt::format("{} written\n", folder.string()));
   }
   if (common.json) print_json({{"scenes", written}});
@@ -79,8 +80,8 @@ int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
   );
   install_interrupt_handler();
   options.room.seed = common.seed.value_or(0);
-  if (!options.write_scene.empty()) return write_scenes(common, options);
   if (options.dataset == "front3d") options.scenes.resize(1);
+  if (!options.write_scene.empty()) return write_scenes(common, options);
   Json made = Json::array();
   for (const std::string& name : options.scenes) {
     const MadeScene scene = make_scene_of(common, options, name, out_given);
