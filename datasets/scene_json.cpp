@@ -27,6 +27,14 @@ void find_side_maps(const fs::path& folder, ViewSource& view) {
   }
 }
 
+// A mask that the format itself names comes first.
+void find_counted(const fs::path& folder, ViewSource& view) {
+  std::error_code code;
+  if (const fs::path file = folder / counted_file(view.name);
+      view.counted.empty() && fs::exists(file, code))
+    view.counted = file;
+}
+
 // Priors of the named views that are not there are none; of other views they are missing files.
 void leave_out_priors(std::set<std::string> names, const std::string& where, SceneIndex& index) {
   for (ViewSource& view : index.views) {
@@ -113,6 +121,7 @@ void read_scene_json(const fs::path& folder, SceneIndex& index) {
     index.simulated_priors = json.value("simulated_priors", false);
     if (json.contains("test_views")) split_by_names(json["test_views"], path.string(), index);
     read_depth_scale(json, path.string(), index);
+    for (ViewSource& view : index.views) find_counted(folder, view);
     if (json.value("side_maps", false))
       for (ViewSource& view : index.views) find_side_maps(folder, view);
     index.stated_priors = read_priors(json, folder, path.string());

@@ -6,6 +6,8 @@
 //                              ground truth, first surface. Or .exr, .npy in metres
 //   normals/<view>.png         prior, (n + 1) / 2, camera space, OpenCV axes
 //   priors/<prior>/<view>.png  the other priors; depth 16 bit, relative
+//   counted/<view>.png         masks of the pixels that count (white), of views where not all do; in
+//                              every format
 // Other ground truth has no place there.
 #pragma once
 
@@ -25,6 +27,10 @@ inline fs::path side_truth_file(const MapRow& row, const std::string& view) {
   if (row.id == "glass") return fs::path("masks") / (view + ".png");
   if (row.id == "depth") return fs::path("depths") / (view + ".png");
   return {};
+}
+
+inline fs::path counted_file(const std::string& view) {
+  return fs::path("counted") / (view + ".png");
 }
 
 }  // namespace glint

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/export/exporter.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 
 #include "datasets/export/export_files.h"
+#include "datasets/side_maps.h"
 #include "glint/core/config.h"
 #include "glint/core/error.h"
+#include "glint/core/left_behind.h"
+#include "glint/scene/image_files.h"
 
 namespace glint {
 namespace {
@@ -88,28 +89,12 @@ void write_scene_json(
   write_file(folder / "scene.json", json.dump(1) + "\n");
 }
 
-// The folder under a temporary name beside the final one, removed if it does not get there.
-struct UnfinishedFolder {
-  fs::path path;
-  explicit UnfinishedFolder(const fs::path& folder)
-      : path(folder.parent_path() / fmt::format(".{}.{}", folder.filename().string(), ::getpid())) {
-    std::error_code code;
-    fs::create_directories(path, code);
-    GLINT_CHECK(!code, kEnvironment, "{}: cannot be made ({})", path.string(), code.message());
-  }
-  ~UnfinishedFolder() {
-    std::error_code code;
-    fs::remove_all(path, code);
-  }
-  void move_to(const fs::path& folder) const {
-    std::error_code code;
-    fs::remove_all(folder, code);
-    if (!code) fs::rename(path, folder, code);
-    GLINT_CHECK(
-        !code, kEnvironment, "{}: cannot be replaced ({})", folder.string(), code.message()
-    );
-  }
-};
+void move_to(const fs::path& made, const fs::path& folder) {
+  std::error_code code;
+  fs::remove_all(folder, code);
+  if (!code) fs::rename(made, folder, code);
+  GLINT_CHECK(!code, kEnvironment, "{}: cannot be replaced ({})", folder.string(), code.message());
+}
 
 void add_scene_notes(const ExportInput& input, ExportReport& report) {
   const Scene& scene = input.scene;
@@ -127,14 +112,25 @@ void add_scene_notes(const ExportInput& input, ExportReport& report) {
     );
 }
 
-void note_counted(const ExportInput& input, ExportReport& report) {
-  const bool any = std::any_of(input.views.begin(), input.views.end(), [](const ExportView& view) {
-    return !view.view->counted.empty();
-  });
-  if (any)
+// Masks of the views that have one.
+void write_counted(
+    const ExportInput& input,
+    const ExporterSpec& exporter,
+    const fs::path& folder,
+    ExportReport& report
+) {
+  std::size_t count = 0;
+  for (const ExportView& view : input.views) {
+    if (view.view->counted.empty()) continue;
+    write_png(folder / counted_file(view.name), view.view->counted);
+    ++count;
+  }
+  if (count == 0) return;
+  report.add("counted/", fmt::format("{} PNG, white: the pixel counts", count));
+  if (!exporter.names_counted)
     report.note(
-        "pixels that do not count are grey; the format has no place for their masks: trainers take "
-        "the grey for the scene"
+        "pixels that do not count are grey; the format does not name their masks (counted/): other "
+        "trainers take the grey for the scene"
     );
 }
 
@@ -175,12 +171,12 @@ ExportReport export_scene(const Scene& scene, const fs::path& to, const ExportOp
   GLINT_CHECK(!input.views.empty(), kUsage, "{}: no views in that split", scene.name);
   ExportReport report;
   const UnfinishedFolder unfinished(folder);
-  exporter.write(input, unfinished.path, report);
-  if (!exporter.has_counted) note_counted(input, report);
-  if (!exporter.has_scene_maps) write_side_maps(input, unfinished.path, report);
-  write_scene_json(input, exporter, unfinished.path);
+  exporter.write(input, unfinished.path(), report);
+  write_counted(input, exporter, unfinished.path(), report);
+  if (!exporter.has_scene_maps) write_side_maps(input, unfinished.path(), report);
+  write_scene_json(input, exporter, unfinished.path());
   add_scene_notes(input, report);
-  unfinished.move_to(folder);
+  move_to(unfinished.path(), folder);
   return report;
 }
 

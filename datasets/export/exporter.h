@@ -44,7 +44,7 @@ struct ExporterSpec {
   // (kUsage): cameras that the format cannot hold.
   std::function<void(ExportInput&, const fs::path& folder, ExportReport&)> write;
   bool has_scene_maps = false;  // a place for all maps; else those of side_maps.h are written
-  bool has_counted = false;     // a place for masks of the pixels that count
+  bool names_counted = false;   // its files name masks of the pixels that count
   std::string source = {};      // the file that registers it
 };
 

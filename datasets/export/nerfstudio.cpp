@@ -7,7 +7,6 @@
 #include "datasets/export/export_files.h"
 #include "datasets/side_maps.h"
 #include "glint/core/config.h"
-#include "glint/scene/image_files.h"
 
 namespace glint {
 namespace {
@@ -26,25 +25,12 @@ fs::path nerfstudio_picture(const ExportView& view) {
   return fs::path("images") / (view.name + ".png");
 }
 
-fs::path counted_file(const ExportView& view) { return fs::path("counted") / (view.name + ".png"); }
-
-// Masks of the views that have one.
-void write_counted(const ExportInput& input, const fs::path& folder, ExportReport& report) {
-  std::size_t count = 0;
-  for (const ExportView& view : input.views) {
-    if (view.view->counted.empty()) continue;
-    write_png(folder / counted_file(view), view.view->counted);
-    ++count;
-  }
-  if (count > 0) report.add("counted/", fmt::format("{} PNG, white: the pixel counts", count));
-}
-
 Json frame_of(const ExportView& view, bool with_intrinsics, bool with_depth) {
   const Camera& camera = view.view->camera;
   Json frame = with_intrinsics ? intrinsics_of(camera) : Json::object();
   frame["file_path"] = nerfstudio_picture(view).generic_string();
   frame["transform_matrix"] = opengl_world_from_cam(camera);
-  if (!view.view->counted.empty()) frame["mask_path"] = counted_file(view).generic_string();
+  if (!view.view->counted.empty()) frame["mask_path"] = counted_file(view.name).generic_string();
   if (with_depth)
     frame["depth_file_path"] = side_truth_file(MapId("depth").row(), view.name).generic_string();
   return frame;
@@ -82,7 +68,6 @@ void write(const ExportInput& input, const fs::path& folder, ExportReport& repor
   for (const ExportView& view : input.views)
     json["frames"].push_back(frame_of(view, !same, with_depth));
   add_split(input, json);
-  write_counted(input, folder, report);
   write_pictures(input, folder, nerfstudio_picture, report);
   report.add("images/", fmt::format("{} PNG, 8 bit", input.views.size()));
   report.add(

@@ -342,7 +342,7 @@ TEST_CASE("nerfstudio's file names depth where all views have it, and lists ever
   CHECK_FALSE(json["frames"][4].contains("depth_file_path"));
 }
 
-TEST_CASE("masks of what counts go with nerfstudio's files; other formats say that they do not") {
+TEST_CASE("masks of what counts go with every format; those that do not name them say so") {
   Scene scene = room();
   Image& counted = scene.train[2].counted;
   counted = Image(scene.train[2].rgb.width(), scene.train[2].rgb.height(), 1, 1.0f);
@@ -351,9 +351,9 @@ TEST_CASE("masks of what counts go with nerfstudio's files; other formats say th
   for (const auto& [id, exporter] : Registry<ExporterSpec>::all()) {
     INFO(id);
     const Exported exported(id, scene);
-    CHECK(exported.notes("pixels that do not count") != exporter.has_counted);
-    if (!exporter.has_counted) continue;
+    CHECK(exported.notes("pixels that do not count") != exporter.names_counted);
     const Scene loaded = load_scene(exported.folder, {});
+    REQUIRE(loaded.train.size() == scene.train.size());
     const auto found = loaded.train[2].counted.values();
     CHECK(std::equal(found.begin(), found.end(), counted.values().begin(), counted.values().end()));
     CHECK(loaded.train[1].counted.empty());
