@@ -8,6 +8,7 @@
 #include "datasets/known_surfaces.h"
 #include "datasets/prior_maps.h"
 #include "glint/core/error.h"
+#include "glint/core/median.h"
 #include "glint/core/parallel.h"
 #include "glint/scene/image_files.h"
 
@@ -100,7 +101,7 @@ void tell_disparity_shifts(SceneIndex& index) {
   std::vector<double> shifts;
   for (const auto& fit : fits)
     if (fit) shifts.push_back(fit->shift);
-  const double otherwise = shifts.empty() ? 0 : median_of(shifts);
+  const double otherwise = shifts.empty() ? 0 : upper_median(shifts);
   for (std::size_t i = 0; i < index.views.size(); ++i)
     index.views[i].prior_reading.disparity_shift =
         static_cast<float>(fits[i] ? fits[i]->shift : otherwise);

@@ -17,11 +17,6 @@ namespace {
 
 const std::vector<std::string> kPictures{".png", ".jpg", ".jpeg"};
 
-bool is_folder(const fs::path& path) {
-  std::error_code code;
-  return fs::is_directory(path, code);
-}
-
 LoaderMatch match(const fs::path& folder) {
   std::error_code code;
   if (!fs::exists(folder / "intri.yml", code)) return {};

@@ -147,13 +147,6 @@ std::vector<KnownPixel> KnownPoints::seen_by(const Camera& camera) const {
   return pixels;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 ImageSize picture_size(const ViewSource& view) {
   const bool stated = view.camera.width > 0 && view.camera.height > 0;
   return stated ? view.camera.size() : read_image_size(view.image);

@@ -34,9 +34,6 @@ class KnownPoints {
   std::vector<std::optional<Vec3d>> normals_;  // world, either side; nothing: no plane there
 };
 
-// The upper one of two in the middle; of none 0.
-double median_of(std::vector<double> values);
-
 // As stated with the camera, else as stored.
 ImageSize picture_size(const ViewSource& view);
 

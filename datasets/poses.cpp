@@ -23,11 +23,6 @@ namespace {
 const std::vector<std::string> kPictures{".png", ".jpg", ".jpeg"};
 constexpr std::size_t kMostNumbers = 16;
 
-bool is_folder(const fs::path& path) {
-  std::error_code code;
-  return fs::is_directory(path, code);
-}
-
 bool has_intrinsics(const fs::path& folder) {
   std::error_code code;
   return fs::exists(folder / "intrinsics.txt", code) || is_folder(folder / "intrinsics");

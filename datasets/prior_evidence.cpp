@@ -11,6 +11,7 @@
 #include "datasets/prior_files.h"
 #include "datasets/prior_maps.h"
 #include "glint/core/error.h"
+#include "glint/core/median.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {
@@ -107,7 +108,7 @@ std::optional<NormalEvidence> PriorScale::weigh_normals() {
     const double sum = std::accumulate(cosines[i].begin(), cosines[i].end(), 0.0);
     evidence.mean_cosine[i] = sum / static_cast<double>(cosines[i].size());
     evidence.median_angle_deg[i] =
-        std::acos(std::clamp(median_of(cosines[i]), -1.0, 1.0)) * 180 / std::numbers::pi;
+        std::acos(std::clamp(upper_median(cosines[i]), -1.0, 1.0)) * 180 / std::numbers::pi;
   }
   return evidence;
 }

@@ -23,11 +23,6 @@ const std::multimap<std::string, std::string> kAliases{
     {"metallic", "metallics"},
 };
 
-bool is_folder(const fs::path& path) {
-  std::error_code code;
-  return fs::is_directory(path, code);
-}
-
 std::vector<std::string> names_of_pass(const std::string& pass) {
   std::vector<std::string> names{pass};
   const auto [begin, end] = kAliases.equal_range(pass);

@@ -59,6 +59,12 @@ inline constexpr std::size_t kFewestPoints = 4;
 // leaves the message to load().
 bool file_contains(const fs::path& file, std::string_view part);
 
+// False, too, when it cannot be looked at.
+inline bool is_folder(const fs::path& path) {
+  std::error_code code;
+  return fs::is_directory(path, code);
+}
+
 // Folders in a folder, in the order of bytes; empty: it cannot be read.
 std::vector<fs::path> list_folders(const fs::path& folder);
 

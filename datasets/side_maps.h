@@ -6,7 +6,8 @@
 //                              ground truth, first surface. Or .exr, .npy in metres
 //   normals/<view>.png         prior, (n + 1) / 2, camera space, OpenCV axes
 //   priors/<prior>/<view>.png  the other priors; depth 16 bit, relative
-//   counted/<view>.png         masks of the pixels that count (white), of views where not all do; in
+//   counted/<view>.png         masks of the pixels that count (white), of views where not all do;
+//   in
 //                              every format
 // Other ground truth has no place there.
 #pragma once

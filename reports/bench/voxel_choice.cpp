@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "glint/core/error.h"
+#include "glint/core/median.h"
 
 namespace glint {
 
@@ -13,12 +14,6 @@ namespace {
 
 constexpr std::size_t kMostPoints = 2000;                // looked at in each view
 constexpr double kMostVoxels = 2000, kLeastVoxels = 50;  // along the diagonal
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 bool sees(const Camera& camera, Vec3d in_cam) {
   if (in_cam.z <= 0) return false;
@@ -51,18 +46,18 @@ VoxelChoice choose_voxel(const Scene& scene) {
   std::vector<double> depths, pixels;
   for (const View& view : scene.train) {
     const std::vector<double> seen = depths_of(scene, view.camera);
-    depths.push_back(seen.empty() ? diagonal / 2 : median(seen));
+    depths.push_back(seen.empty() ? diagonal / 2 : upper_median(seen));
     pixels.push_back(depths.back() / view.camera.fx);
   }
   VoxelChoice choice;
-  const double pixel = median(pixels);
+  const double pixel = upper_median(pixels);
   choice.voxel = two_digits(std::clamp(pixel, diagonal / kMostVoxels, diagonal / kLeastVoxels));
   choice.why = fmt::format(
       "voxel {:.3g} m: a pixel of {}x{} at the usual depth of {:.2g} m is {:.2g} m wide",
       choice.voxel,
       scene.train.front().camera.width,
       scene.train.front().camera.height,
-      median(depths),
+      upper_median(depths),
       pixel
   );
   return choice;

@@ -8,6 +8,7 @@
 #include "glint/core/device.h"
 #include "glint/core/files.h"
 #include "glint/core/machine.h"
+#include "glint/core/median.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "glint/core/recorded_step.h"
@@ -28,11 +29,6 @@ double milliseconds(const std::function<void()>& body) {
   synchronize();
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 // What one run of several asked for since `before`.
@@ -64,11 +60,11 @@ PerfRow measure(const PerfCase& c, int threads, int runs) {
     times.push_back(milliseconds(c.run));
     if (with_scalar) ratios.push_back(milliseconds(c.run_scalar) / times.back());
   }
-  PerfRow row{c.name, c.unit, threads, median(times)};
+  PerfRow row{c.name, c.unit, threads, upper_median(times)};
   row.asked = asked_since(before, runs);
   row.per_second = c.work() / (row.ms / 1000);
   if (c.bytes) row.bytes_per_second = c.bytes() / (row.ms / 1000);
-  if (!ratios.empty()) row.scalar_ratio = median(ratios);
+  if (!ratios.empty()) row.scalar_ratio = upper_median(ratios);
   return row;
 }
 
