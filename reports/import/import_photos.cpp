@@ -7,10 +7,13 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 
 #include "datasets/colmap_model.h"
+#include "datasets/scene_index.h"
+#include "datasets/side_maps.h"
 #include "glint/core/error.h"
 #include "glint/core/file_lock.h"
 #include "glint/core/interrupt.h"
@@ -96,8 +99,15 @@ std::string option(const std::string& help, const std::string& group, const std:
   return help.find(later) != std::string::npos ? later : earlier;
 }
 
-// Of all photos below the folder, as COLMAP names them.
-std::vector<fs::path> find_photos(const fs::path& folder) {
+bool lies_in(const fs::path& file, const fs::path& folder) {
+  const fs::path relative = fs::absolute(file).lexically_normal().lexically_relative(
+      fs::absolute(folder / "").lexically_normal()
+  );
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+// Of all photos below the folder, as COLMAP names them; `masks` are none.
+std::vector<fs::path> find_photos(const fs::path& folder, const fs::path& masks) {
   check_exists(folder, "folder");
   const std::set<std::string> pictures{".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp"};
   std::vector<fs::path> photos;
@@ -106,6 +116,7 @@ std::vector<fs::path> find_photos(const fs::path& folder) {
     std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
       return static_cast<char>(std::tolower(c));
     });
+    if (!masks.empty() && lies_in(entry.path(), masks)) continue;
     if (entry.is_regular_file() && pictures.contains(extension))
       photos.push_back(entry.path().lexically_relative(folder));
   }
@@ -119,6 +130,31 @@ std::vector<fs::path> find_photos(const fs::path& folder) {
   );
   std::sort(photos.begin(), photos.end());
   return photos;
+}
+
+// Of those photos that have one. Errors (kBadReference): no such folder; none has.
+std::map<fs::path, fs::path> find_masks(
+    const fs::path& folder, const std::vector<fs::path>& photos
+) {
+  std::map<fs::path, fs::path> masks;
+  if (folder.empty()) return masks;
+  check_exists(folder, "folder");
+  std::error_code code;
+  for (const fs::path& photo : photos)
+    for (const fs::path& name :
+         {fs::path(photo.string() + ".png"), fs::path(photo).replace_extension(".png")})
+      if (fs::is_regular_file(folder / name, code)) {
+        masks.emplace(photo, folder / name);
+        break;
+      }
+  GLINT_CHECK(
+      !masks.empty(),
+      kBadReference,
+      "{}: no mask of any photo; expected PNG files of their paths, such as {}",
+      folder.string(),
+      (folder / photos.front()).replace_extension(".png").string()
+  );
+  return masks;
 }
 
 // One lens for all where they are of one size.
@@ -155,7 +191,8 @@ class PhotoImport {
           )
       );
     lock_.emplace(std::get<FileLock>(std::move(lock)));
-    photos_ = find_photos(photos);
+    photos_ = find_photos(photos, options.masks);
+    masks_ = find_masks(options.masks, photos_);
     result_.photos = photos_.size();
     result_.matcher = options.matcher != "auto"         ? options.matcher
                       : photos_.size() <= kMostForPairs ? "exhaustive"
@@ -192,6 +229,7 @@ class PhotoImport {
     add("--image_path", folder_.string());
     add("--ImageReader.camera_model", options_.lens);
     add("--ImageReader.single_camera", are_of_one_size(folder_, photos_) ? "1" : "0");
+    if (!masks_.empty()) add("--ImageReader.mask_path", masks_for_colmap().string());
     add(option(help, "Extraction", "use_gpu"), "0");
     add(option(help, "Extraction", "num_threads"), threads());
     add(option(help, "Extraction", "max_image_size"), std::to_string(options_.max_side));
@@ -199,6 +237,13 @@ class PhotoImport {
     colmap_.run(words, [&](std::string_view line) {
       if (line.find("Processed file [") != std::string_view::npos) progress.advance();
     });
+  }
+
+  // A folder with the names that it looks for.
+  fs::path masks_for_colmap() const {
+    for (const auto& [photo, mask] : masks_)
+      write_file(work_ / "masks" / (photo.string() + ".png"), read_file(mask));
+    return work_ / "masks";
   }
 
   void match(const std::string& help) {
@@ -264,6 +309,22 @@ class PhotoImport {
     return best;
   }
 
+  // Under the names of the views, as the loader calls them.
+  void write_counted(const fs::path& made, const std::set<fs::path>& posed) {
+    std::vector<ViewSource> views;
+    for (const fs::path& photo : posed) views.push_back({.name = photo.string()});
+    shorten_names(views);
+    std::size_t i = 0;
+    for (const fs::path& photo : posed) {
+      const std::string name = views[i++].name;
+      const auto mask = masks_.find(photo);
+      if (mask == masks_.end()) continue;
+      write_file(made / counted_file(name), read_file(mask->second));
+      ++result_.masks;
+    }
+    if (result_.masks > 0) write_file(made / "scene.json", "{}\n");
+  }
+
   void finish() {
     const auto [folder, model] = largest_model();
     result_.points = read_colmap_points(folder / "points3D.bin").positions.size();
@@ -279,6 +340,7 @@ class PhotoImport {
       }
       write_file(made / "images" / photo, read_file(folder_ / photo));
     }
+    write_counted(made, posed);
     for (const char* file : {"cameras.bin", "images.bin", "points3D.bin"})
       write_file(made / "sparse/0" / file, read_file(folder / file));
     fs::remove(out_, ignored);  // empty
@@ -291,6 +353,7 @@ class PhotoImport {
   PhotoOptions options_;
   Colmap colmap_;
   std::vector<fs::path> photos_;
+  std::map<fs::path, fs::path> masks_;  // of photos
   PhotoModel result_;
 };
 

@@ -28,6 +28,8 @@ std::string model_text(const std::string& out, const PhotoModel& model) {
       model.points,
       model.matcher
   );
+  if (model.masks > 0)
+    text += fmt::format("- {} have masks of the pixels that count\n", model.masks);
   if (!model.unposed.empty())
     text += fmt::format("- left out, no place was found: {}\n", comma_list(model.unposed));
   if (model.other_models > 0)
@@ -44,6 +46,7 @@ void print_model(const CommonOptions& common, const PhotoModel& model) {
        {"photos", model.photos},
        {"unposed", model.unposed},
        {"points", model.points},
+       {"masks", model.masks},
        {"other_models", model.other_models},
        {"matcher", model.matcher}}
   );
@@ -88,6 +91,9 @@ void add_dataset_import(CommandLine& line, CLI::App& dataset) {
   app.add_option("--matcher", options.matcher, "pairs of photos that are compared")
       ->check(CLI::IsMember({"auto", "exhaustive", "sequential"}))
       ->capture_default_str();
+  app.add_option(
+      "--masks", options.masks, "folder with masks of the photos: what is black does not count"
+  );
   app.add_option("--max-side", options.max_side, "pixels of the photos that features are found in")
       ->check(CLI::Range(100, 20000))
       ->capture_default_str();

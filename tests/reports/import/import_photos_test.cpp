@@ -106,6 +106,33 @@ TEST_CASE("photos become a folder that loads, checks and says what was left out"
   CHECK(run(words) == 1);  // there is something now
 }
 
+TEST_CASE("masks of photos go to COLMAP under its names, and into the folder") {
+  const TempFolder folder;
+  write_photos(folder / "photos", 5);
+  write_colmap(folder, 4);
+  const PathInFront path(folder / "bin");
+  Image mask(32, 24, 1, 1.0f);
+  for (int i = 0; i < 25; ++i) mask.at(8 + i % 5, 8 + i / 5) = 0;
+  PhotoOptions options;
+  options.masks = folder / "photos/masks";  // no photos themselves
+  fs::create_directory(options.masks);
+  CHECK_THAT(
+      bad_reference([&] { import_photos(folder / "photos", folder / "out", options); }),
+      Contains("masks: no mask of any photo") && Contains("day/p0.png")
+  );
+  write_png(folder / "photos/masks/day/p1.png", mask);
+  write_png(folder / "photos/masks/day/p2.png.png", mask);
+  write_png(folder / "photos/masks/day/p4.png", mask);  // gets no camera
+  CHECK(import_photos(folder / "photos", folder / "out", options).masks == 2);
+  CHECK_THAT(read_file(folder / "calls"), Contains("--ImageReader.mask_path"));
+  CHECK(check_dataset(folder / "out").empty());
+  const Scene scene = load_scene(folder / "out", {});
+  REQUIRE(scene.train.size() == 3);  // p0 is a test view
+  CHECK(scene.train[0].counted.at(10, 10) == 0);
+  CHECK(scene.train[1].counted.at(10, 10) == 0);
+  CHECK(scene.train[2].counted.empty());
+}
+
 TEST_CASE("what COLMAP says when it fails is shown, and its work is gone on from") {
   const TempFolder folder;
   write_photos(folder / "photos", 4);
