@@ -11,7 +11,7 @@ namespace glint {
 // is a fog of faint surfels that would take hundreds of hits a ray, and what lies behind 2 % of
 // transmittance changes a pixel by 0.02 k_s, less than a step of 8 bits at the k_s of glass. And in
 // training, 2x2 pixels that mirror little share a ray, and such a ray may end earlier (SharedRays;
-// off: in GLINT it would cost the reflections 0.1 to 0.2 dB, docs/GLINT_NOTES.md).
+// off, docs/GLINT_NOTES.md says what it costs).
 struct MirrorCutoffs {
   float transmittance = 0.02f;
   int hits = 64;
