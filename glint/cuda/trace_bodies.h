@@ -123,7 +123,7 @@ struct FindHits {
         }
         counts.hit();
         saved.slot(hits++, place) = slot;
-        return hits < cutoffs.max_hits && transmittance >= stop;
+        return hits < cutoffs.max_hits && !(transmittance < stop);
       });
     }
     return hits;
