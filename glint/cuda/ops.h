@@ -143,7 +143,11 @@ inline TraceCutoffs cutoffs(const TraceSettings& s) {
 inline DeviceTraceCall device_call(const TraceCall& call, TraceOutput& output) {
   return {
       .input = device_input(call.input),
-      .rays = {call.rays.origins.on_device(), call.rays.directions.on_device()},
+      .rays =
+          {.origins = call.rays.origins.on_device(),
+           .directions = call.rays.directions.on_device(),
+           .count = call.rays.origins.num_pixels(),
+           .stops = pointer(call.rays.stops)},
       .num_rays = call.rays.origins.num_pixels(),
       .cutoffs = cutoffs(call.settings),
       .out = device_output(output),

@@ -18,11 +18,12 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-NearestHits::NearestHits(float near, float min_alpha, float min_transmittance)
+NearestHits::NearestHits(float near, float min_alpha, float min_transmittance, float stop)
     : after_{std::max(near, 0.0f), kLastSurfel, 0, 0},
       last_{},
       min_alpha_(min_alpha),
-      min_transmittance_(min_transmittance) {}
+      min_transmittance_(min_transmittance),
+      stop_(stop) {}
 
 void NearestHits::start(float transmittance, std::size_t most) {
   if (count_ > 0) after_ = sorted_[count_ - 1];
@@ -107,7 +108,7 @@ bool NearestHits::may_stop() {
     clear = clear * (Float8(1.0f) - Float8::load(alphas_ + i));
   float transmittance = transmittance_;
   for (int lane = 0; lane < Float8::kLanes; ++lane) transmittance *= clear[lane];
-  return transmittance < min_transmittance_;
+  return transmittance < std::max(min_transmittance_, stop_);
 }
 
 // Hits behind the one that stops the ray do not matter, whatever else is found in front of it.
@@ -115,7 +116,7 @@ int NearestHits::hits_until_stop() const {
   float transmittance = transmittance_;
   for (int i = 0; i < count_; ++i) {
     transmittance = blend_step(transmittance, sorted_[i].alpha, min_transmittance_).transmittance;
-    if (transmittance < 0) return i + 1;
+    if (transmittance < std::max(stop_, 0.0f)) return i + 1;
   }
   return count_;
 }

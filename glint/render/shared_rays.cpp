@@ -19,7 +19,13 @@ LeaderOfBlock leader_at(ImageSize size, int step) {
 
 }  // namespace
 
-const Rays& SharedRays::choose(const GlassBuffer& buffer, const RaySharing& sharing, int step) {
+SharersOf SharedRays::sharers() const {
+  return {rays_.directions.width(), rays_.directions.height(), source_.on_device()};
+}
+
+const Rays& SharedRays::choose(
+    const GlassBuffer& buffer, const RaySharing& sharing, const RayStops& stops, int step
+) {
   const ImageSize size = buffer.depth.size();
   rays_.origins = buffer.reflected.origins;
   fit(rays_.directions, size, 3);
@@ -37,6 +43,16 @@ const Rays& SharedRays::choose(const GlassBuffer& buffer, const RaySharing& shar
           source_.on_device(),
           rays_.directions.on_device()}
   );
+  if (stops.weight_below > 0) {
+    fit(rays_.stops, size, 1);
+    run_kernel(
+        size.num_pixels(),
+        kGrain,
+        StopRays{sharers(), stops, buffer.specularity.on_device(), rays_.stops.on_device()}
+    );
+  } else {
+    rays_.stops = {};
+  }
   return rays_;
 }
 
@@ -54,12 +70,7 @@ void SharedRays::spread_vjp(const Image& dL_dcolor, Image& dL_dtraced) const {
   run_kernel(
       dL_dcolor.num_pixels(),
       kGrain,
-      SpreadColorVjp{
-          dL_dcolor.width(),
-          dL_dcolor.height(),
-          source_.on_device(),
-          dL_dcolor.on_device(),
-          dL_dtraced.on_device()}
+      SpreadColorVjp{sharers(), dL_dcolor.on_device(), dL_dtraced.on_device()}
   );
 }
 

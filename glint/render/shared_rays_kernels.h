@@ -22,6 +22,19 @@ struct RaySharing {
   }
 };
 
+// Where the rays end of pixels that mirror little: at the transmittance whose share of the pixel
+// is `weight_below`, within these bounds. Also a pixel with k_s = 0 has a ray, since k_s is learned
+// from what that sees.
+struct RayStops {
+  float weight_below = 0;                 // transmittance times k_s; 0: at `latest`, all of them
+  float earliest = 0.3f, latest = 0.02f;  // transmittance
+
+  GLINT_HD float at(float mirrored) const {
+    const float limit = weight_below / max_of(mirrored, 1e-6f);
+    return max_of(latest, min_of(earliest, limit));
+  }
+};
+
 // The pixel of a block whose ray the others take.
 struct LeaderOfBlock {
   int width, height;
@@ -52,6 +65,36 @@ struct ShareRays {
   }
 };
 
+// Pixels of i's block whose ray is i's, as f(pixel).
+struct SharersOf {
+  int width, height;
+  const std::uint32_t* source;
+
+  template <class F>
+  GLINT_HD void each(std::size_t i, F&& f) const {
+    const int left = static_cast<int>(i) % width / kShareBlock * kShareBlock;
+    const int top = static_cast<int>(i) / width / kShareBlock * kShareBlock;
+    for (int y = top; y < top + kShareBlock && y < height; ++y)
+      for (int x = left; x < left + kShareBlock && x < width; ++x) {
+        const auto from = static_cast<std::uint32_t>(y * width + x);
+        if (source[from] == i) f(from);
+      }
+  }
+};
+// A ray goes as far as the pixel needs it that mirrors most of those that take it.
+struct StopRays {
+  SharersOf sharers;
+  RayStops stops;
+  const float* mirrored;
+  float* out;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    float most = 0;
+    sharers.each(i, [&](std::uint32_t pixel) { most = max_of(most, mirrored[pixel]); });
+    out[i] = stops.at(most);
+  }
+};
+
 struct SpreadColor {
   const std::uint32_t* source;
   const float* traced;
@@ -60,23 +103,16 @@ struct SpreadColor {
 };
 // A pixel's own ray gets what all that took it are due.
 struct SpreadColorVjp {
-  int width, height;
-  const std::uint32_t* source;
+  SharersOf sharers;
   const float* dL_dcolor;
   float* dL_dtraced;
   GLINT_HD void operator()(std::size_t i) const {
     Vec3f sum{};
-    const int left = static_cast<int>(i) % width / kShareBlock * kShareBlock;
-    const int top = static_cast<int>(i) / width / kShareBlock * kShareBlock;
-    for (int y = top; y < top + kShareBlock && y < height; ++y)
-      for (int x = left; x < left + kShareBlock && x < width; ++x) {
-        const auto from = static_cast<std::uint32_t>(y * width + x);
-        if (source[from] == i) sum += get3(dL_dcolor, from);
-      }
+    sharers.each(i, [&](std::uint32_t pixel) { sum += get3(dL_dcolor, pixel); });
     put3(dL_dtraced, i, sum);
   }
 };
 
-using SharedRaysKernels = KernelList<ShareRays, SpreadColor, SpreadColorVjp>;
+using SharedRaysKernels = KernelList<ShareRays, StopRays, SpreadColor, SpreadColorVjp>;
 
 }  // namespace glint

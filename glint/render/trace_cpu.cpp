@@ -94,6 +94,7 @@ bool weigh(
     if (step.transmittance < 0) return false;
     prefetch_hit(saved, hit.slot);
     hits.push(hit.slot, step.weight, hit.t);
+    if (step.transmittance < ray.stop) return false;
   }
   return left > 0;
 }
@@ -140,7 +141,7 @@ void trace_ray(
     std::vector<std::uint32_t>& slots,
     RaySums& sums
 ) {
-  NearestHits nearest(settings.near, settings.min_alpha, settings.min_transmittance);
+  NearestHits nearest(settings.near, settings.min_alpha, settings.min_transmittance, ray.stop);
   WeightedHits hits;
   auto left = static_cast<std::size_t>(std::max(settings.max_hits, 0));
   for (bool more = left > 0; more;) {
@@ -356,6 +357,7 @@ RayState ray_at(const Rays& rays, int sh_degree, std::size_t i) {
   RayState ray;
   ray.origin = get3(rays.origins.data(), i);
   ray.direction = get3(rays.directions.data(), i);
+  if (!rays.stops.empty()) ray.stop = rays.stops.data()[i];
   const float norm = length(ray.direction);
   float basis[ShRow::kCoefficients] = {};
   if (norm > 0) sh_basis(sh_degree, (1 / norm) * ray.direction, basis);

@@ -13,18 +13,19 @@ void MirroredLayer::trace(
     std::optional<int> step,
     Image& layer
 ) {
-  shares_ = step && mirror.share_below > 0;
+  chosen_ = step && (mirror.share_below > 0 || mirror.weight_below > 0);
   const Rays& rays =
-      shares_ ? shared_.choose(buffer, {.below = mirror.share_below}, *step) : buffer.reflected;
+      chosen_ ? shared_.choose(buffer, {.below = mirror.share_below}, mirror.stops(), *step)
+              : buffer.reflected;
   const Image& color = set.trace(rays, sh_degree, mirror.settings()).color;
-  if (shares_)
+  if (chosen_)
     shared_.spread(color, layer);
   else
     copy_color(color, layer);
 }
 
 const Rays& MirroredLayer::trace_backward(TrainableSet& set, const Image& dL_dlayer) {
-  if (shares_)
+  if (chosen_)
     shared_.spread_vjp(dL_dlayer, dL_dtrace_.color);
   else
     copy_color(dL_dlayer, dL_dtrace_.color);

@@ -27,7 +27,7 @@ class MirroredLayer {
 
  private:
   SharedRays shared_;
-  bool shares_ = false;
+  bool chosen_ = false;  // its rays, by shared_; else each pixel has its own
   TraceOutputGradient dL_dtrace_;
 };
 

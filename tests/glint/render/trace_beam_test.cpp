@@ -174,6 +174,17 @@ TEST_CASE("beams follow the cut-offs of a ray") {
   }
 }
 
+TEST_CASE("beams follow the stops of each ray") {
+  Rng rng(28);
+  BeamScene scene = random_beam_scene(3000, 0.1, 0.4, 0.1, rng);
+  mirror_at_edge(scene, rng);
+  scene.settings.min_transmittance = 0.02f;
+  const std::size_t hits = trace(scene, TraceSearch::kTree).hits;
+  scene.rays.stops = random_stops(scene.rays.origins.size(), rng);
+  check_searches(scene);
+  CHECK(trace(scene, TraceSearch::kTree).hits < hits);
+}
+
 TEST_CASE("beams do not touch what triangles give") {
   Rng rng(25);
   BeamScene scene = random_beam_scene(500, 0.1, 0.4, 0.3, rng);
