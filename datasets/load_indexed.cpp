@@ -58,6 +58,8 @@ MapSet read_priors(const ViewSource& source, const Camera& camera) {
   return maps;
 }
 
+constexpr float kWhole = 1 - 1e-4f;  // of a sum of weights
+
 void undistort_view(View& view, const std::vector<double>& distortion) {
   using Lookup = Undistortion::Lookup;
   const Undistortion undistortion(view.camera, distortion);
@@ -65,7 +67,11 @@ void undistort_view(View& view, const std::vector<double>& distortion) {
     if (map.empty()) return;
     const bool blend =
         row.kind != MapKind::kDepth && row.kind != MapKind::kNormal && row.kind != MapKind::kMask;
-    map = undistortion.apply(map, blend ? Lookup::kBilinear : Lookup::kNearest);
+    const bool is_counted = &map == &view.counted;
+    map = undistortion.apply(map, blend || is_counted ? Lookup::kBilinear : Lookup::kNearest);
+    // A pixel counts where all do that its colour is blended from.
+    if (is_counted)
+      for (float& share : map.values()) share = share >= kWhole ? 1.0f : 0.0f;
   });
   view.camera = undistortion.camera();
 }

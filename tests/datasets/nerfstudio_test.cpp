@@ -380,6 +380,31 @@ TEST_CASE("nothing that does not count bleeds into pixels of a smaller picture")
   for (int x = 6; x < 16; ++x) CHECK(view.rgb.at(x, 3, 0) == Approx(0.25f).margin(0.003));
 }
 
+TEST_CASE("nothing that does not count bleeds into pixels where a lens is undone") {
+  RoomFolder folder;
+  folder.json["k1"] = 0.15;
+  Image picture(48, 36, 3, 0.25f);
+  MaskImage mask(48, 36, 1, 255);
+  for (int y = 10; y < 25; ++y)
+    for (int x = 9; x < 21; ++x) {
+      mask.at(x, y) = 0;
+      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = 1;
+    }
+  write_png(folder / "images/0002.png", picture);
+  write_png(folder / "masks/2.png", map_of_mask(mask));
+  folder.json["frames"][2]["mask_path"] = "masks/2.png";
+  const View view = folder.load().train[1];
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < view.counted.num_pixels(); ++i) {
+    if (view.counted.data()[i] == 0)
+      ++left_out;
+    else
+      CHECK(view.rgb.data()[3 * i] == Approx(0.25f).margin(0.003));
+  }
+  CHECK(left_out > 100);
+  CHECK(left_out < 300);
+}
+
 TEST_CASE(
     "a mask of another size but the same shape serves, one of another shape or without white "
     "is an error that check names, too"
