@@ -157,7 +157,7 @@ double difference_by_paint(const std::string& method_id, bool counts) {
 }  // namespace
 
 TEST_CASE("What a pixel shows that does not count leaves no trace in any method") {
-  CHECK(difference_by_paint("2dgs", true) > 0.01);
+  CHECK(difference_by_paint("2dgs", true) > 0);  // where it counts, it does
   for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     INFO(id);
     CHECK(difference_by_paint(id, false) == 0);
