@@ -17,7 +17,7 @@ inline constexpr const char* kDefaultPriorLevel = "default";
 // From the strongest priors to the weakest.
 inline constexpr std::array kPriorLevels{"perfect", "good", kDefaultPriorLevel, "poor", "bad"};
 
-// The default with one of the errors of "poor".
+// The default with one of the errors of "poor"; joined by '+', with several: noise+see-through.
 inline constexpr std::array kPriorFlaws{"noise", "see-through", "gaps", "dark-leak", "bright-leak"};
 
 inline std::vector<std::string> prior_levels() {
@@ -30,17 +30,34 @@ inline std::vector<std::string> prior_kinds() {
   return kinds;
 }
 
-// Errors (kUsage): no such level or flaw; `where` and the field open the message, which lists them.
+inline bool is_prior_flaw(const std::string& name) {
+  return std::find(kPriorFlaws.begin(), kPriorFlaws.end(), name) != kPriorFlaws.end();
+}
+// The parts between the '+' of a name.
+inline std::vector<std::string> joined_flaws(const std::string& name) {
+  std::vector<std::string> parts(1);
+  for (const char c : name)
+    if (c == '+')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+// Errors (kUsage): no such level or flaw, or what is joined are not all flaws; `where` and the
+// field open the message, which lists them.
 inline void check_prior_level(const std::string& name, const std::string& where) {
-  const std::vector<std::string> known = prior_kinds();
+  const std::vector<std::string> known = prior_kinds(), parts = joined_flaws(name);
+  const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
   GLINT_CHECK(
-      std::find(known.begin(), known.end(), name) != known.end(),
+      is_known || std::all_of(parts.begin(), parts.end(), is_prior_flaw),
       kUsage,
-      "{}: priors is '{}'; {}expected one of {}",
+      "{}: priors is '{}'; {}expected one of {}, or some of the last {} joined by +",
       where,
       name,
       did_you_mean(name, known),
-      comma_list(known)
+      comma_list(known),
+      kPriorFlaws.size()
   );
 }
 

@@ -293,13 +293,31 @@ constexpr std::array<LevelRates, kPriorLevels.size() + kPriorFlaws.size()> kLeve
      {1, 0.1f, 0, 0.02f},
      {1, 0.1f, 0, 0, 0.1f}}};
 
+const LevelRates& rates_of(const std::string& kind) {
+  const std::vector<std::string> kinds = prior_kinds();
+  const auto place = std::find(kinds.begin(), kinds.end(), kind);
+  return kLevelRates[static_cast<std::size_t>(place - kinds.begin())];
+}
+// No flaw has less of anything than the default, so each adds its own.
+LevelRates joined(const std::vector<std::string>& flaws) {
+  LevelRates all = rates_of(kDefaultPriorLevel);
+  for (const std::string& flaw : flaws) {
+    const LevelRates& one = rates_of(flaw);
+    all.noise = std::max(all.noise, one.noise);
+    all.failure = std::max(all.failure, one.failure);
+    all.missing = std::max(all.missing, one.missing);
+    all.dark_leak = std::max(all.dark_leak, one.dark_leak);
+    all.bright_leak = std::max(all.bright_leak, one.bright_leak);
+  }
+  return all;
+}
+
 }  // namespace
 
 PriorModel prior_level(const std::string& name) {
   check_prior_level(name, "glassroom");
-  const std::vector<std::string> kinds = prior_kinds();
-  const auto place = std::find(kinds.begin(), kinds.end(), name);
-  const LevelRates& rates = kLevelRates[static_cast<std::size_t>(place - kinds.begin())];
+  const std::vector<std::string> flaws = joined_flaws(name);
+  const LevelRates rates = flaws.size() > 1 ? joined(flaws) : rates_of(name);
   PriorModel model = scaled_model(rates.noise, rates.failure);
   model.missing_rate = rates.missing;
   model.dark_leak = rates.dark_leak;

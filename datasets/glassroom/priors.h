@@ -34,7 +34,7 @@
 //   poor        2      0.2      0.1      0.02       0.1
 //   bad         4      0.4      0.3      0.1        0.3
 // And default with one column of poor: noise, see-through (failure), gaps (missing), dark-leak,
-// bright-leak.
+// bright-leak; or with several of them, joined: noise+see-through.
 #pragma once
 
 #include <cstdint>
@@ -73,7 +73,7 @@ struct PriorModel {
   }
 };
 
-// Of one of prior_kinds(). Errors: check_prior_level()'s.
+// Of one of prior_kinds(), or of flaws joined by '+'. Errors: check_prior_level()'s.
 PriorModel prior_level(const std::string& name);
 
 // Which of `count` views the predictor left out, ascending: missing_rate of them, rounded, one in

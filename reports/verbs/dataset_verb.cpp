@@ -231,7 +231,10 @@ void add_make(CommandLine& line, CLI::App& dataset) {
   make.add_option("--spp", room.spp, "samples a pixel")->capture_default_str();
   make.add_option("--assets", room.assets, "folder with glTF furniture");
   make.add_option(
-          "--priors", room.priors, "how good simulated priors are: " + comma_list(prior_kinds())
+          "--priors",
+          room.priors,
+          "how good simulated priors are: " + comma_list(prior_kinds()) +
+              "; the last ones may be joined by +"
   )
       ->capture_default_str();
   add_front3d_options(make, options->front3d);

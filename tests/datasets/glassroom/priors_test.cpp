@@ -269,6 +269,20 @@ TEST_CASE("A flaw is the default with one kind of error as it is at poor") {
   CHECK(touched.size() == poor.size());
 }
 
+TEST_CASE("Flaws that are joined have the errors of each") {
+  std::string all;
+  for (const std::string flaw : kPriorFlaws) all += (all.empty() ? "" : "+") + flaw;
+  CHECK(config_to_json(prior_level(all)) == config_to_json(prior_level("poor")));
+  const PriorModel two = prior_level("dark-leak+noise");
+  CHECK(two.sigma_normal_deg == prior_level("poor").sigma_normal_deg);
+  CHECK(two.dark_leak == prior_level("poor").dark_leak);
+  CHECK(two.failure_rate == prior_level("default").failure_rate);
+  for (const std::string wrong : {"noise+", "+", "noise+poor", "poor+noise", "noise+nose", ""}) {
+    INFO(wrong);
+    CHECK_THROWS_WITH(prior_level(wrong), Catch::Contains("'" + wrong + "'; "));
+  }
+}
+
 TEST_CASE("Levels are in order of their errors, and one that there is not is named") {
   REQUIRE(prior_levels() == std::vector<std::string>{"perfect", "good", "default", "poor", "bad"});
   Json before;
