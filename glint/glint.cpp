@@ -304,6 +304,16 @@ GLINT_REGISTER(
 GLINT_REGISTER(
     MethodSpec,
     glint_spec(
+        "glint/robust",
+        "GLINT (robust)",
+        "",
+        "beyond the paper: labels of L_trans that say opaque count a quarter of those of glass",
+        {{"opaque_weight", 0.25}}
+    )
+)
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
         "glint/no-trans",
         "w/o G_trans",
         "w/o G_trans",

@@ -31,4 +31,21 @@ std::string glass_mask_note(const MaskCounts& counts) {
   );
 }
 
+std::optional<double> dark_share_of_glass(const std::vector<View>& views, float low_albedo) {
+  std::size_t glass = 0, dark = 0;
+  for (const View& view : views) {
+    const Image &mask = glass_mask(view), &albedo = view.priors["albedo"];
+    if (mask.empty() || albedo.empty()) continue;
+    for (int y = 0; y < mask.height(); ++y)
+      for (int x = 0; x < mask.width(); ++x) {
+        if (!(mask.at(x, y) > 0.5f) || (!view.counted.empty() && view.counted.at(x, y) == 0))
+          continue;
+        ++glass;
+        dark += albedo.at(x, y, 0) + albedo.at(x, y, 1) + albedo.at(x, y, 2) < 3 * low_albedo;
+      }
+  }
+  if (glass == 0) return std::nullopt;
+  return static_cast<double>(dark) / static_cast<double>(glass);
+}
+
 }  // namespace glint

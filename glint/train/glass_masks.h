@@ -4,6 +4,7 @@
 // of them a run was given is a fact that readers of tables need: glass_mask_note().
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,9 @@ MaskCounts count_glass_masks(const std::vector<View>& views);
 
 // "the prior folder's", "the dataset's ground truth", "none", or how many of each.
 std::string glass_mask_note(const MaskCounts& counts);
+
+// Of the pixels that masks call glass, in views with an albedo prior: the share whose mean RGB lies
+// below `low_albedo`. Nothing where there are none.
+std::optional<double> dark_share_of_glass(const std::vector<View>& views, float low_albedo);
 
 }  // namespace glint

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
 #include "glint/render/map_kernels.h"
 #include "glint/render/map_ops.h"
+#include "glint/train/glass_masks.h"
 
 namespace glint {
 
@@ -24,6 +27,26 @@ GeometryLossConfig direct_geometry(const TransmissionLossConfig& config) {
   geometry.lambda_smooth = config.lambda_direct_smooth;
   geometry.smooth_from = config.direct_smooth_from;
   return geometry;
+}
+
+// Masks say how much of the glass has labels that draw t down: too much of it, and t is lost.
+void warn_of_bright_glass(
+    const TransparencyGuidance& guidance,
+    const Scene& scene,
+    const std::string& method,
+    std::vector<std::string>& warnings
+) {
+  const auto dark = dark_share_of_glass(scene.train, guidance.low_albedo);
+  if (!dark || *dark > guidance.share_needed()) return;
+  warnings.push_back(fmt::format(
+      "{}: only {:.0f} % of what the masks call glass has an albedo below {} (low_albedo), and "
+      "L_trans lets surfaces be transparent where more than {:.0f} % of their labels do: expect t "
+      "to be lost; opaque_weight=0.25 (glint/robust) asks for a fifth",
+      method,
+      100 * *dark,
+      guidance.low_albedo,
+      100 * guidance.share_needed()
+  ));
 }
 
 }  // namespace
@@ -44,16 +67,25 @@ std::vector<std::string> TransmissionLosses::set_up(
       method,
       config.guidance
   );
+  GLINT_CHECK(
+      config.opaque_weight >= 0,
+      kUsage,
+      "{}: opaque_weight is {}, expected 0 or more",
+      method,
+      config.opaque_weight
+  );
   config_ = config;
   const bool release = config.guidance == "release";
   guidance_ = release ? TransparencyGuidance::release() : TransparencyGuidance::paper();
   guidance_.depth_threshold = config.depth_threshold;
   guidance_.low_albedo = config.low_albedo;
+  guidance_.opaque_weight = config.opaque_weight;
   direct_geometry_.set_up(direct_geometry(config), scene, method);  // needs no prior
   std::vector<std::string> warnings;
   float& weight = config_.lambda_transparency;
   require_prior(scene, "albedo", "L_trans", method, weight, warnings);
   if (release) require_prior(scene, "basecolor", "L_trans", method, weight, warnings);
+  if (!release && weight > 0) warn_of_bright_glass(guidance_, scene, method, warnings);
   return warnings;
 }
 

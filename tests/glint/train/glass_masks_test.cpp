@@ -32,3 +32,20 @@ TEST_CASE("a note says where the masks of a run are from") {
   for (View& view : views) view.priors["glass"] = Image(1, 1, 1);
   CHECK(note() == "the prior folder's");
 }
+
+TEST_CASE("the dark share of glass is of what masks call glass, and of what counts") {
+  std::vector<View> views(2);
+  CHECK_FALSE(dark_share_of_glass(views, 0.05f));
+  views[0].truth["glass"] = Image(4, 1, 1, 1);
+  CHECK_FALSE(dark_share_of_glass(views, 0.05f));  // no albedo
+  Image albedo(4, 1, 3, 0.3f);
+  albedo.at(1, 0, 0) = albedo.at(1, 0, 1) = albedo.at(1, 0, 2) = 0.04f;
+  albedo.at(2, 0, 0) = 0.12f, albedo.at(2, 0, 1) = albedo.at(2, 0, 2) = 0.01f;  // mean 0.047
+  views[0].priors["albedo"] = albedo;
+  CHECK(*dark_share_of_glass(views, 0.05f) == Approx(1.0 / 2));
+  views[0].truth["glass"].at(0, 0) = 0;
+  CHECK(*dark_share_of_glass(views, 0.05f) == Approx(2.0 / 3));
+  views[0].counted = Image(4, 1, 1, 1);
+  views[0].counted.at(1, 0) = 0;
+  CHECK(*dark_share_of_glass(views, 0.05f) == Approx(1.0 / 2));
+}

@@ -333,3 +333,26 @@ TEST_CASE("Guidance is off, with a warning, where a view lacks the prior it need
   config.guidance = "sideways";
   CHECK_THROWS_WITH(losses.set_up(config, f.scene, "test"), Catch::Contains("sideways"));
 }
+
+TEST_CASE("Where masks show that too little glass is dark, a warning says that t will be lost") {
+  Fixture f;
+  View& view = f.scene.train[0];
+  view.truth["glass"] = constant(1, 1);
+  for (int i = 0; i < 60; ++i)  // of 108
+    for (std::size_t c = 0; c < 3; ++c) view.priors["albedo"].data()[3 * i + c] = 0.3f;
+  TransmissionLossConfig config = only_guidance();
+  TransmissionLosses losses;
+  const auto warnings = losses.set_up(config, f.scene, "test");
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], Catch::Contains("44 %") && Catch::Contains("more than 50 %"));
+  config.opaque_weight = 0.25f;  // asks for a fifth
+  CHECK(losses.set_up(config, f.scene, "test").empty());
+  config.opaque_weight = 1;
+  config.low_albedo = 0.5f;
+  CHECK(losses.set_up(config, f.scene, "test").empty());
+  config = {};
+  config.lambda_transparency = 0;
+  CHECK(losses.set_up(config, f.scene, "test").empty());
+  config.opaque_weight = -1;
+  CHECK_THROWS_WITH(losses.set_up(config, f.scene, "test"), Catch::Contains("opaque_weight is -1"));
+}

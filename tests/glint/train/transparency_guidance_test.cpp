@@ -123,6 +123,40 @@ TEST_CASE("The paper's guidance is the mean distance of mask and transparency") 
   CHECK(gradient.at(2, 0) == 0.5f);
 }
 
+TEST_CASE("Labels that say opaque count as much as they are told to") {
+  TransparencyMasks masks;
+  masks.transparent = map_of<float>(4, 1, 1, {1, 1, 0, 0});
+  const Image t = map_of<float>(4, 1, 1, {0.25f, 1, 0.5f, 0});
+  TransparencyGuidance guidance = TransparencyGuidance::paper();
+  guidance.opaque_weight = 0.25f;
+  const auto loss = loss_with(guidance, masks);
+  CHECK(value_of(loss, t) == Approx((0.75 + 0 + 0.25 * 0.5 + 0) / 4));
+  const Image gradient = gradient_of(loss, t, 2.0f);
+  CHECK(gradient.at(0, 0) == -0.5f);
+  CHECK(gradient.at(2, 0) == 0.125f);
+}
+
+TEST_CASE("A surface becomes transparent where more of its labels say so than it needs") {
+  constexpr int kLabels = 100;
+  for (const float weight : {1.0f, 0.5f, 0.25f}) {
+    TransparencyGuidance guidance = TransparencyGuidance::paper();
+    guidance.opaque_weight = weight;
+    const int needed = static_cast<int>(std::floor(kLabels * guidance.share_needed()));
+    for (const int transparent : {needed - 1, needed + 1}) {
+      TransparencyMasks masks;
+      masks.transparent = Image(kLabels, 1, 1);
+      for (int i = 0; i < transparent; ++i) masks.transparent.at(i, 0) = 1;
+      // One surface, seen at all of the pixels: the sum of their gradients draws it.
+      const Image gradient =
+          gradient_of(loss_with(guidance, masks), Image(kLabels, 1, 1, 0.5f), 1.0f);
+      double sum = 0;
+      for (const float g : gradient.values()) sum += static_cast<double>(g);
+      INFO(weight << ": " << transparent << " of " << kLabels);
+      CHECK((sum < 0) == (transparent > needed));
+    }
+  }
+}
+
 TEST_CASE("A pixel that does not count is neither transparent nor opaque, and guides nothing") {
   Cues cues({3, 1}, {2, 3, 0.02f});
   const Image counted = map_of<float>(3, 1, 1, {1, 0, 1});
@@ -169,6 +203,9 @@ TEST_CASE("Both kinds of guidance have the gradient of their differences") {
       random_map<float>(size, 1, 0, 1, 41), random_map<float>(size, 1, 0, 1, 42)};
   const ImageD t = random_map<double>(size, 1, 0.02f, 0.98f, 43);
   check_loss_gradient(t, loss_with(TransparencyGuidance::paper(), masks));
+  TransparencyGuidance lenient = TransparencyGuidance::paper();
+  lenient.opaque_weight = 0.25f;
+  check_loss_gradient(t, loss_with(lenient, masks));
   check_loss_gradient(t, loss_with(TransparencyGuidance::release(), masks));
 }
 
