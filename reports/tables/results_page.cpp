@@ -114,7 +114,8 @@ std::string results_markdown(const fs::path& root) {
       "# Results\n\n"
       "Written by `glint-bench results` from the records named below; a test fails when the two "
       "differ.\n\n";
-  for (const char* name : {"results.json", "five_rooms.json", "captures.json"}) {
+  for (const char* name :
+       {"results.json", "five_rooms.json", "three_rooms.json", "captures.json"}) {
     const fs::path file = root / "docs/results" / name;
     if (!fs::exists(file)) continue;
     const ResultsInfo info = read_results_info(file);

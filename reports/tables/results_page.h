@@ -11,7 +11,7 @@
 namespace glint {
 
 // What the page says of some records besides their tables: docs/results/results.json (our rooms),
-// five_rooms.json and captures.json.
+// five_rooms.json, three_rooms.json and captures.json.
 struct ResultsInfo {
   std::string records;              // "docs/results/small.jsonl"
   std::string command;              // that made them
