@@ -307,8 +307,8 @@ GLINT_REGISTER(
         "glint/robust",
         "GLINT (robust)",
         "",
-        "beyond the paper: labels of L_trans that say opaque count a quarter of those of glass",
-        {{"opaque_weight", 0.25}}
+        "beyond the paper: labels of L_trans that say glass count four times",
+        {{"transparent_weight", 4.0}}
     )
 )
 GLINT_REGISTER(

@@ -41,7 +41,7 @@ void warn_of_bright_glass(
   warnings.push_back(fmt::format(
       "{}: only {:.0f} % of what the masks call glass has an albedo below {} (low_albedo), and "
       "L_trans lets surfaces be transparent where more than {:.0f} % of their labels do: expect t "
-      "to be lost; opaque_weight=0.25 (glint/robust) asks for a fifth",
+      "to be lost; transparent_weight=4 (glint/robust) asks for a fifth",
       method,
       100 * *dark,
       guidance.low_albedo,
@@ -68,18 +68,18 @@ std::vector<std::string> TransmissionLosses::set_up(
       config.guidance
   );
   GLINT_CHECK(
-      config.opaque_weight >= 0,
+      config.transparent_weight >= 0,
       kUsage,
-      "{}: opaque_weight is {}, expected 0 or more",
+      "{}: transparent_weight is {}, expected 0 or more",
       method,
-      config.opaque_weight
+      config.transparent_weight
   );
   config_ = config;
   const bool release = config.guidance == "release";
   guidance_ = release ? TransparencyGuidance::release() : TransparencyGuidance::paper();
   guidance_.depth_threshold = config.depth_threshold;
   guidance_.low_albedo = config.low_albedo;
-  guidance_.opaque_weight = config.opaque_weight;
+  guidance_.transparent_weight = config.transparent_weight;
   direct_geometry_.set_up(direct_geometry(config), scene, method);  // needs no prior
   std::vector<std::string> warnings;
   float& weight = config_.lambda_transparency;

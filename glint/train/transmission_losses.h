@@ -19,7 +19,7 @@ namespace glint {
 struct TransmissionLossConfig {
   std::string guidance = "paper";
   float lambda_transparency = 0.1f;
-  float depth_threshold = 0.01f, low_albedo = 0.05f, opaque_weight = 1;
+  float depth_threshold = 0.01f, low_albedo = 0.05f, transparent_weight = 1;
   float lambda_direct = 0, lambda_plausible = 0, lambda_transparency_prior = 0;
   int transparency_from = 7000, plausible_from = 5000, transparency_prior_from = 7000;
   // On the set seen from the camera on its own, as on the interface.
@@ -37,7 +37,7 @@ struct TransmissionLossConfig {
     v("lambda_transparency", lambda_transparency, "weight of transparency guidance");
     v("depth_threshold", depth_threshold, "tau_d: metres between the layers at glass");
     v("low_albedo", low_albedo, "gamma_a: albedo of glass lies below");
-    v("opaque_weight", opaque_weight, "of labels that say opaque, beside 1 of transparent; paper");
+    v("transparent_weight", transparent_weight, "of labels that say glass, beside 1 (paper)");
     v("lambda_direct", lambda_direct, "photometric loss of the transmission set on its own");
     v("lambda_plausible", lambda_plausible, "ties transmission to the interface where opaque");
     v("lambda_transparency_prior", lambda_transparency_prior, "entropy, mean, smoothness of t");

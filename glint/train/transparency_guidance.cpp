@@ -33,7 +33,7 @@ double mean_l1(
     const BasicImage<T>& t,
     const TransparencyMasks& masks,
     T weight,
-    T opaque_weight,
+    T transparent_weight,
     BasicImage<T>& dL_dt
 ) {
   const auto num_pixels = static_cast<double>(t.num_pixels());
@@ -42,7 +42,7 @@ double mean_l1(
       masks.transparent.on_device(),
       masks.opaque.on_device(),
       weight / static_cast<T>(num_pixels),
-      opaque_weight,
+      transparent_weight,
       dL_dt.on_device()};
   return sum_kernel(t.size(), loss_at) / num_pixels;
 }
@@ -128,7 +128,9 @@ double TransparencyGuidance::evaluate(
   if (masks.transparent.empty()) return 0;
   check_fits("transparency mask", masks.transparent, transparency.size(), 1);
   if (kind == GuidanceKind::kL1)
-    return mean_l1(transparency, masks, weight, static_cast<T>(opaque_weight), dL_dtransparency);
+    return mean_l1(
+        transparency, masks, weight, static_cast<T>(transparent_weight), dL_dtransparency
+    );
   check_fits("opacity mask", masks.opaque, transparency.size(), 1);
   const T high = static_cast<T>(transparent_target), low = static_cast<T>(opaque_target);
   return mean_bce(transparency, masks.transparent, high, weight, dL_dtransparency) +

@@ -31,8 +31,8 @@ struct TransparencyMasks {
 // kL1: transparent = |z_intr - z_trans| > depth_threshold and mean RGB albedo < low_albedo, and 0
 // where a depth is missing; opaque = 1 - transparent; loss = mean |transparent - t|, over all
 // pixels; one that does not count is neither, and adds nothing. An L1 takes what most labels say:
-// with `opaque_weight` w, a surface becomes transparent where more than w / (1 + w) of its labels
-// say so.
+// with `transparent_weight` w, a surface becomes transparent where more than 1 / (1 + w) of its
+// labels say so.
 //
 // kBce: transparent = low albedo, bright basecolor, both depths present and
 // z_trans > z_intr + depth_threshold; opaque = high albedo, or low albedo and basecolor not bright,
@@ -45,18 +45,15 @@ struct TransparencyMasks {
 // a relative depth with metres.
 struct TransparencyGuidance {
   GuidanceKind kind = GuidanceKind::kL1;
-  float depth_threshold = 0.01f;  // tau_d, metres (scale it for scenes in other units)
-  float low_albedo = 0.05f;       // gamma_a
-  float opaque_weight = 1;        // kL1, of a pixel labelled opaque beside one labelled transparent
-  float high_albedo = 0.10f;      // kBce
-  float bright_basecolor = 0.25f;                           // kBce, of the mean RGB
+  float depth_threshold = 0.01f;   // tau_d, metres (scale it for scenes in other units)
+  float low_albedo = 0.05f;        // gamma_a
+  float transparent_weight = 1;    // kL1, of labels that say transparent, beside 1
+  float high_albedo = 0.10f;       // kBce
+  float bright_basecolor = 0.25f;  // kBce, of the mean RGB
   float transparent_target = 0.98f, opaque_target = 0.02f;  // kBce
 
   // kL1: more than this share of a surface's labels have to say transparent.
-  double share_needed() const {
-    const double weight = static_cast<double>(opaque_weight);
-    return weight / (1 + weight);
-  }
+  double share_needed() const { return 1 / (1 + static_cast<double>(transparent_weight)); }
 
   static TransparencyGuidance paper() { return {}; }
   static TransparencyGuidance release() { return {GuidanceKind::kBce, 0.005f}; }

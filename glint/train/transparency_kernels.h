@@ -96,14 +96,14 @@ template <class T>
 struct GuideL1 {
   BasicImageView<T> t;
   ImageView target, opaque;  // opaque may be empty; neither: the pixel does not count
-  T scale, opaque_weight;
+  T scale, transparent_weight;
   BasicImageRef<T> dL_dt;
 
   GLINT_HD double operator()(int x, int y) const {
     const bool counts = opaque.empty() || target.at(x, y) + opaque.at(x, y) > 0;
     if (!counts) return 0;
     const T difference = t.at(x, y) - static_cast<T>(target.at(x, y));
-    const T weight = target.at(x, y) > 0 ? T(1) : opaque_weight;
+    const T weight = target.at(x, y) > 0 ? transparent_weight : T(1);
     dL_dt.at(x, y) += scale * weight * sign_of(difference);
     return static_cast<double>(weight * abs_of(difference));
   }

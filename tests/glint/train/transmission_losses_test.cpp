@@ -345,14 +345,16 @@ TEST_CASE("Where masks show that too little glass is dark, a warning says that t
   const auto warnings = losses.set_up(config, f.scene, "test");
   REQUIRE(warnings.size() == 1);
   CHECK_THAT(warnings[0], Catch::Contains("44 %") && Catch::Contains("more than 50 %"));
-  config.opaque_weight = 0.25f;  // asks for a fifth
+  config.transparent_weight = 4;  // asks for a fifth
   CHECK(losses.set_up(config, f.scene, "test").empty());
-  config.opaque_weight = 1;
+  config.transparent_weight = 1;
   config.low_albedo = 0.5f;
   CHECK(losses.set_up(config, f.scene, "test").empty());
   config = {};
   config.lambda_transparency = 0;
   CHECK(losses.set_up(config, f.scene, "test").empty());
-  config.opaque_weight = -1;
-  CHECK_THROWS_WITH(losses.set_up(config, f.scene, "test"), Catch::Contains("opaque_weight is -1"));
+  config.transparent_weight = -1;
+  CHECK_THROWS_WITH(
+      losses.set_up(config, f.scene, "test"), Catch::Contains("transparent_weight is -1")
+  );
 }

@@ -123,24 +123,24 @@ TEST_CASE("The paper's guidance is the mean distance of mask and transparency") 
   CHECK(gradient.at(2, 0) == 0.5f);
 }
 
-TEST_CASE("Labels that say opaque count as much as they are told to") {
+TEST_CASE("Labels that say transparent count as often as they are told to") {
   TransparencyMasks masks;
   masks.transparent = map_of<float>(4, 1, 1, {1, 1, 0, 0});
   const Image t = map_of<float>(4, 1, 1, {0.25f, 1, 0.5f, 0});
   TransparencyGuidance guidance = TransparencyGuidance::paper();
-  guidance.opaque_weight = 0.25f;
+  guidance.transparent_weight = 4;
   const auto loss = loss_with(guidance, masks);
-  CHECK(value_of(loss, t) == Approx((0.75 + 0 + 0.25 * 0.5 + 0) / 4));
+  CHECK(value_of(loss, t) == Approx((4 * 0.75 + 0 + 0.5 + 0) / 4));
   const Image gradient = gradient_of(loss, t, 2.0f);
-  CHECK(gradient.at(0, 0) == -0.5f);
-  CHECK(gradient.at(2, 0) == 0.125f);
+  CHECK(gradient.at(0, 0) == -2.0f);
+  CHECK(gradient.at(2, 0) == 0.5f);
 }
 
 TEST_CASE("A surface becomes transparent where more of its labels say so than it needs") {
   constexpr int kLabels = 100;
-  for (const float weight : {1.0f, 0.5f, 0.25f}) {
+  for (const float weight : {1.0f, 2.0f, 4.0f}) {
     TransparencyGuidance guidance = TransparencyGuidance::paper();
-    guidance.opaque_weight = weight;
+    guidance.transparent_weight = weight;
     const int needed = static_cast<int>(std::floor(kLabels * guidance.share_needed()));
     for (const int transparent : {needed - 1, needed + 1}) {
       TransparencyMasks masks;
@@ -204,7 +204,7 @@ TEST_CASE("Both kinds of guidance have the gradient of their differences") {
   const ImageD t = random_map<double>(size, 1, 0.02f, 0.98f, 43);
   check_loss_gradient(t, loss_with(TransparencyGuidance::paper(), masks));
   TransparencyGuidance lenient = TransparencyGuidance::paper();
-  lenient.opaque_weight = 0.25f;
+  lenient.transparent_weight = 4;
   check_loss_gradient(t, loss_with(lenient, masks));
   check_loss_gradient(t, loss_with(TransparencyGuidance::release(), masks));
 }
