@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "glint/train/transparency_kernels.h"
+
 namespace glint {
 
 const Image& glass_mask(const View& view) {
@@ -41,7 +43,7 @@ std::optional<double> dark_share_of_glass(const std::vector<View>& views, float 
         if (!(mask.at(x, y) > 0.5f) || (!view.counted.empty() && view.counted.at(x, y) == 0))
           continue;
         ++glass;
-        dark += albedo.at(x, y, 0) + albedo.at(x, y, 1) + albedo.at(x, y, 2) < 3 * low_albedo;
+        dark += LabelMaps::mean_rgb(albedo.view(), x, y) < low_albedo;
       }
   }
   if (glass == 0) return std::nullopt;
