@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "glint/render/shared_rays.h"
 
+#include "glint/core/error.h"
+
 namespace glint {
 
 namespace {
@@ -8,25 +10,22 @@ namespace {
 constexpr std::size_t kGrain = 4096;  // pixels a block
 
 // Not the step itself, which would give every view the same pixels each time.
-LeaderOfBlock leader_at(ImageSize size, int step) {
+LeaderOfBlock leader_at(const ShareBlocks& blocks, int step) {
   const std::uint32_t mixed = static_cast<std::uint32_t>(step) * 2654435761u >> 16;
-  return {
-      size.width,
-      size.height,
-      static_cast<int>(mixed % kShareBlock),
-      static_cast<int>(mixed / kShareBlock % kShareBlock)};
+  const auto side = static_cast<std::uint32_t>(blocks.side);
+  return {blocks, static_cast<int>(mixed % side), static_cast<int>(mixed / side % side)};
 }
 
 }  // namespace
 
-SharersOf SharedRays::sharers() const {
-  return {rays_.directions.width(), rays_.directions.height(), source_.on_device()};
-}
+SharersOf SharedRays::sharers() const { return {blocks_, source_.on_device()}; }
 
 const Rays& SharedRays::choose(
     const GlassBuffer& buffer, const RaySharing& sharing, const RayStops& stops, int step
 ) {
+  GLINT_CHECK(sharing.block >= 1, kUsage, "blocks of {} pixels cannot share rays", sharing.block);
   const ImageSize size = buffer.depth.size();
+  blocks_ = {size.width, size.height, sharing.block};
   rays_.origins = buffer.reflected.origins;
   fit(rays_.directions, size, 3);
   source_.resize(size.num_pixels());
@@ -34,7 +33,7 @@ const Rays& SharedRays::choose(
       size.num_pixels(),
       kGrain,
       ShareRays{
-          leader_at(size, step),
+          leader_at(blocks_, step),
           sharing,
           buffer.specularity.on_device(),
           buffer.transparency.on_device(),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Mirrored rays that neighbours share: where little is mirrored, one pixel of 2x2 is traced and the
-// others take its radiance; and rays that end earlier where little is mirrored. Beyond the papers;
-// for training, where the pixel is another one each step.
+// Mirrored rays that neighbours share: where little is mirrored, one pixel of a block is traced and
+// the others take its radiance; and rays that end earlier where little is mirrored. Beyond the
+// papers; for training, where the pixel is another one each step.
 #pragma once
 
 #include "glint/render/glass_transport.h"
@@ -13,7 +13,7 @@ class SharedRays {
  public:
   // The rays of a buffer, those that nobody needs without a direction. `step` chooses the pixel of
   // each block. What it returns stays valid until the next call. Rays::stops is empty where
-  // stops.weight_below is 0.
+  // stops.weight_below is 0. Errors (kUsage): sharing.block is less than 1.
   const Rays& choose(
       const GlassBuffer& buffer, const RaySharing& sharing, const RayStops& stops, int step
   );
@@ -24,6 +24,7 @@ class SharedRays {
  private:
   SharersOf sharers() const;
 
+  ShareBlocks blocks_{};
   Rays rays_;
   Array<std::uint32_t> source_;
 };

@@ -9,11 +9,10 @@
 
 namespace glint {
 
-inline constexpr int kShareBlock = 2;  // pixels, across and down, of which one has the ray of all
-
 // Which pixels can do with a neighbour's mirrored ray.
 struct RaySharing {
   float below = 0;  // k_s; 0: none
+  int block = 2;    // pixels, across and down, of which one has the ray of all; at least 1
   float max_transparency = 0.5f;
   float min_cosine = 0.95f;  // between their normals
 
@@ -35,15 +34,23 @@ struct RayStops {
   }
 };
 
+// The blocks of a picture.
+struct ShareBlocks {
+  int width, height;  // of the picture
+  int side;           // of a block
+  GLINT_HD int left_of(std::size_t i) const { return static_cast<int>(i) % width / side * side; }
+  GLINT_HD int top_of(std::size_t i) const { return static_cast<int>(i) / width / side * side; }
+};
+
 // The pixel of a block whose ray the others take.
 struct LeaderOfBlock {
-  int width, height;
+  ShareBlocks blocks;
   int x, y;  // its place in the block
-  GLINT_HD std::uint32_t of(std::uint32_t i) const {
-    const int column = static_cast<int>(i) % width / kShareBlock * kShareBlock + x;
-    const int row = static_cast<int>(i) / width / kShareBlock * kShareBlock + y;
+  GLINT_HD std::uint32_t of(std::size_t i) const {
+    const int column = blocks.left_of(i) + x, row = blocks.top_of(i) + y;
     return static_cast<std::uint32_t>(
-        (row < height ? row : height - 1) * width + (column < width ? column : width - 1)
+        (row < blocks.height ? row : blocks.height - 1) * blocks.width +
+        (column < blocks.width ? column : blocks.width - 1)
     );
   }
 };
@@ -57,7 +64,7 @@ struct ShareRays {
   float* shared;
 
   GLINT_HD void operator()(std::size_t i) const {
-    const std::uint32_t other = leader.of(static_cast<std::uint32_t>(i));
+    const std::uint32_t other = leader.of(i);
     const bool alike = dot(get3(normal, i), get3(normal, other)) >= sharing.min_cosine;
     const bool takes = other != i && alike && sharing.is_weak(mirrored[i], transparency[i]);
     source[i] = takes ? other : static_cast<std::uint32_t>(i);
@@ -67,20 +74,21 @@ struct ShareRays {
 
 // Pixels of i's block whose ray is i's, as f(pixel).
 struct SharersOf {
-  int width, height;
+  ShareBlocks blocks;
   const std::uint32_t* source;
 
   template <class F>
   GLINT_HD void each(std::size_t i, F&& f) const {
-    const int left = static_cast<int>(i) % width / kShareBlock * kShareBlock;
-    const int top = static_cast<int>(i) / width / kShareBlock * kShareBlock;
-    for (int y = top; y < top + kShareBlock && y < height; ++y)
-      for (int x = left; x < left + kShareBlock && x < width; ++x) {
-        const auto from = static_cast<std::uint32_t>(y * width + x);
+    if (source[i] != i) return;
+    const int left = blocks.left_of(i), top = blocks.top_of(i);
+    for (int y = top; y < top + blocks.side && y < blocks.height; ++y)
+      for (int x = left; x < left + blocks.side && x < blocks.width; ++x) {
+        const auto from = static_cast<std::uint32_t>(y * blocks.width + x);
         if (source[from] == i) f(from);
       }
   }
 };
+
 // A ray goes as far as the pixel needs it that mirrors most of those that take it.
 struct StopRays {
   SharersOf sharers;

@@ -15,8 +15,7 @@ void MirroredLayer::trace(
 ) {
   chosen_ = step && (mirror.share_below > 0 || mirror.weight_below > 0);
   const Rays& rays =
-      chosen_ ? shared_.choose(buffer, {.below = mirror.share_below}, mirror.stops(), *step)
-              : buffer.reflected;
+      chosen_ ? shared_.choose(buffer, mirror.sharing(), mirror.stops(), *step) : buffer.reflected;
   const Image& color = set.trace(rays, sh_degree, mirror.settings()).color;
   if (chosen_)
     shared_.spread(color, layer);

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "glint/core/error.h"
 #include "glint/core/rng.h"
 #include "tests/support/gpu_backends.h"
 
@@ -66,21 +67,28 @@ TEST_CASE("Pixels that mirror little share the ray of one of 2x2, others keep th
   }
 }
 
-TEST_CASE("Every pixel of a block is its leader in a quarter of the steps, whatever the view") {
-  const ImageSize size{2, 2};
+TEST_CASE("Every pixel of a block is its leader in as many of the steps, whatever the view") {
+  const int block = GENERATE(2, 4), pixels = block * block;
+  const ImageSize size{block, block};
   GlassBuffer buffer = buffer_of(size);
   buffer.specularity.array().fill(0.1f);
   buffer.transparency.array().fill(0.0f);
   SharedRays shared;
   for (const int views : {1, 4, 56}) {  // steps between two of the same view
-    std::vector<int> led(4);
-    for (int k = 0; k < 400; ++k) {
-      const Rays& rays = shared.choose(buffer, kSharing, {}, k * views);
-      for (std::size_t i = 0; i < 4; ++i) led[i] += has_ray(rays, i);
+    std::vector<int> led(size.num_pixels());
+    for (int k = 0; k < 100 * pixels; ++k) {
+      const Rays& rays = shared.choose(buffer, {.below = 0.2f, .block = block}, {}, k * views);
+      for (std::size_t i = 0; i < led.size(); ++i) led[i] += has_ray(rays, i);
     }
-    CHECK(std::accumulate(led.begin(), led.end(), 0) == 400);
+    CHECK(std::accumulate(led.begin(), led.end(), 0) == 100 * pixels);
     for (const int count : led) CHECK(std::abs(count - 100) < 40);
   }
+}
+
+TEST_CASE("Blocks have a pixel at least") {
+  const GlassBuffer buffer = buffer_of({2, 2});
+  SharedRays shared;
+  CHECK_THROWS_AS(shared.choose(buffer, {.below = 0.2f, .block = 0}, {}, 0), Error);
 }
 
 TEST_CASE("No ray is shared across an edge, nor with a pixel that hit nothing, nor without asking"
@@ -132,10 +140,11 @@ TEST_CASE("A ray goes as far as the pixel needs it that mirrors most of those th
 
 TEST_CASE("Pixels show what their ray met, and its gradient is the sum of theirs") {
   const ImageSize size = GENERATE(ImageSize{8, 4}, ImageSize{7, 5}, ImageSize{1, 1});
+  const int block = GENERATE(1, 2, 3, 4);
   const GlassBuffer buffer = buffer_of(size);
   SharedRays shared;
   for (int step = 0; step < 8; ++step) {
-    const Rays& rays = shared.choose(buffer, kSharing, {}, step);
+    const Rays& rays = shared.choose(buffer, {.below = 0.2f, .block = block}, {}, step);
     const Image traced = random_image(size, 1), dL_dcolor = random_image(size, 2);
     Image color, dL_dtraced;
     shared.spread(traced, color);
