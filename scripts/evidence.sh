@@ -2,13 +2,14 @@
 # Cells of a profile until the time is over; the record of each goes to docs/results/PROFILE.jsonl, and cells that stand there are not
 # run again. So days of work are done in pieces, on one machine after the other:
 #   scripts/evidence.sh [--profile NAME (small)] [--minutes N (60)] [--jobs N (all cores)] [--records FILE] [--work DIR (out/evidence)]
-#     [--bench GLINT_BENCH] [options of `glint-bench run`, as --methods 2dgs,glint]
+#     [--bench GLINT_BENCH] [--keep] [options of `glint-bench run`, as --methods 2dgs,glint]
 # Scene by scene, so that a machine makes few of them, and seed by seed within. A cell that began before the time was over is finished.
-# Surfels, renders and meshes go when the cell is recorded. Failed cells are recorded, too, and tried again by the next call. Exit 5: some failed.
+# Surfels, renders and meshes go when the cell is recorded; --keep leaves them, for `glint-bench figures`. Failed cells are recorded, too, and
+# tried again by the next call. Exit 5: some failed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-profile=small minutes=60 jobs=$(nproc) records= work=out/evidence bench=build/release/bin/glint-bench options=()
+profile=small minutes=60 jobs=$(nproc) records= work=out/evidence bench=build/release/bin/glint-bench keep_runs= options=()
 while [ $# -gt 0 ]; do
   case $1 in
     --profile) profile=$2; shift 2 ;;
@@ -17,6 +18,7 @@ while [ $# -gt 0 ]; do
     --records) records=$2; shift 2 ;;
     --work) work=$2; shift 2 ;;
     --bench) bench=$2; shift 2 ;;
+    --keep) keep_runs=1; shift ;;
     *) options+=("$1"); shift ;;
   esac
 done
@@ -50,7 +52,7 @@ keep() {
   { cat "$records"
     grep -F "\"scene\":\"$scene\",\"method\":\"${rest%/*}\",\"seed\":${rest##*/}," "$work/out/$name/records.jsonl" | tail -n 1; } >"$records.new"
   mv "$records.new" "$records"
-  rm -rf "$work/out/$name/runs/$1"
+  [ -n "$keep_runs" ] || rm -rf "$work/out/$name/runs/$1"
 }
 
 end=$((SECONDS + 60 * minutes)) failed=0

@@ -78,7 +78,27 @@ Table of_other_data(const Table& table) {
   return result;
 }
 
+std::vector<Record> shown_records(const ResultsInfo& info, std::vector<Record> records) {
+  const auto is_left_out = [&](const Record& record) {
+    return !info.cells.empty() &&
+           std::none_of(info.cells.begin(), info.cells.end(), [&](const std::string& glob) {
+             return glob_match(glob, record.cell.text());
+           });
+  };
+  std::erase_if(records, is_left_out);
+  return records;
+}
+
 }  // namespace
+
+std::vector<fs::path> results_parts(const fs::path& root) {
+  const fs::path folder = root / "docs/results/parts";
+  std::vector<fs::path> parts = list_files(folder, {".json"});
+  GLINT_CHECK(
+      !parts.empty(), kBadReference, "{}: no part of the results (*.json)", folder.string()
+  );
+  return parts;
+}
 
 ResultsInfo read_results_info(const fs::path& file) {
   ResultsInfo info;
@@ -87,13 +107,7 @@ ResultsInfo read_results_info(const fs::path& file) {
 }
 
 std::string results_part(const ResultsInfo& info, std::vector<Record> records) {
-  const auto is_left_out = [&](const Record& record) {
-    return !info.cells.empty() &&
-           std::none_of(info.cells.begin(), info.cells.end(), [&](const std::string& glob) {
-             return glob_match(glob, record.cell.text());
-           });
-  };
-  std::erase_if(records, is_left_out);
+  records = shown_records(info, std::move(records));
   std::string text = info.title.empty() ? "" : fmt::format("# {}\n\n", info.title);
   text += facts(info, records);
   const auto is_shown = [&](const std::string& id) {
@@ -114,10 +128,7 @@ std::string results_markdown(const fs::path& root) {
       "# Results\n\n"
       "Written by `glint-bench results` from the records named below; a test fails when the two "
       "differ.\n\n";
-  for (const char* name :
-       {"results.json", "five_rooms.json", "three_rooms.json", "captures.json"}) {
-    const fs::path file = root / "docs/results" / name;
-    if (!fs::exists(file)) continue;
+  for (const fs::path& file : results_parts(root)) {
     const ResultsInfo info = read_results_info(file);
     const auto records = read_records(root / info.records);
     GLINT_CHECK(!records.empty(), kBadPrediction, "{}: no records", info.records);
@@ -126,7 +137,8 @@ std::string results_markdown(const fs::path& root) {
   return text;
 }
 
-std::string readme_results(const ResultsInfo& info, const std::vector<Record>& records) {
+std::string readme_results(const ResultsInfo& info, std::vector<Record> records) {
+  records = shown_records(info, std::move(records));
   const auto definitions = table_definitions();
   const auto summary =
       std::find_if(definitions.begin(), definitions.end(), [](const TableDefinition& definition) {

@@ -10,13 +10,13 @@
 
 namespace glint {
 
-// What the page says of some records besides their tables: docs/results/results.json (our rooms),
-// five_rooms.json, three_rooms.json and captures.json.
+// A part of the page: a file of docs/results/parts, which says what the page shows of some records
+// and says of them besides their tables. The first is the README's.
 struct ResultsInfo {
   std::string records;              // "docs/results/small.jsonl"
   std::string command;              // that made them
   std::string remarks;              // what a reader has to know: what did not run, what was busy
-  std::string title;                // of their part of the page; empty: the first
+  std::string title;                // of their part of the page
   std::vector<std::string> tables;  // ids; empty: all in which something is measured
   std::vector<std::string> cells;   // globs of scene/method/seed; empty: all
   bool other_data = false;          // not our rooms: without published columns, captions and notes
@@ -32,6 +32,8 @@ struct ResultsInfo {
   }
 };
 
+// The files of a project's parts, by number and name. Errors (kBadReference): there are none.
+std::vector<fs::path> results_parts(const fs::path& root);
 // Errors (kUsage): unknown fields; kBadReference: no such file.
 ResultsInfo read_results_info(const fs::path& file);
 
@@ -41,7 +43,7 @@ std::string results_part(const ResultsInfo& info, std::vector<Record> records);
 std::string results_markdown(const fs::path& root);
 
 // The table that the README shows, with one line on where it comes from.
-std::string readme_results(const ResultsInfo& info, const std::vector<Record>& records);
+std::string readme_results(const ResultsInfo& info, std::vector<Record> records);
 
 // `readme` with what stands between its two markers replaced. Errors (kBadReference): no markers.
 inline constexpr const char* kResultsBegin = "<!-- results: written by `glint-bench results` -->";

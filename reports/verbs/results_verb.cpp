@@ -9,7 +9,7 @@ namespace glint {
 namespace {
 
 int run_results(const std::string& root) {
-  const ResultsInfo info = read_results_info(fs::path(root) / "docs/results/results.json");
+  const ResultsInfo info = read_results_info(results_parts(root).front());
   const auto records = read_records(fs::path(root) / info.records);
   GLINT_CHECK(!records.empty(), kBadPrediction, "{}: no records", info.records);
   const fs::path page = fs::path(root) / "docs/RESULTS.md", readme = fs::path(root) / "README.md";

@@ -6,7 +6,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 evidence() {
   "$(dirname "$0")/../../scripts/evidence.sh" --profile smoke --work "$folder/work" --records "$folder/records.jsonl" --bench "$bench" \
-    --jobs 1 --device cpu --iterations 10 --methods "$1" --minutes "$2"
+    --jobs 1 --device cpu --iterations 10 --methods "$1" --minutes "$2" ${3:+"$3"}
 }
 fail() { echo "FAILED: $*" >&2; exit 1; }
 lines() { wc -l <"$folder/records.jsonl"; }
@@ -23,4 +23,6 @@ evidence 2dgs,envgs 1
 evidence 2dgs,envgs 1 | grep -q "^0 cells to do" || fail "there was something left to do"
 sed -i 's/"status":"ok"/"status":"failed"/' "$folder/records.jsonl"
 evidence 2dgs 0 | grep -q "^1 cells to do" || fail "a failed cell is not tried again"
+evidence 2dgs 1 --keep
+[ -n "$(find "$folder/work/out" -name '*.ply')" ] || fail "--keep left no surfels"
 echo "records are kept, and nothing is run twice"

@@ -6,7 +6,7 @@
 using namespace glint;
 
 TEST_CASE("docs/RESULTS.md and the README's table are what the committed records give") {
-  const ResultsInfo info = read_results_info("docs/results/results.json");
+  const ResultsInfo info = read_results_info(results_parts(".").front());
   const auto records = read_records(info.records);
   REQUIRE(!records.empty());
   INFO("run `glint-bench results` and commit what it writes");
@@ -54,6 +54,7 @@ TEST_CASE("A part of the page may have a title and some tables alone") {
   ResultsInfo first = info;
   first.cells = {"room_*/glint/0"};
   CHECK(results_part(first, {record, second}) == part);
+  CHECK(readme_results(first, {record, second}) == readme_results(info, {record}));
   CHECK(results_part(info, {record, second}) != part);
   ResultsInfo other = info;
   other.other_data = true;
