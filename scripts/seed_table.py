@@ -19,7 +19,7 @@ COLUMNS = [  # title, metric, decimals
     ("Normal MAE", "normal-mae", 1), ("AbsRel on glass", "depth-absrel@glass", 3), ("t IoU", "transparency-iou", 3),
     ("behind", "behind-absrel", 3), ("content", "behind-absrel-content", 3), ("beyond", "behind-absrel-beyond", 3),
     ("trans-PSNR", "trans-psnr", 1), ("refl-PSNR", "refl-psnr", 1), ("CD (dm)", "mesh-cd", 2),
-    ("CD behind (dm)", "behind-mesh-cd", 2), ("surfels", "num-surfels", 0),
+    ("CD without panes (dm)", "behind-mesh-cd", 2), ("surfels", "num-surfels", 0),
 ]
 IN_DM = {"mesh-cd", "behind-mesh-cd"}
 

@@ -159,9 +159,12 @@ float Densifier::scale_of(int rows) const {
   return static_cast<float>(rows) / static_cast<float>(config_.reference_rows);
 }
 
-void Densifier::observe(const RasterOutput& output, const RasterGradient& gradient) {
+void Densifier::observe(
+    const RasterOutput& output, const RasterGradient& gradient, const RasterGradient* more
+) {
   const std::size_t count = output.in_view.size();
   const float scale = scale_of(output.alpha.height());
+  const float* second = more != nullptr ? more->screen.device_for_reading() : nullptr;
   const float* visibility =
       output.visibility.size() == count ? output.visibility.device_for_reading() : nullptr;
   run_kernel(
@@ -171,6 +174,7 @@ void Densifier::observe(const RasterOutput& output, const RasterGradient& gradie
           statistics(count),
           output.in_view.on_device(),
           gradient.screen.on_device(),
+          second,
           visibility,
           scale}
   );
@@ -374,12 +378,17 @@ bool Densifier::resets_within(int step, int margin) const {
   return after || (next < config_.until && next - step <= margin);
 }
 
-void Densifier::reset(int step, SurfelCloud& cloud, SurfelAdam& adam) const {
+void Densifier::reset_opacity(SurfelCloud& cloud, SurfelAdam& adam) const {
   lower_logits(config_.reset_opacity, 0, 1, cloud.opacity_logits);
   forget(0, 1, adam.first().opacity_logits);
   forget(0, 1, adam.second().opacity_logits);
+}
+
+void Densifier::reset_channels(int step, SurfelCloud& cloud, SurfelAdam& adam) const {
+  const int since = step % config_.reset_interval;
   for (const ChannelReset& channel : config_.channel_resets) {
-    if (step < channel.from) continue;
+    const bool due = since == (channel.halfway ? config_.reset_interval / 2 : 0);
+    if (!due || step < std::max(channel.from, config_.reset_interval)) continue;
     const auto [column, width] = column_of(cloud, channel.channel);
     lower_logits(channel.ceiling, column, width, cloud.extra_logits);
     forget(column, width, adam.first().extra_logits);
@@ -398,10 +407,10 @@ DensifyCounts Densifier::update(int step, SurfelCloud& cloud, SurfelAdam& adam) 
     if (!abs_sum_.empty()) abs_sum_.assign(cloud.size(), 0.0f);
     if (!max_radius_.empty()) max_radius_.assign(cloud.size(), 0.0f);
   }
-  if (config_.resets && step % config_.reset_interval == 0) {
-    reset(step, cloud, adam);
-    counts.reset = true;
-  }
+  if (!config_.resets) return counts;
+  counts.reset = step % config_.reset_interval == 0;
+  if (counts.reset) reset_opacity(cloud, adam);
+  reset_channels(step, cloud, adam);
   return counts;
 }
 

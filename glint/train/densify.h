@@ -25,6 +25,7 @@ struct ChannelReset {
   std::string channel;
   float ceiling;
   int from = 0;
+  bool halfway = false;  // not with the resets but between two of them [RT-Splatting]
 };
 
 struct DensifyConfig {
@@ -134,7 +135,12 @@ class Densifier {
   // densify without end.
   // Its radii and absolute gradients, where the call had them, are brought there, too. Errors
   // (kUsage): max_abs_splits without them.
-  void observe(const RasterOutput& output, const RasterGradient& gradient);
+  // `more`: the gradient of a second rasterisation of the view, added to the first.
+  void observe(
+      const RasterOutput& output,
+      const RasterGradient& gradient,
+      const RasterGradient* more = nullptr
+  );
   // For traced sets, which have no screen: the norm of the summed dL/dmean t / 2 [EnvGS], of the
   // surfels that some ray saw. The same scaling by image height.
   void observe(const TraceGradient& gradient, int rows);
@@ -166,7 +172,8 @@ class Densifier {
   void prune_faint(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) const;
   void prune_large(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) const;
   void split_large(SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts);
-  void reset(int step, SurfelCloud& cloud, SurfelAdam& adam) const;
+  void reset_opacity(SurfelCloud& cloud, SurfelAdam& adam) const;
+  void reset_channels(int step, SurfelCloud& cloud, SurfelAdam& adam) const;
   bool in_holiday(int step) const;
   bool is_large(const SurfelCloud& cloud, std::size_t i) const;
   std::vector<float> mean_weights() const;

@@ -27,13 +27,19 @@ struct ObserveRaster {
   DensifyStatistics statistics;
   const std::uint8_t* in_view;  // [N]
   const float* screen;          // [N][2]
+  const float* more;            // the same of a second rasterisation, added to it; null: none
   const float* visibility;      // [N]; null: not known
   float scale;
 
   GLINT_HD void operator()(std::size_t i) const {
     if (in_view[i] == 0) return;
     const float weight = visibility != nullptr ? visibility[i] : 0.0f;
-    statistics.add(i, scale * hypotf(screen[2 * i], screen[2 * i + 1]), weight);
+    float x = screen[2 * i], y = screen[2 * i + 1];
+    if (more != nullptr) {
+      x += more[2 * i];
+      y += more[2 * i + 1];
+    }
+    statistics.add(i, scale * hypotf(x, y), weight);
   }
 };
 

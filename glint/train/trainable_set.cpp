@@ -66,7 +66,8 @@ TrainableSet::TrainableSet(SurfelCloud cloud, const SetTraining& training)
           {},
           Densifier(
               training.densify.for_views(training.training_views), training.extent, training.seed
-          )})) {
+          ),
+          {}})) {
   training_->gradient.extra_names = cloud_.extra_names;
   training_->gradient.resize(cloud_.size());
 }
@@ -101,17 +102,25 @@ const RasterGradient& TrainableSet::backward(
   return gradient;
 }
 
-double TrainableSet::penalise_opacity(float weight) {
+void TrainableSet::observe(
+    const RasterPass& pass, const RasterGradient& a, const RasterGradient& b
+) {
+  training().densifier.observe(pass.rasterizer.output(), a, &b);
+}
+
+double TrainableSet::penalise_opacity(float weight, const Array<std::uint8_t>& in_view) {
   constexpr int kRow = 256;  // surfels that are summed one after the other
-  const auto count = static_cast<double>(std::max<std::size_t>(cloud_.size(), 1));
+  const SurfelsInView surfels{in_view.on_device(), cloud_.size(), kRow};
+  const ImageSize layout{kRow, static_cast<int>((cloud_.size() + kRow - 1) / kRow)};
+  Array<double>& count = training().num_in_view;
+  sum_kernel_to(layout, CountInView{surfels}, count);
   const OpacityPenalty penalty{
+      surfels,
       cloud_.opacity_logits.on_device(),
-      cloud_.size(),
-      kRow,
-      weight / static_cast<float>(count),
+      count.on_device(),
+      weight,
       training().gradient.opacity_logits.on_device()};
-  const int rows = static_cast<int>((cloud_.size() + kRow - 1) / kRow);
-  return sum_kernel({kRow, rows}, penalty) / count;
+  return sum_kernel(layout, penalty) / std::max(told(count), 1.0);
 }
 
 const Rays& TrainableSet::trace_backward(const TraceOutputGradient& dL_doutput) {

@@ -51,8 +51,11 @@ class TrainableSet final : public SurfelSet {
   const RasterGradient& backward(
       const RasterOutputGradient& dL_doutput, RasterPass& pass, bool observe = false
   );
-  // Adds the gradient of weight * (mean opacity) and returns the mean.
-  double penalise_opacity(float weight);
+  // Statistics of a view that was rasterised twice: of the sum of both gradients.
+  void observe(const RasterPass& pass, const RasterGradient& a, const RasterGradient& b);
+  // Adds the gradient of weight * (mean opacity of the surfels in view, in_view [N]) and returns
+  // the mean; 0 where none is.
+  double penalise_opacity(float weight, const Array<std::uint8_t>& in_view);
   // The same for the last trace(); returns the rays' gradient, valid until the next call.
   const Rays& trace_backward(const TraceOutputGradient& dL_doutput);
   // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.
@@ -87,6 +90,7 @@ class TrainableSet final : public SurfelSet {
     int opacity_paused_until;
     SurfelAdam adam;
     Densifier densifier;
+    Array<double> num_in_view;  // [1], of the last penalise_opacity()
   };
   Training& training() const;
   // Errors (kBadReference): a cloud of other channels, moments that are no pair of its kind.

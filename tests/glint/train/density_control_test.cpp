@@ -260,6 +260,48 @@ TEST_CASE("An opacity reset lowers the channels that it names, from their step o
   CHECK_THROWS_WITH(of_another.update(10, cloud, adam), Catch::Contains("roughness"));
 }
 
+TEST_CASE("A channel may be reset halfway between the resets of opacity, after the first") {
+  DensifyConfig config = every_step();
+  config.channel_resets = {{"surface_opacity", 0.01f, 0, true}};
+  SurfelCloud cloud, gradient;
+  for (SurfelCloud* c : {&cloud, &gradient}) {
+    c->extra_names = {"surface_opacity"};
+    c->resize(1);
+    std::fill(c->log_scales.begin(), c->log_scales.end(), std::log(kSmall));
+  }
+  SurfelRates rates;
+  rates.extra = {0};
+  SurfelAdam adam;
+  adam.step(cloud, gradient, rates, 1);
+  Densifier densifier(config, 1, 0);
+  for (const int step : {5, 10, 14, 15, 20, 25}) {
+    cloud.opacity_logits = {1};
+    cloud.extra_logits = {2};
+    const bool reset = densifier.update(step, cloud, adam).reset;
+    INFO(step);
+    CHECK(reset == (step % 10 == 0));
+    CHECK((sigmoid(cloud.extra_logits[0]) < 0.011f) == (step == 15 || step == 25));
+    CHECK((cloud.opacity_logits[0] < 1) == reset);
+  }
+}
+
+TEST_CASE("A view that is rasterised twice counts with the length of the summed gradient") {
+  DensifyConfig config = every_step();
+  config.gradient_threshold = 0.9f;
+  RasterOutput output;
+  output.alpha = Image(1, config.reference_rows, 1);
+  output.in_view = {1, 1, 1};
+  RasterGradient a, b;
+  a.screen = {0.5f, 0, 0.5f, 0, 0, 0};
+  b.screen = {0.5f, 0, -0.5f, 0, 0, 0.5f};
+  SurfelCloud cloud = cloud_of(3);
+  SurfelAdam adam = adam_of(cloud);
+  Densifier densifier(config, 1, 0);
+  densifier.observe(output, a, &b);
+  CHECK(densifier.update(1, cloud, adam).cloned == 1);
+  CHECK(cloud.means[3 * 3] == 0.0f);  // the first, whose gradients agree
+}
+
 TEST_CASE("A densifier knows how near a step is to a reset") {
   DensifyConfig config = every_step();
   config.until = 25;

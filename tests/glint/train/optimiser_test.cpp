@@ -226,22 +226,29 @@ TEST_CASE("Each extra channel has its own rate") {
   }
 }
 
-TEST_CASE("A penalty of opacities is their mean and has its gradient, in any number of rows") {
+TEST_CASE(
+    "A penalty of opacities is the mean of those in view and has its gradient, in any number "
+    "of rows"
+) {
   for (const std::size_t count : {1u, 256u, 700u}) {
     SurfelCloud cloud = cloud_of(count);
     for (std::size_t i = 0; i < count; ++i)
       cloud.opacity_logits[i] = 0.01f * static_cast<float>(i) - 2;
     TrainableSet set(cloud, SetTraining{});
+    Array<std::uint8_t> in_view(count, 0);
+    for (std::size_t i = 0; i < count; i += 3) in_view[i] = 1;
+    const auto seen = static_cast<double>((count + 2) / 3);
+    const auto opacity = [&](std::size_t i) {
+      return 1 / (1 + std::exp(-static_cast<double>(cloud.opacity_logits[i])));
+    };
     double mean = 0;
-    for (const float x : cloud.opacity_logits)
-      mean += 1 / (1 + std::exp(-static_cast<double>(x))) / static_cast<double>(count);
-    CHECK(set.penalise_opacity(3) == Approx(mean));
+    for (std::size_t i = 0; i < count; i += 3) mean += opacity(i) / seen;
+    CHECK(set.penalise_opacity(3, in_view) == Approx(mean));
     for (std::size_t i = 0; i < count; ++i) {
-      const double opacity = 1 / (1 + std::exp(-static_cast<double>(cloud.opacity_logits[i])));
-      CHECK(
-          static_cast<double>(set.gradient().opacity_logits[i]) ==
-          Approx(3 * opacity * (1 - opacity) / static_cast<double>(count))
-      );
+      const double slope = i % 3 == 0 ? 3 * opacity(i) * (1 - opacity(i)) / seen : 0;
+      CHECK(static_cast<double>(set.gradient().opacity_logits[i]) == Approx(slope));
     }
+    in_view.fill(0);
+    CHECK(set.penalise_opacity(3, in_view) == 0);
   }
 }
