@@ -12,16 +12,14 @@ namespace glint {
 // network's outputs x.
 template <class T>
 GLINT_HD Vec3<T> specular_radiance(Vec3<T> x) {
-  const T cap(kExpCap);
-  return {exp_fast(min_of(x.x, cap)), exp_fast(min_of(x.y, cap)), exp_fast(min_of(x.z, cap))};
+  return {exp_to_cap(x.x), exp_to_cap(x.y), exp_to_cap(x.z)};
 }
 template <class T>
 GLINT_HD Vec3<T> specular_radiance_vjp(Vec3<T> x, Vec3<T> value, Vec3<T> g) {
-  const T cap(kExpCap);
   return {
-      keep(x.x < cap, value.x * g.x),
-      keep(x.y < cap, value.y * g.y),
-      keep(x.z < cap, value.z * g.z)};
+      capped_exp_vjp(x.x, value.x, g.x),
+      capped_exp_vjp(x.y, value.y, g.y),
+      capped_exp_vjp(x.z, value.z, g.z)};
 }
 template <class T>
 GLINT_HD Vec3<T> deferred_color(T alpha, Vec3<T> background, Vec3<T> albedo, Vec3<T> x) {

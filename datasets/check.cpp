@@ -18,9 +18,10 @@ namespace {
 
 void check_names(const SceneIndex& index, std::vector<Finding>& findings) {
   std::map<std::string, std::string> names;
-  bool has_train = false;
+  bool has_train = false, has_test = false;
   for (const ViewSource& view : index.views) {
     has_train = has_train || view.is_train;
+    has_test = has_test || view.is_test;
     if (const std::string problem = view_name_problem(view.name, names); !problem.empty())
       findings.push_back({"view-name", view.where, problem});
     if (view.is_train && view.is_test)
@@ -28,8 +29,18 @@ void check_names(const SceneIndex& index, std::vector<Finding>& findings) {
           {"test-in-train", view.where, "listed as train and as test view; remove it from one list"}
       );
   }
-  if (!has_train)
-    findings.push_back({"no-views", index.name, "no train views; expected at least one image"});
+  if (!has_train) findings.push_back({"no-views", index.name, no_train_views(index)});
+  if (has_train && !has_test)
+    findings.push_back(
+        {"no-test-views",
+         index.name,
+         fmt::format(
+             "no test views by the split ({}), so that nothing of it is scored; name some as "
+             "\"test_views\": [...] in {}",
+             index.split_rule,
+             (index.folder / "scene.json").string()
+         )}
+    );
 }
 
 bool same_pose(const Camera& a, const Camera& b) {

@@ -76,28 +76,9 @@ void check_values(
     );
 }
 
-// What every map of a view has to be. False: nothing more can be said of it.
-bool check_map(
-    const std::string& name,
-    const fs::path& path,
-    const Image& map,
-    ImageSize expected,
-    std::vector<Finding>& findings
-) {
+// Of an image or a map. False: nothing more can be said of it.
+bool check_finite_values(const fs::path& path, const Image& map, std::vector<Finding>& findings) {
   if (map.empty()) return false;
-  if (expected.width > 0 && map.size() != expected)
-    findings.push_back(
-        {"wrong-size",
-         path.string(),
-         fmt::format(
-             "{} has {} x {} pixels, its view's image {} x {}",
-             name,
-             map.width(),
-             map.height(),
-             expected.width,
-             expected.height
-         )}
-    );
   const std::size_t count = count_not_finite(map);
   if (count > 0)
     findings.push_back(
@@ -106,6 +87,92 @@ bool check_map(
          fmt::format("{} values are not finite; store 0 where nothing is known", count)}
     );
   return count == 0;
+}
+
+// A map that has to be as large as its view's image.
+struct SizedMap {
+  std::string name;  // "prior.normal"
+  fs::path path;
+  ImageSize size;
+};
+
+// Reads a view's maps and looks at their values; sizes are compared once all are known.
+std::vector<SizedMap> check_maps(const ViewSource& view, std::vector<Finding>& findings) {
+  std::vector<SizedMap> maps;
+  const auto add = [&](std::string name, const fs::path& path, const Image& map) {
+    if (!map.empty()) maps.push_back({std::move(name), path, map.size()});
+  };
+  view.priors.for_each([&](const MapRow& row, const fs::path& path) {
+    // Depth comes in one channel or spread over three.
+    const int channels = row.kind == MapKind::kDepth ? 0 : row.channels();
+    const Image map = read_or_report(path, channels, findings);
+    if (!view.prior_programs.has(row)) add(fmt::format("prior.{}", row.id), path, map);
+    check_finite_values(path, map, findings);
+  });
+  view.truth.for_each([&](const MapRow& row, const fs::path& path) {
+    const Image map = read_or_report(path, row.channels(), findings);
+    add(fmt::format("truth.{}", row.id), path, map);
+    if (check_finite_values(path, map, findings))
+      check_values(row.kind, path.string(), map, findings);
+  });
+  return maps;
+}
+
+// The one size of maps and camera where it is the image that differs from them; else empty. A
+// single map against the image says nothing; against it and the camera, it is the map that differs.
+ImageSize size_against_image(
+    const ViewSource& view, ImageSize image, const std::vector<SizedMap>& maps
+) {
+  if (image.width == 0 || maps.empty()) return {};
+  const ImageSize size = maps.front().size;
+  const bool agree =
+      std::all_of(maps.begin(), maps.end(), [&](const SizedMap& map) { return map.size == size; });
+  const ImageSize stated = view.camera.size();
+  const bool outvoted = stated == size || (maps.size() > 1 && stated != image);
+  return agree && size != image && outvoted ? size : ImageSize{};
+}
+
+void report_image_size(
+    const ViewSource& view,
+    ImageSize image,
+    ImageSize expected,
+    std::size_t num_maps,
+    std::vector<Finding>& findings
+) {
+  const bool as_stated = view.camera.size() == expected;
+  findings.push_back(
+      {"wrong-size",
+       view.image.string(),
+       fmt::format(
+           "the image has {} x {} pixels, {}its {} maps {} x {}; store {}",
+           image.width,
+           image.height,
+           as_stated ? "its camera and " : "",
+           num_maps,
+           expected.width,
+           expected.height,
+           as_stated ? "the image at that size" : "all of them at one size"
+       )}
+  );
+}
+
+void check_map_sizes(
+    const std::vector<SizedMap>& maps, ImageSize image, std::vector<Finding>& findings
+) {
+  for (const SizedMap& map : maps)
+    if (image.width > 0 && map.size != image)
+      findings.push_back(
+          {"wrong-size",
+           map.path.string(),
+           fmt::format(
+               "{} has {} x {} pixels, its view's image {} x {}",
+               map.name,
+               map.size.width,
+               map.size.height,
+               image.width,
+               image.height
+           )}
+      );
 }
 
 void check_counted(const fs::path& path, ImageSize image, std::vector<Finding>& findings) {
@@ -338,23 +405,21 @@ void check_normals(
 std::vector<Finding> check_view_files(const ViewSource& view) {
   std::vector<Finding> findings;
   const Image image = read_or_report(view.image, 3, findings);
-  check_camera(view, image.size(), findings);
-  if (check_map("image", view.image, image, image.size(), findings))
+  std::vector<Finding> of_maps;
+  const std::vector<SizedMap> maps = check_maps(view, of_maps);
+  const ImageSize expected = size_against_image(view, image.size(), maps);
+  const bool image_differs = expected.width > 0;
+  if (image_differs)
+    report_image_size(view, image.size(), expected, maps.size(), findings);
+  else
+    check_map_sizes(maps, image.size(), of_maps);
+  check_camera(view, image_differs ? ImageSize{} : image.size(), findings);
+  if (check_finite_values(view.image, image, findings))
     if (const std::string problem = color_range_problem(image); !problem.empty())
       findings.push_back({"color-values", view.image.string(), problem});
-  if (!view.counted.empty() && !image.empty()) check_counted(view.counted, image.size(), findings);
-  view.priors.for_each([&](const MapRow& row, const fs::path& path) {
-    // Depth comes in one channel or spread over three.
-    const int channels = row.kind == MapKind::kDepth ? 0 : row.channels();
-    const Image map = read_or_report(path, channels, findings);
-    const ImageSize expected = view.prior_programs.has(row) ? ImageSize{} : image.size();
-    check_map(fmt::format("prior.{}", row.id), path, map, expected, findings);
-  });
-  view.truth.for_each([&](const MapRow& row, const fs::path& path) {
-    const Image map = read_or_report(path, row.channels(), findings);
-    if (check_map(fmt::format("truth.{}", row.id), path, map, image.size(), findings))
-      check_values(row.kind, path.string(), map, findings);
-  });
+  if (!view.counted.empty() && !image.empty())
+    check_counted(view.counted, image_differs ? expected : image.size(), findings);
+  findings.insert(findings.end(), of_maps.begin(), of_maps.end());
   return findings;
 }
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/dataset.h"
 
+#include <fcntl.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <set>
 
 #include "glint/core/error.h"
@@ -65,6 +69,20 @@ std::vector<Candidate> surest_loaders(const fs::path& folder) {
   return surest;
 }
 
+// A folder that may not be listed or entered looks as if nothing were in it.
+void check_may_enter(const fs::path& folder) {
+  std::error_code code;
+  const bool denied = fs::is_directory(folder, code) &&
+                      ::faccessat(AT_FDCWD, folder.c_str(), R_OK | X_OK, AT_EACCESS) != 0 &&
+                      errno == EACCES;
+  GLINT_CHECK(
+      !denied,
+      kEnvironment,
+      "{}: permission denied; let this user list and enter the folder",
+      folder.string()
+  );
+}
+
 [[noreturn]] void throw_tie(const fs::path& folder, const std::vector<Candidate>& surest) {
   std::string found, options;
   for (const Candidate& candidate : surest) {
@@ -96,6 +114,7 @@ const LoaderSpec& find_loader(const fs::path& folder, const std::string& id) {
   check_exists(folder, "folder or file");
   if (!id.empty()) return loader_called(id);
   const std::vector<Candidate> surest = surest_loaders(folder);
+  if (surest.empty()) check_may_enter(folder);
   GLINT_CHECK(
       !surest.empty(),
       kBadReference,
@@ -115,8 +134,11 @@ std::vector<Finding> check_dataset(const fs::path& folder, const LoadOptions& op
   const LoaderSpec& loader = find_loader(folder, options.loader);
   try {
     if (loader.check) return loader.check(folder, options);
-    loader.load(folder, options);
-    return {};
+    if (!loader.load(folder, options).test.empty()) return {};
+    return {Finding{
+        "no-test-views",
+        folder.string(),
+        "no test views, so that nothing of it is scored; pack a folder that has some"}};
   } catch (const Error& error) {
     if (error.code() == ExitCode::kEnvironment) throw;
     return {make_finding("unreadable-file", folder.string(), error.what())};

@@ -138,7 +138,7 @@ void check_index(const SceneIndex& index) {
   const bool has_train = std::any_of(
       index.views.begin(), index.views.end(), [](const ViewSource& view) { return view.is_train; }
   );
-  GLINT_CHECK(has_train, kBadReference, "{}: no train views", index.folder.string());
+  GLINT_CHECK(has_train, kBadReference, "{}: {}", index.folder.string(), no_train_views(index));
 }
 
 // What was passed over, and how priors are read.
@@ -163,6 +163,18 @@ bool file_contains(const fs::path& file, std::string_view part) {
   } catch (const Error&) {
     return false;
   }
+}
+
+std::string no_train_views(const SceneIndex& index) {
+  if (index.views.empty()) return "no train views; expected at least one image";
+  return fmt::format(
+      "no train views: by the split ({}) {} a test view; name the test views in {} as "
+      "\"test_views\": [...], which replaces the split (none: []), or add pictures",
+      index.split_rule,
+      index.views.size() == 1 ? "the only view is"
+                              : fmt::format("each of {} views is", index.views.size()),
+      (index.folder / "scene.json").string()
+  );
 }
 
 std::vector<fs::path> list_folders(const fs::path& folder) {

@@ -313,6 +313,16 @@ Scene read_scene(const fs::path& file) {
 
 }  // namespace
 
+bool is_packed_scene(const fs::path& file) {
+  try {
+    const SafetensorsFile tensors(file);
+    const auto format = tensors.metadata().find("format");
+    return format != tensors.metadata().end() && format->second == packed::kFormat;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 Scene read_packed_scene(const fs::path& file) {
   return read_within_memory(file, [&] { return read_scene(file); });
 }

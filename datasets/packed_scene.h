@@ -8,6 +8,9 @@
 
 namespace glint {
 
+// Does the file call itself one, of any version? False, too, when it cannot be read.
+bool is_packed_scene(const fs::path& file);
+
 // Maps are stored in 8 or 16 bits where that loses nothing (k / 255 or k / 65535 is the very
 // float), else as floats. Errors (kBadReference): what read_packed_scene() would not read;
 // kEnvironment: as write_file.

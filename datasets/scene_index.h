@@ -98,6 +98,9 @@ Camera camera_at(const ViewSource& source, ImageSize image);
 // unreadable files, maps of another size than the image, values that are not finite.
 View read_view(const ViewSource& source, const LoadOptions& options);
 
+// Why a scene cannot be trained on: there is no view, or the split makes all of them test views.
+std::string no_train_views(const SceneIndex& index);
+
 // The scene: reads, undistorts and resizes all views and the points. Errors (kBadReference): the
 // first of `problems`, no train views, and read_view()'s.
 Scene load_indexed(const SceneIndex& index, const LoadOptions& options);

@@ -2,7 +2,7 @@
 // GLINT [Na26]: "GLINT: Modeling Scene-Scale Transparency via Gaussian Radiance Transport", CVPR
 // 2026. Three sets of surfels: the interface, rasterised to a G-buffer (depth, normal, transparency
 // t, specularity s); transmission, what is seen straight through it; reflection, traced along
-// mirrored rays. Composed by Eq. 5-9 (glint/render/transport.h), trained with the losses of Sec. 4.
+// mirrored rays. Composed by Eq. 5-10 (glint/render/transport.h); losses of Sec. 3.4.
 //
 // Deviations: transmission is rasterised with the interface's depth as the near limit instead of
 // traced (thin glass does not bend the ray; `transmission=trace` traces). z_trans is the depth of
@@ -37,7 +37,6 @@ SurfelCloud without_extra(SurfelCloud cloud) {
   cloud.extra_names.clear();
   cloud.extra_activations.clear();
   cloud.extra_logits.clear();
-  cloud.extra_activations.clear();
   return cloud;
 }
 

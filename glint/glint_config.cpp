@@ -86,6 +86,7 @@ void GlintConfig::check() const {
       "glint: freeze is '{}', expected all, geometry or nothing",
       freeze
   );
+  transmission_losses.check("glint");
 }
 
 Json glint_release_overrides() {

@@ -112,7 +112,7 @@ struct GlintConfig {
   DensifyConfig interface_densify() const;
   DensifyConfig transmission_densify() const;
   DensifyConfig reflection_densify(ImageSize size) const;  // of training images
-  // Errors (kUsage): a word that is none of the known ones.
+  // Errors (kUsage): a word that is none of the known ones. Numbers: setting_ranges.h.
   void check() const;
 
  private:

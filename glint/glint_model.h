@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// GLINT's three sets of surfels and the way from them to a picture and back [Na26 Eq. 5-9]: the
+// GLINT's three sets of surfels and the way from them to a picture and back [Na26 Eq. 5-10]: the
 // interface rasterised to a G-buffer, transmission seen straight through it, reflection traced
 // along mirrored rays.
 #pragma once

@@ -87,7 +87,7 @@ struct MethodSpec {
 // Errors (kUsage): unknown id; the message lists the known ones and the nearest.
 const MethodSpec& find_method(const std::string& id);
 // The method with its variant's overrides, and the user's on top. Errors (kUsage): unknown id or
-// config field.
+// config field, a number that is none of those a setting may be (setting_ranges.h).
 std::unique_ptr<Method> create_method(const std::string& id, const Json& config = Json::object());
 
 }  // namespace glint

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "glint/core/nearest.h"
 #include "glint/method.h"
+#include "glint/setting_ranges.h"
 
 namespace glint {
 
@@ -31,7 +32,9 @@ std::unique_ptr<Method> create_method(const std::string& id, const Json& config)
   const MethodSpec& spec = find_method(id);
   Json merged = spec.overrides;
   merged.update(config);
-  return spec.create(merged);
+  auto method = spec.create(merged);
+  check_settings(id, method->config());
+  return method;
 }
 
 }  // namespace glint

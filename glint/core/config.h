@@ -6,7 +6,7 @@
 //     template <class V> void visit(V&& v) { v("rate", rate, "learning rate of opacity"); }
 //   };
 //
-// and gets JSON, `name=value` overrides and documentation from it.
+// and gets JSON, overrides and documentation from it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -144,25 +144,6 @@ void config_from_json(Config& config, const Json& json, std::string_view where) 
         comma_list(known)
     );
   }
-}
-
-// "name=value": the value is JSON where it parses as such, text otherwise.
-template <class Config>
-void config_override(Config& config, std::string_view assignment, std::string_view where) {
-  const std::size_t equals = assignment.find('=');
-  GLINT_CHECK(
-      equals != std::string_view::npos,
-      kUsage,
-      "{}: expected name=value, found '{}'",
-      where,
-      assignment
-  );
-  const std::string text(assignment.substr(equals + 1));
-  Json value = parse_json(text);
-  if (value.is_discarded()) value = text;
-  Json object = Json::object();
-  object[std::string(assignment.substr(0, equals))] = value;
-  config_from_json(config, object, where);
 }
 
 }  // namespace glint

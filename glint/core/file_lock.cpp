@@ -46,6 +46,13 @@ bool still_has_its_name(const fs::path& file, int descriptor) {
 int open_file(const fs::path& file) {
   std::error_code code;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), code);
+  GLINT_CHECK(
+      !code,
+      kEnvironment,
+      "{}: cannot be made ({}); let this user write there, or name another folder",
+      file.parent_path().string(),
+      code.message()
+  );
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   GLINT_CHECK(
       descriptor >= 0, kEnvironment, "{}: cannot be made ({})", file.string(), std::strerror(errno)

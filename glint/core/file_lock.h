@@ -15,8 +15,8 @@ namespace glint {
 class FileLock {
  public:
   // The lock, or who has it: "process 12 on node3 since 2026-01-31T12:00:00Z". Creates the parent
-  // folder. Errors (kEnvironment): the file cannot be made. A file system without locks is no
-  // obstacle: then nothing is guarded.
+  // folder. Errors (kEnvironment): the folder or the file cannot be made. A file system without
+  // locks is no obstacle: then nothing is guarded.
   static std::variant<FileLock, std::string> take(const fs::path& file);
   // Waits until the lock can be taken; meanwhile `waiting` with who has it is told once. Errors: as
   // take(), and Interrupted.

@@ -101,6 +101,21 @@ template <class T>
 struct Mat3 {
   Vec3<T> rows[3];
 };
+// Of a unit quaternion.
+template <class T>
+GLINT_HD Mat3<T> rotation_of_unit(Vec4<T> q) {
+  const T two(2), one(1);
+  return {
+      {{one - two * (q.y * q.y + q.z * q.z),
+        two * (q.x * q.y - q.w * q.z),
+        two * (q.x * q.z + q.w * q.y)},
+       {two * (q.x * q.y + q.w * q.z),
+        one - two * (q.x * q.x + q.z * q.z),
+        two * (q.y * q.z - q.w * q.x)},
+       {two * (q.x * q.z - q.w * q.y),
+        two * (q.y * q.z + q.w * q.x),
+        one - two * (q.x * q.x + q.y * q.y)}}};
+}
 template <class T>
 GLINT_HD Vec3<T> operator*(const Mat3<T>& m, Vec3<T> v) {
   return {dot(m.rows[0], v), dot(m.rows[1], v), dot(m.rows[2], v)};

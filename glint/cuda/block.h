@@ -42,6 +42,14 @@ struct Row {
   float v[kN];
 };
 
+// How executors add what they sum, unless they are told otherwise.
+struct Plus {
+  template <class T>
+  GLINT_HD T operator()(T a, T b) const {
+    return a + b;
+  }
+};
+
 // Transposed sums: lanes that differ in one bit of their number share the work. The one with the
 // bit goes on with the odd ones of `count` values, the other with the even ones, each with the sums
 // of both lanes; after five bits lane i has sum i. Value i of those that the lane goes on with:

@@ -74,15 +74,17 @@ class DeviceExec {
     run_blocks<<<static_cast<unsigned>(blocks), Body::kThreads, 0, stream_>>>(body);
     check_cuda(cudaGetLastError(), "launching a kernel");
   }
-  // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count].
-  template <class T>
-  void exclusive_sum_on_device(const Buffer<T>& counts, std::size_t count, Buffer<T>& sums) {
+  // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count], added by `add`.
+  template <class T, class Add = Plus>
+  void exclusive_sum_on_device(
+      const Buffer<T>& counts, std::size_t count, Buffer<T>& sums, Add add = {}
+  ) {
     sums.resize(count + 1);
     check_cuda(cudaMemsetAsync(sums.data(), 0, sizeof(T), stream_), "clearing memory");
     if (count == 0) return;
     with_scratch([&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceScan::InclusiveSum(
-          scratch, bytes, counts.data(), sums.data() + 1, static_cast<int>(count), stream_
+      return cub::DeviceScan::InclusiveScan(
+          scratch, bytes, counts.data(), sums.data() + 1, add, static_cast<int>(count), stream_
       );
     });
   }

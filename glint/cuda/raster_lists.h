@@ -5,6 +5,7 @@
 
 #include "glint/cuda/block.h"
 #include "glint/cuda/geometry_revision.h"
+#include "glint/render/radix_sort.h"
 #include "glint/render/splat_hit.h"
 
 namespace glint::gpu {
@@ -67,6 +68,16 @@ GLINT_HD std::uint32_t pairs_of(PairCounts counts) { return static_cast<std::uin
 GLINT_HD std::uint32_t slots_of(PairCounts counts) {
   return static_cast<std::uint32_t>(counts >> 32);
 }
+// Each count stays at the largest there is once it got there: what was too much cannot be mistaken
+// for little, nor reach into the other count. Associative, so that any order of sums will do.
+struct AddPairCounts {
+  GLINT_HD static std::uint32_t add(std::uint32_t a, std::uint32_t b) {
+    return a + b < a ? ~0u : a + b;
+  }
+  GLINT_HD PairCounts operator()(PairCounts a, PairCounts b) const {
+    return pair_counts(add(pairs_of(a), pairs_of(b)), add(slots_of(a), slots_of(b)));
+  }
+};
 
 struct ProjectSurfels {
   DeviceSurfels surfels;
@@ -90,6 +101,9 @@ struct ProjectSurfels {
 struct PairRoom {
   std::uint32_t pairs = 0, slots = 0;
 };
+// CUB sorts as many pairs as an int counts. Slots are below what AddPairCounts stays at, by more
+// than a warp's lanes, which are counted beyond the last.
+inline constexpr PairRoom kMostPairs{0x7fffffffu, 0xffffff00u};
 // What there is to list. Where there is no room for it, nothing is.
 struct PairTotals {
   std::uint32_t pairs, slots;
@@ -110,13 +124,6 @@ struct TakeTotals {
   }
 };
 
-// Order of floats as unsigned integers.
-GLINT_HD std::uint32_t ordered_bits(float v) {
-  std::uint32_t bits;
-  memcpy(&bits, &v, sizeof bits);
-  return bits >> 31 != 0 ? ~bits : bits | 0x80000000u;
-}
-
 // Keys are (tile, depth of the centre); pairs are written surfel by surfel, so that a stable sort
 // leaves ties in the order of the surfels.
 struct WritePairs {
@@ -135,7 +142,7 @@ struct WritePairs {
     for (int y = rect.y0; y < rect.y1; ++y)
       for (int x = rect.x0; x < rect.x1; ++x, ++pair) {
         const auto tile = static_cast<std::uint64_t>(y * grid.across + x);
-        keys[pair] = tile << 32 | ordered_bits(splats[i].z_center);
+        keys[pair] = tile << 32 | sortable_bits(splats[i].z_center);
         surfels[pair] = static_cast<std::uint32_t>(i);
       }
   }

@@ -61,7 +61,8 @@ class RasterPipeline {
   // Of the last forward call.
   void backward(const DeviceMaps& dL_dout, const DeviceGradients& gradients) {
     const std::size_t n = call_.surfels.count;
-    const PairRoom room = counted_rows_.count(exec_, num_rows_, n, call_.overflow);
+    const ImageSize size{pass_.lists.width, pass_.lists.height};
+    const PairRoom room = counted_rows_.count(exec_, num_rows_, n, size, call_.overflow);
     with_pass_code(pass_.has, [&]<class Code>() {
       using Tile = BackwardTile<Code>;
       const PairCounts* first = counted_rows_.first();

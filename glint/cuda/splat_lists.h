@@ -8,12 +8,15 @@
 
 #include "glint/core/device.h"
 #include "glint/cuda/raster_lists.h"
+#include "glint/render/raster_tiles.h"
 
 namespace glint::gpu {
 
 inline PairRoom with_margin(const PairTotals& totals) {
-  const auto more = [](std::uint32_t n) { return n + n / 2 + 1; };
-  return {more(totals.pairs), more(totals.slots)};
+  const auto more = [](std::uint32_t n, std::uint32_t most) {
+    return static_cast<std::uint32_t>(std::min(std::uint64_t{n} + n / 2 + 1, std::uint64_t{most}));
+  };
+  return {more(totals.pairs, kMostPairs.pairs), more(totals.slots, kMostPairs.slots)};
 }
 
 // Sums of counts on the device, and room for what they count. Outside of silent steps
@@ -25,17 +28,23 @@ class CountedRoom {
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
 
-  // Of counts[0, n). overflow: see TakeTotals.
+  // Of counts[0, n), of n surfels in an image of `size`. overflow: see TakeTotals. Errors (kUsage),
+  // where the host waits: there are more than kMostPairs.
   PairRoom count(
-      Exec& exec, const Buffer<PairCounts>& counts, std::size_t n, std::uint32_t* overflow
+      Exec& exec,
+      const Buffer<PairCounts>& counts,
+      std::size_t n,
+      ImageSize size,
+      std::uint32_t* overflow
   ) {
     const bool silent = SilentStep::now() && learned_.pairs > 0;
-    exec.exclusive_sum_on_device(counts, n, first_);
+    exec.exclusive_sum_on_device(counts, n, first_, AddPairCounts{});
     totals_.resize(1);
-    const PairRoom room = silent ? learned_ : PairRoom{~0u, ~0u};
+    const PairRoom room = silent ? learned_ : kMostPairs;
     exec.for_each(1, TakeTotals{first_.data() + n, room, totals_.data(), overflow});
     if (silent) return room;
     const PairTotals totals = read(exec);
+    check_num_pairs(totals.fit != 0, kMostPairs.pairs, n, size);
     const PairRoom more = with_margin(totals);
     learned_ = {std::max(learned_.pairs, more.pairs), std::max(learned_.slots, more.slots)};
     return {totals.pairs, totals.slots};
@@ -72,7 +81,7 @@ class SplatLists {
     lists_.width = static_cast<int>(camera.width);
     lists_.height = static_cast<int>(camera.height);
     project(exec, surfels, camera);
-    room_ = counted_.count(exec, counts_, surfels.count, overflow);
+    room_ = counted_.count(exec, counts_, surfels.count, {lists_.width, lists_.height}, overflow);
     write_pairs(exec);
     point();
   }

@@ -21,8 +21,7 @@ struct DeviceTraceCall {
   DeviceTraceOutput out;
   std::size_t width = 0;           // of the image that rays are, or 0
   GeometryRevision revision = {};  // where known, and as in the call before, the tree stays
-  // A word on the device that becomes 1 where a silent call dropped hits; null: dropped_hits()
-  // tells.
+  // A word on the device that becomes 1 where a silent call dropped hits; others need none.
   std::uint32_t* overflow = nullptr;
 };
 
@@ -35,11 +34,7 @@ class TracePipeline {
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
 
-  explicit TracePipeline(Exec& exec) : exec_(exec), tree_(exec) {
-    silent_overflow_.resize(1);
-    overflow_.resize(1);
-    exec_.fill_zero(silent_overflow_);
-  }
+  explicit TracePipeline(Exec& exec) : exec_(exec), tree_(exec) { overflow_.resize(1); }
 
   void forward(const DeviceTraceCall& call) { trace<NoCounts>(call, nullptr); }
   // The same, and what each ray costs: counts [rays].
@@ -71,15 +66,6 @@ class TracePipeline {
     std::vector<std::uint32_t> counts(saved_.places);
     exec_.download(counts_, saved_.places, counts.data());
     return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
-  }
-  // Whether silent calls dropped hits since this was last asked; if so, there is more room from now
-  // on. Waits for the device.
-  bool dropped_hits() {
-    if (read(silent_overflow_) == 0) return false;
-    exec_.fill_zero(silent_overflow_);
-    rows_ *= 2;
-    hits_a_place_ *= 2;
-    return true;
   }
 
  private:
@@ -131,10 +117,7 @@ class TracePipeline {
             counts}
     );
   }
-  std::uint32_t* overflow_word() {
-    if (!SilentStep::now()) return overflow_.data();
-    return call_.overflow != nullptr ? call_.overflow : silent_overflow_.data();
-  }
+  std::uint32_t* overflow_word() { return SilentStep::now() ? call_.overflow : overflow_.data(); }
   // Waits for the device.
   std::uint32_t read(const Buffer<std::uint32_t>& word) {
     std::uint32_t value = 0;
@@ -205,7 +188,7 @@ class TracePipeline {
   int rows_ = kFirstRows;
   float hits_a_place_ = kFirstHits;
   bool known_ = false;  // from a call
-  Buffer<std::uint32_t> counts_, slots_, first_hits_, keys_, order_, overflow_, silent_overflow_;
+  Buffer<std::uint32_t> counts_, slots_, first_hits_, keys_, order_, overflow_;
   Buffer<HitGradient> hits_;
   Buffer<HitRun> runs_;
   Buffer<float> windows_;

@@ -15,7 +15,6 @@ template <class T>
 GLINT_HD T sigmoid_vjp(T value, T dL_dvalue) {
   return dL_dvalue * value * (T(1) - value);
 }
-GLINT_HD float logit(float probability) { return logf(probability / (1.0f - probability)); }
 
 template <class T>
 GLINT_HD T exp_vjp(T value, T dL_dvalue) {
@@ -32,12 +31,17 @@ GLINT_HD T tanh_vjp(T value, T dL_dvalue) {
   return dL_dvalue * (T(1) - value * value);
 }
 
-// e^min(x, 5) / 5; no gradient where it is capped.
+// e^min(x, 5), and a fifth of it; no gradient where they are capped.
 inline constexpr float kExpCap = 5;
 template <class T>
-GLINT_HD T capped_exp(T x) {
-  return T(1 / kExpCap) * exp_fast(min_of(x, T(kExpCap)));
+GLINT_HD T exp_to_cap(T x) {
+  return exp_fast(min_of(x, T(kExpCap)));
 }
+template <class T>
+GLINT_HD T capped_exp(T x) {
+  return T(1 / kExpCap) * exp_to_cap(x);
+}
+// Of either, from its value.
 template <class T>
 GLINT_HD T capped_exp_vjp(T x, T value, T dL_dvalue) {
   return keep(x < T(kExpCap), exp_vjp(value, dL_dvalue));
@@ -65,12 +69,8 @@ GLINT_HD T quaternion_norm(Vec4<T> q) {
 template <class T>
 GLINT_HD Mat3<T> rotation_matrix(Vec4<T> raw) {
   const T inverse = T(1) / quaternion_norm(raw);
-  const T w = raw.w * inverse, x = raw.x * inverse, y = raw.y * inverse, z = raw.z * inverse;
-  const T two(2), one(1);
-  return {
-      {{one - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)},
-       {two * (x * y + w * z), one - two * (x * x + z * z), two * (y * z - w * x)},
-       {two * (x * z - w * y), two * (y * z + w * x), one - two * (x * x + y * y)}}};
+  return rotation_of_unit(Vec4<T>{
+      raw.w * inverse, raw.x * inverse, raw.y * inverse, raw.z * inverse});
 }
 // g: dL/d(rotation matrix). Through the normalisation: g_raw = (g_q - q (q.g_q)) / |raw|.
 template <class T>

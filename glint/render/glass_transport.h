@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The pixels between the three sets of GLINT: from the interface's G-buffer to mirrored rays and
-// transparency, from the sets' radiance to the picture [Na26 Eq. 5-9], and the way back.
+// transparency, from the sets' radiance to the picture [Na26 Eq. 5-10], and the way back.
 #pragma once
 
 #include "glint/render/glass_kernels.h"

@@ -4,16 +4,17 @@
 
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <utility>
 #include <vector>
+
+#include "glint/core/real.h"
 
 namespace glint {
 
 // Order of unsigned keys = order of floats (negative ones too; NaN is not allowed).
-inline std::uint32_t sortable_bits(float value) {
+GLINT_HD std::uint32_t sortable_bits(float value) {
   std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
+  memcpy(&bits, &value, sizeof bits);
   return bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u);
 }
 

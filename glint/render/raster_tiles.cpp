@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "glint/core/error.h"
 #include "glint/core/parallel.h"
 #include "glint/core/simd.h"
 
@@ -56,15 +58,9 @@ void project_all(
 
 void sort_by_depth(TileLists& lists) {
   lists.order.clear();
-  lists.pair_begin.resize(lists.boxes.size() + 1);
-  std::uint32_t pairs = 0;
-  for (std::uint32_t i = 0; i < lists.boxes.size(); ++i) {
-    lists.pair_begin[i] = pairs;
-    if (lists.boxes[i].empty()) continue;
-    pairs += static_cast<std::uint32_t>(lists.boxes[i].num_tiles());
-    lists.order.push_back({sortable_bits(lists.splats[i].z_center), i});
-  }
-  lists.pair_begin.back() = pairs;
+  for (std::uint32_t i = 0; i < lists.boxes.size(); ++i)
+    if (!lists.boxes[i].empty())
+      lists.order.push_back({sortable_bits(lists.splats[i].z_center), i});
   radix_sort(lists.order, lists.scratch);
 }
 
@@ -159,10 +155,38 @@ SurfelGeometry<T> load_geometry(const RasterInput& input, std::size_t i) {
 template SurfelGeometry<float> load_geometry(const RasterInput&, std::size_t);
 template SurfelGeometry<Float8> load_geometry(const RasterInput&, std::size_t);
 
+void check_num_pairs(bool countable, std::size_t most, std::size_t surfels, ImageSize size) {
+  GLINT_CHECK(
+      countable,
+      kUsage,
+      "{} surfels reach more tiles of an image of {}x{} pixels than can be listed (most pairs of "
+      "surfel and tile: {}): use fewer surfels (max_surfels), smaller ones, or smaller images",
+      surfels,
+      size.width,
+      size.height,
+      most
+  );
+}
+
+void number_pairs(
+    const std::vector<PixelBox>& boxes, ImageSize size, std::vector<std::uint32_t>& pair_begin
+) {
+  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+  pair_begin.resize(boxes.size() + 1);
+  std::uint64_t pairs = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    pair_begin[i] = static_cast<std::uint32_t>(pairs);
+    pairs += static_cast<std::uint64_t>(boxes[i].num_tiles());
+  }
+  check_num_pairs(pairs <= kMost, kMost, boxes.size(), size);
+  pair_begin.back() = static_cast<std::uint32_t>(pairs);
+}
+
 void build_tile_lists(const RasterCall& call, TileLists& lists) {
   lists.tiles_x = (call.camera.width + kTileSize - 1) / kTileSize;
   lists.tiles_y = (call.camera.height + kTileSize - 1) / kTileSize;
   project_all(call.input, camera_of(call), call.settings.lanes > 1, lists);
+  number_pairs(lists.boxes, call.camera.size(), lists.pair_begin);
   sort_by_depth(lists);
   list_tiles(lists);
 }

@@ -28,6 +28,14 @@ struct TileLists {
   std::vector<KeyedIndex> order, scratch;  // reused between calls
 };
 
+// Pairs are counted in 32 bits on every backend. Errors (kUsage): the image of `size` pixels has
+// more of them than `most`.
+void check_num_pairs(bool countable, std::size_t most, std::size_t surfels, ImageSize size);
+// The first pair of each surfel, and at last how many there are; errors: see check_num_pairs().
+void number_pairs(
+    const std::vector<PixelBox>& boxes, ImageSize size, std::vector<std::uint32_t>& pair_begin
+);
+
 CameraOf<float> camera_of(const RasterCall& call);
 inline DistortionRange distortion_range(const RasterSettings& settings) {
   return {settings.with_distortion, settings.distortion_near, settings.distortion_far};

@@ -4,10 +4,9 @@
 #pragma once
 
 #include "glint/core/vec.h"
+#include "glint/scene/surfels.h"
 
 namespace glint {
-
-inline constexpr float kSh0 = 0.28209479177387814f;
 
 GLINT_HD constexpr int sh_coefficients(int degree) { return (degree + 1) * (degree + 1); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rays of any origin and direction through surfels, forward and backward: the counterpart of
-// rasterize() for reflections [Na26 Eq. 7]. A hit is where the ray meets a surfel's plane; there is
+// rasterize() for reflections [Na26 Eq. 8]. A hit is where the ray meets a surfel's plane; there is
 // no screen-space low-pass. Same formulas (intersect.h, blend.h), same cut-offs.
 //
 // A surfel contributes to a ray iff t > near, rho = u^2 + v^2 <= max_rho, alpha >= min_alpha, and
@@ -31,9 +31,8 @@ struct TraceSettings {
   float max_rho = kMaxRho;
   float min_alpha = kMinAlpha;
   float min_transmittance = kMinTransmittance;
-  int max_hits = 256;  // contributors of a ray
-  bool triangles =
-      false;  // Embree sees two triangles a surfel [Na26] instead of a disc; same picture
+  int max_hits = 256;      // contributors of a ray
+  bool triangles = false;  // Embree sees two triangles a surfel [Na26], no disc; same picture
   TraceSearch search = TraceSearch::kCheapest;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Radiance at glass [Na26 Eq. 5-9], each function with its vjp. Directions: d is the unit camera
+// Radiance at glass [Na26 Eq. 5-10], each function with its vjp. Directions: d is the unit camera
 // ray (away from the camera), so the paper's w_o = -d.
 #pragma once
 
@@ -10,7 +10,7 @@ namespace glint {
 
 inline constexpr float kGlassF0 = 0.04f;  // reflectance of glass at normal incidence
 
-// Schlick's Fresnel term [Na26 Eq. 8]: F0 + (1 - F0)(1 - c)^5, c = max(0, n.w_o).
+// Schlick's Fresnel term [Na26 Eq. 6]: F0 + (1 - F0)(1 - c)^5, c = max(0, n.w_o).
 template <class T>
 GLINT_HD T schlick(T f0, T cosine) {
   const T m = T(1) - max_of(cosine, T(0)), m2 = m * m;
@@ -22,7 +22,7 @@ GLINT_HD T schlick_vjp(T f0, T cosine, T dL_df) {
   return keep(cosine > T(0), T(-5) * (T(1) - f0) * (m2 * m2) * dL_df);
 }
 
-// Share of mirrored light k_s = s + (1 - s) F [Na26 Eq. 8] of specularity s.
+// Share of mirrored light k_s = s + (1 - s) F [Na26 Eq. 7] of specularity s.
 template <class T>
 GLINT_HD T mirrored_share(T specular, T fresnel) {
   return specular + (T(1) - specular) * fresnel;
@@ -43,8 +43,8 @@ GLINT_HD void mirrored_direction_vjp(Vec3<T> d, Vec3<T> n, Vec3<T> dL_dw, Vec3<T
   dL_dn += (T(-2) * dot(n, dL_dw)) * d + (T(-2) * dot(n, d)) * dL_dw;
 }
 
-// Outgoing radiance [Na26 Eq. 5-7]. Both the opaque and the transparent branch carry the same k_s
-// and reflection, so
+// Outgoing radiance [Na26 Eq. 5, 8, 10]. Both the opaque and the transparent branch carry the same
+// k_s and reflection, so
 //   L_o = (1 - t) L_opaque + t L_transparent = (1 - k_s) ((1 - t) L_intr + t L_trans) + k_s L_refl.
 template <class T>
 struct GlassRadiance {

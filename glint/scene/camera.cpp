@@ -40,13 +40,7 @@ Camera look_at(Vec3d eye, Vec3d target, Vec3d up, ImageSize size, double fov_x_d
   return camera;
 }
 
-Mat3d rotation_from_quaternion(Vec4<double> q) {
-  const auto [w, x, y, z] = q;
-  return {
-      {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-       {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-       {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
-}
+Mat3d rotation_from_quaternion(Vec4<double> q) { return rotation_of_unit(q); }
 
 Vec4<double> quaternion_from_rotation(const Mat3d& m) {
   // Shepperd: divide by the largest of the four squared components.

@@ -8,6 +8,7 @@
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/image_files_formats.h"
+#include "glint/scene/image_files_stored.h"
 
 namespace glint {
 namespace {
@@ -72,11 +73,16 @@ void read_row(TIFF* file, const fs::path& path, const TiffLayout& layout, int y,
           value_at(row, static_cast<std::size_t>(x) * layout.channels + c, layout);
 }
 
-Image read_by_libtiff(const fs::path& path) {
+TiffFile open_tiff(const fs::path& path) {
   TIFFSetWarningHandler(nullptr);  // messages are ours
   TIFFSetErrorHandler(nullptr);
-  const TiffFile file(TIFFOpen(path.c_str(), "r"), TIFFClose);
+  TiffFile file(TIFFOpen(path.c_str(), "r"), TIFFClose);
   if (!file) detail::fail_incomplete(path, "TIFF", "the header cannot be read");
+  return file;
+}
+
+Image read_by_libtiff(const fs::path& path) {
+  const TiffFile file = open_tiff(path);
   const TiffLayout layout = layout_of(file.get(), path);
   Image image(
       static_cast<int>(layout.width), static_cast<int>(layout.height), layout.channels < 3 ? 1 : 3
@@ -85,8 +91,13 @@ Image read_by_libtiff(const fs::path& path) {
   return image;
 }
 
+bool integers_by_libtiff(const fs::path& path) {
+  return layout_of(open_tiff(path).get(), path).is_integer();
+}
+
 }  // namespace
 
 GLINT_PROVIDE(read_tiff, read_by_libtiff)
+GLINT_PROVIDE(tiff_stores_integers, integers_by_libtiff)
 
 }  // namespace glint

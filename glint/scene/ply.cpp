@@ -292,8 +292,27 @@ Triangle fan_triangle(
   return triangle;
 }
 
+// Lists of faces may also be texture coordinates, say.
+void check_lists_vertices(const PlyFile& file, const PlyElement& faces) {
+  if (faces.count == 0) return;
+  const auto list = std::find_if(
+      faces.properties.begin(),
+      faces.properties.end(),
+      [](const PlyProperty& property) { return property.is_list; }
+  );
+  const std::string found = list != faces.properties.end() ? list->name : "none";
+  GLINT_CHECK(
+      found == "vertex_indices" || found == "vertex_index",
+      kBadReference,
+      "{}: faces need a list vertex_indices (or vertex_index) of their corners; found: {}",
+      file.path,
+      found
+  );
+}
+
 std::vector<Triangle> read_triangles(const PlyFile& file, std::size_t vertices) {
   const PlyElement& element = file.element("face");
+  check_lists_vertices(file, element);
   std::vector<Triangle> triangles;
   triangles.reserve(element.count);
   std::size_t begin = 0;

@@ -30,7 +30,8 @@ enum class NonFinite {
 };
 
 void write_mesh_ply(const fs::path& path, const TriangleMesh& mesh);
-// Polygons become fans of triangles.
+// Polygons become fans of triangles. Errors (kBadReference): faces that have no list vertex_indices
+// (or vertex_index), or refer to vertices that are not there.
 TriangleMesh read_mesh_ply(const fs::path& path, NonFinite vertices = NonFinite::kReject);
 // Whether the header names an element "face", of any number of rows: a mesh, else points.
 bool is_mesh_ply(const fs::path& path);

@@ -12,10 +12,7 @@
 namespace glint {
 namespace {
 
-constexpr double kMinSpacing = 1e-4;          // metres
-constexpr float kSh0 = 0.28209479177387814f;  // 1 / (2 sqrt(pi)): the constant basis function
-
-float logit(float probability) { return std::log(probability / (1 - probability)); }
+constexpr double kMinSpacing = 1e-4;  // metres
 
 float raw_of(Activation activation, float activated) {
   if (activation == Activation::kTanh) return std::atanh(activated);

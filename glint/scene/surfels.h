@@ -16,6 +16,8 @@
 namespace glint {
 
 inline constexpr int kShCoefficients = 16;  // degree 3
+// 1 / (2 sqrt(pi)), the constant basis function: what a surfel's sh_dc is multiplied by.
+inline constexpr float kSh0 = 0.28209479177387814f;
 
 // From a raw value x of an extra channel to what is rendered.
 enum class Activation : std::uint8_t {
@@ -23,6 +25,9 @@ enum class Activation : std::uint8_t {
   kTanh,      // tanh x
   kCappedExp  // e^min(x, 5) / 5: albedo [Ref-GS]
 };
+
+// The raw value of a sigmoid.
+GLINT_HD float logit(float probability) { return logf(probability / (1.0f - probability)); }
 
 // One parameter array of a cloud: `width` floats a surfel.
 struct SurfelCloud {

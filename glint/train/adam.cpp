@@ -82,11 +82,22 @@ SurfelRates SurfelRates::for_shorter_run(double shortening) const {
   return rates;
 }
 
-float position_rate(const SurfelRates& rates, int step) {
-  if (!(rates.means > 0 && rates.means_final > 0)) return 0;
+float log_linear_rate(float begin, float end, int step, int steps) {
+  if (begin == 0) return 0;
+  GLINT_CHECK(
+      begin > 0 && end > 0,
+      kUsage,
+      "a rate that falls log-linearly from {} to {}: both must be above 0, or the first 0",
+      begin,
+      end
+  );
   const float t =
-      std::clamp(static_cast<float>(step) / static_cast<float>(rates.means_steps), 0.0f, 1.0f);
-  return std::exp((1 - t) * std::log(rates.means) + t * std::log(rates.means_final));
+      std::clamp(static_cast<float>(step) / static_cast<float>(std::max(steps, 1)), 0.0f, 1.0f);
+  return std::exp((1 - t) * std::log(begin) + t * std::log(end));
+}
+
+float position_rate(const SurfelRates& rates, int step) {
+  return log_linear_rate(rates.means, rates.means_final, step, rates.means_steps);
 }
 
 void SurfelAdam::step(

@@ -29,7 +29,7 @@ struct SurfelRates {
   template <class V>
   void visit(V&& v) {
     v("rate_position", means, "learning rate of positions, of the scene's extent");
-    v("rate_position_final", means_final, "the same after position_steps");
+    v("rate_position_final", means_final, "the same after position_steps, above 0");
     v("position_steps", means_steps, "published steps over which positions slow down");
     v("rate_color", sh_dc, "learning rate of colour");
     v("rate_sh", sh_rest, "learning rate of view-dependent colour");
@@ -46,7 +46,10 @@ struct SurfelRates {
   SurfelRates for_shorter_run(double shortening) const;
 };
 
-// Rate of the positions at a step, before the factor of the scene's extent.
+// The rate of a step of `steps`: log-linear from `begin` to `end`, `end` behind; 0 where `begin` is
+// 0. Errors (kUsage): one of them is not above 0 otherwise.
+float log_linear_rate(float begin, float end, int step, int steps);
+// Rate of the positions at a step, before the factor of the scene's extent; errors: as above.
 float position_rate(const SurfelRates& rates, int step);
 
 class SurfelAdam {

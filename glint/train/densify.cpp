@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kGrain = 4096;  // surfels a block
 constexpr float kLightest = 0.1f;     // share of surfels that are pruned rather than split in five
 constexpr float kUnderCap = 0.9f;     // share of the cap that is left by it
+constexpr int kChildrenOfLarge = 5;
 
 float max_scale_of(const SurfelCloud& cloud, std::size_t i) {
   return std::exp(std::max(cloud.log_scales[2 * i], cloud.log_scales[2 * i + 1]));
@@ -201,7 +202,8 @@ void Densifier::observe_footprints(const RasterOutput& output, const RasterGradi
           output.radii.on_device(),
           scale_of(output.alpha.height()),
           abs_sum_.on_device(),
-          max_radius_.on_device()}
+          max_radius_.on_device(),
+          void_word()}
   );
 }
 
@@ -314,17 +316,26 @@ void Densifier::prune_large(const SurfelCloud& cloud, DensifyRows& rows, Densify
     if (is_large(cloud, i)) rows.drop(i, counts);
 }
 
+// Caps by visibility drop what is too much afterwards.
+std::size_t Densifier::most_split_in_five(const DensifyRows& rows) const {
+  if (config_.cap_by_visibility) return rows.keep.size();
+  const auto cap = static_cast<std::size_t>(config_.max_surfels);
+  const std::size_t kept = rows.num_kept();
+  return (cap - std::min(cap, kept)) / (kChildrenOfLarge - 1);
+}
+
 // A large surfel goes where it is among those of the least weight; others become five of 1/2.5 of
-// its size [Xie25]: 1 / (ratio 0.5 x 5).
+// its size [Xie25]: 1 / (ratio 0.5 x 5). Where there is no room for the five, it stays.
 void Densifier::split_large(SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) {
-  constexpr Shape kFive{5, 2.5f};
+  constexpr Shape kFive{kChildrenOfLarge, 2.5f};
   const float light = light_quantile(rows, kLightest);
+  const std::size_t most = most_split_in_five(rows);
   std::vector<std::uint32_t> parents;
   for (std::uint32_t i = 0; i < rows.keep.size(); ++i) {
     if (rows.keep[i] == 0 || !is_large(cloud, i)) continue;
     if (rows.weights[i] < light) {
       rows.drop(i, counts);
-    } else {
+    } else if (parents.size() < most) {
       parents.push_back(i);
       rows.keep[i] = 0;
     }

@@ -6,6 +6,7 @@
 // surfels have in pixels.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -115,6 +116,9 @@ struct DensifyRows {
   std::vector<float> weights;  // mean over the views that saw the surfel, of its weight in all
                                // pixels or rays; 0: seen by none
 
+  std::size_t num_kept() const {
+    return keep.size() - static_cast<std::size_t>(std::count(keep.begin(), keep.end(), 0));
+  }
   void drop(std::size_t i, DensifyCounts& counts) {
     counts.pruned += keep[i];
     keep[i] = 0;
@@ -171,6 +175,7 @@ class Densifier {
   DensifyRows grow(SurfelCloud& cloud, DensifyCounts& counts);
   void prune_faint(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) const;
   void prune_large(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) const;
+  std::size_t most_split_in_five(const DensifyRows& rows) const;
   void split_large(SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts);
   void reset_opacity(SurfelCloud& cloud, SurfelAdam& adam) const;
   void reset_channels(int step, SurfelCloud& cloud, SurfelAdam& adam) const;

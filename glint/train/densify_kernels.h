@@ -50,10 +50,11 @@ struct ObserveFootprint {
   const float* screen_abs;      // [N][2]
   const float* radii;           // [N] pixels
   float scale;
-  float *gradient_sums, *max_radii;  // [N]
+  float *gradient_sums, *max_radii;        // [N]
+  const std::uint32_t* is_void = nullptr;  // void_steps.h; null: no
 
   GLINT_HD void operator()(std::size_t i) const {
-    if (in_view[i] == 0) return;
+    if (in_view[i] == 0 || (is_void != nullptr && *is_void != 0)) return;
     gradient_sums[i] += scale * hypotf(screen_abs[2 * i], screen_abs[2 * i + 1]);
     max_radii[i] = max_of(max_radii[i], radii[i] / scale);
   }

@@ -86,7 +86,6 @@ class LobeAppearance {
 
   const LobeAppearanceConfig& config() const { return config_; }
   std::size_t num_surfels() const { return count_; }
-  std::size_t num_visible() const { return surfels_.size(); }
   TrainableArray& features() { return features_; }  // [N][lobe_feature]
   Mlp& to_lobes() { return to_lobes_; }
   Mlp& to_color() { return to_color_; }

@@ -23,7 +23,6 @@ class Mlp {
   Mlp(std::vector<int> widths, std::uint64_t seed);
 
   const std::vector<int>& widths() const { return widths_; }
-  std::size_t num_layers() const { return widths_.size() - 1; }
   // Layer after layer: weights [in][out], biases [out].
   TrainableArray& parameters() { return parameters_; }
   const TrainableArray& parameters() const { return parameters_; }

@@ -41,8 +41,7 @@ std::vector<std::string> PlanarModel::set_up(
     const PlanarConfig& published,
     const Scene& scene,
     const RunOptions& options,
-    const std::string& method,
-    const std::vector<ExtraChannel>& extra
+    const std::string& method
 ) {
   scene_ = &scene;
   windows_ = published;
@@ -53,7 +52,6 @@ std::vector<std::string> PlanarModel::set_up(
   InitialSurfels initial;
   initial.opacity = windows_.initial_opacity;
   initial.seed = options.seed;
-  initial.extra = extra;
   const PointCloud points = initial_points(scene, windows_.random_points, options.seed);
   set_ = TrainableSet(points, initial, training_on(scene, windows_.rates, windows_.densify));
   views_ = ViewSampler(scene.train.size(), options.seed);

@@ -47,8 +47,7 @@ class PlanarModel {
       const PlanarConfig& published,
       const Scene& scene,
       const RunOptions& options,
-      const std::string& method,
-      const std::vector<ExtraChannel>& extra = {}
+      const std::string& method
   );
 
   // A step: forward() renders the next training view, losses are added to gradient() by add_losses

@@ -3,8 +3,7 @@
 // "3D Gaussian Splatting with Deferred Reflection", SIGGRAPH 2024. Both act between steps, every
 // `interval` steps:
 // - colour sabotage: the colour of surfels that mirror little gets noise, so that those which
-// mirror
-//   are the quicker ones to explain what is seen;
+//   mirror are the quicker ones to explain what is seen;
 // - normal propagation: all surfels become opaque, and those that mirror grow, so that their
 //   normals, which are good, cover their neighbours'. Opacities then stay for a while.
 #pragma once

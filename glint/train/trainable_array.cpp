@@ -91,10 +91,4 @@ void read_floats(
   std::copy(read.begin(), read.end(), values.begin());
 }
 
-float log_linear_rate(float begin, float end, int step, int steps) {
-  const float t =
-      std::clamp(static_cast<float>(step) / static_cast<float>(std::max(steps, 1)), 0.0f, 1.0f);
-  return std::exp((1 - t) * std::log(begin) + t * std::log(end));
-}
-
 }  // namespace glint

@@ -46,7 +46,4 @@ void read_floats(
     std::span<float> values
 );
 
-// The rate of a step of `steps`: log-linear from `begin` to `end`, both positive; `end` behind.
-float log_linear_rate(float begin, float end, int step, int steps);
-
 }  // namespace glint

@@ -41,11 +41,14 @@ void warn_of_bright_glass(
   warnings.push_back(fmt::format(
       "{}: only {:.0f} % of what the masks call glass has an albedo below {} (low_albedo), and "
       "L_trans lets surfaces be transparent where more than {:.0f} % of their labels do: expect t "
-      "to be lost; transparent_weight=4 (glint/robust) asks for a fifth",
+      "to be lost; {}",
       method,
       100 * *dark,
       guidance.low_albedo,
-      100 * guidance.share_needed()
+      100 * guidance.share_needed(),
+      guidance.transparent_weight < 4
+          ? "transparent_weight=4 (glint/robust) asks for a fifth"
+          : "a larger transparent_weight asks for fewer, a larger low_albedo finds more"
   ));
 }
 
@@ -57,23 +60,27 @@ void TransmissionLossConfig::add_inputs(std::vector<std::string>& inputs) const 
   if (guidance == "release") inputs.push_back(prior_input("basecolor"));
 }
 
-std::vector<std::string> TransmissionLosses::set_up(
-    const TransmissionLossConfig& config, const Scene& scene, const std::string& method
-) {
+void TransmissionLossConfig::check(const std::string& method) const {
   GLINT_CHECK(
-      config.guidance == "paper" || config.guidance == "release",
+      guidance == "paper" || guidance == "release",
       kUsage,
       "{}: guidance is '{}', expected paper or release",
       method,
-      config.guidance
+      guidance
   );
   GLINT_CHECK(
-      config.transparent_weight >= 0,
+      transparent_weight >= 0,
       kUsage,
-      "{}: transparent_weight is {}, expected 0 or more",
+      "{}: transparent_weight is {}, expected at least 0",
       method,
-      config.transparent_weight
+      transparent_weight
   );
+}
+
+std::vector<std::string> TransmissionLosses::set_up(
+    const TransmissionLossConfig& config, const Scene& scene, const std::string& method
+) {
+  config.check(method);
   config_ = config;
   const bool release = config.guidance == "release";
   guidance_ = release ? TransparencyGuidance::release() : TransparencyGuidance::paper();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Losses that look at the transmission set from the camera on its own (not only behind the
-// interface), and at the transparency map t: guidance [Na26 Sec. 4], and what GLINT's release adds
-// (direct supervision by colour and on its normals, plausibility, a prior on t, opacity).
+// interface), and at the transparency map t: guidance [Na26 Sec. 3.4], and what GLINT's release
+// adds (direct supervision by colour and on its normals, plausibility, a prior on t, opacity).
 #pragma once
 
 #include <string>
@@ -67,6 +67,8 @@ struct TransmissionLossConfig {
           &opacity_until})
       *window = scaled(*window);
   }
+  // Errors (kUsage): an unknown kind of guidance, a negative weight of labels. `method` opens them.
+  void check(const std::string& method) const;
   // Whether a loss on the set's own picture is on.
   bool has_direct() const {
     return lambda_direct > 0 || lambda_direct_consistency > 0 || lambda_direct_smooth > 0;
@@ -75,8 +77,8 @@ struct TransmissionLossConfig {
 
 class TransmissionLosses {
  public:
-  // `config` with windows of this run. Errors (kUsage): unknown kind of guidance. Guidance is off
-  // at views that lack a prior it needs; returns a warning where training views do.
+  // `config` with windows of this run. Errors: those of its check(). Guidance is off at views that
+  // lack a prior it needs; returns a warning where training views do.
   std::vector<std::string> set_up(
       const TransmissionLossConfig& config, const Scene& scene, const std::string& method
   );

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Bootstrapped transparency [Na26]: where the interface and what is seen through it lie apart, and
-// the prior's diffuse albedo is dark, the transparency map t is drawn to 1, elsewhere to 0. Two
-// kinds: the paper's L1 on a binary mask, and the release's cross-entropy on two masks.
+// Bootstrapped transparency [Na26 Eq. 13, 14]: where the interface and what is seen through it lie
+// apart, and the prior's diffuse albedo is dark, the transparency map t is drawn to 1, elsewhere to
+// 0. Two kinds: the paper's L1 on a binary mask, and the release's cross-entropy on two masks.
 #pragma once
 
 #include "glint/core/image.h"

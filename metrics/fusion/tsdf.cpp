@@ -79,7 +79,7 @@ std::size_t keep_valid(FusionView& view, const TsdfOptions& options) {
   return kept;
 }
 
-// Half of the largest depth that counts; without a limit, of the view's.
+// Half of the largest depth that counts; without a limit, of the view's as it was made.
 double usual_depth(const FusionView& view, const TsdfOptions& options) {
   double largest = depth_limit(options);
   if (std::isfinite(largest)) return largest / 2;
@@ -182,7 +182,6 @@ void estimate(
     const FusionSource& source,
     std::size_t n,
     const TsdfOptions& options,
-    int stride,
     std::size_t bytes_per_voxel,
     TsdfReport& report
 ) {
@@ -190,6 +189,7 @@ void estimate(
   for (std::size_t i = 0; i < n; ++i) {
     FusionView view = source(i);
     check_sizes(view, i);
+    const int stride = depth_stride(view, options);
     report.num_depths += keep_valid(view, options);
     const double allowed = allowed_megabytes(options);
     const auto most = static_cast<std::size_t>(allowed / megabytes(1, bytes_per_voxel));
@@ -225,17 +225,16 @@ TriangleMesh integrate_all(
   Progress progress("fuse", n);
   for (std::size_t i = 0; i < n; ++i) {
     FusionView view = source(i);
+    const int stride = depth_stride(view, options);
     keep_valid(view, options);
-    volume.integrate(view.depth, view.rgb.empty() ? ImageView{} : view.rgb, view.camera);
+    volume.integrate(view.depth, view.rgb.empty() ? ImageView{} : view.rgb, view.camera, stride);
     progress.advance();
   }
   return volume.extract();
 }
 
-std::unique_ptr<TsdfVolume> make_volume(const TsdfOptions& options, int stride) {
-  return make_tsdf_volume(
-      {options.voxel, options.voxel * options.truncation_voxels, kBlockVoxels, stride}
-  );
+std::unique_ptr<TsdfVolume> make_volume(const TsdfOptions& options) {
+  return make_tsdf_volume({options.voxel, options.voxel * options.truncation_voxels, kBlockVoxels});
 }
 
 }  // namespace
@@ -246,9 +245,8 @@ TriangleMesh fuse_depth(
   check_options(options);
   TsdfReport local;
   GLINT_CHECK(num_views > 0, kBadPrediction, "no view to fuse");
-  const int stride = depth_stride(view(0), options);
-  auto volume = make_volume(options, stride);
-  estimate(view, num_views, options, stride, volume->bytes_per_voxel(), local);
+  auto volume = make_volume(options);
+  estimate(view, num_views, options, volume->bytes_per_voxel(), local);
   const TriangleMesh fused = integrate_all(view, num_views, options, *volume);
   volume.reset();  // pieces need memory of their own
   local.fused_triangles = fused.faces.size();

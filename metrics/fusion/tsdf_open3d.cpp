@@ -61,8 +61,7 @@ class Open3dVolume final : public TsdfVolume {
             options.voxel,
             options.truncation,
             o3d::pipelines::integration::TSDFVolumeColorType::RGB8,
-            options.block,
-            options.depth_stride
+            options.block
         ) {
     // Open3D opens a parallel region for every small block: with two threads they wait longer for
     // each other than they work, and on a busy machine ten times as long.
@@ -71,7 +70,8 @@ class Open3dVolume final : public TsdfVolume {
     omp_set_num_threads(1);
   }
 
-  void integrate(ImageView depth, ImageView rgb, const Camera& c) override {
+  void integrate(ImageView depth, ImageView rgb, const Camera& c, int depth_stride) override {
+    volume_.depth_sampling_stride_ = depth_stride;
     const o3d::geometry::RGBDImage image(color_image(rgb, c.size()), depth_image(depth));
     // Open3D's pixel centres are whole numbers.
     const o3d::camera::PinholeCameraIntrinsic intrinsic(

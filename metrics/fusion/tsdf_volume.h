@@ -17,15 +17,17 @@ namespace glint {
 struct TsdfVolumeOptions {
   double voxel = 0, truncation = 0;  // metres
   int block = 16;                    // edge of what is allocated at once, in voxels
-  int depth_stride = 1;              // every so many pixels open blocks
 };
 
 // Mind the module's boundary: only what is defined in headers crosses it.
 class TsdfVolume {
  public:
   virtual ~TsdfVolume() = default;
-  // depth: [H][W][1] planar z in metres, 0: none. rgb: [H][W][3] in [0, 1], empty: grey.
-  virtual void integrate(ImageView depth, ImageView rgb, const Camera& camera) = 0;
+  // depth: [H][W][1] planar z in metres, 0: none. rgb: [H][W][3] in [0, 1], empty: grey. Every
+  // `depth_stride` pixels open blocks.
+  virtual void integrate(
+      ImageView depth, ImageView rgb, const Camera& camera, int depth_stride
+  ) = 0;
   virtual TriangleMesh extract() const = 0;
   virtual std::size_t bytes_per_voxel() const = 0;
 };

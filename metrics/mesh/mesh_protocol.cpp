@@ -1,8 +1,51 @@
 // SPDX-License-Identifier: MIT
 #include "metrics/mesh/mesh_protocol.h"
 
+#include <cmath>
+#include <set>
+
+#include "glint/core/error.h"
+
 namespace glint {
 namespace {
+
+// Two that share a name would share the ids of their results.
+void check_thresholds(const std::vector<double>& thresholds_m) {
+  std::set<std::string> names;
+  for (const double threshold : thresholds_m) {
+    GLINT_CHECK(
+        std::isfinite(threshold) && threshold > 0,
+        kUsage,
+        "thresholds_m: {}; expected metres above 0",
+        threshold
+    );
+    GLINT_CHECK(
+        names.insert(threshold_name(threshold)).second,
+        kUsage,
+        "thresholds_m (--thresholds): {} stands there twice ({}); expected each once",
+        threshold,
+        threshold_name(threshold)
+    );
+  }
+}
+
+void check_max_distance(double max_distance_m, const std::vector<double>& thresholds_m) {
+  GLINT_CHECK(
+      max_distance_m >= 0,
+      kUsage,
+      "max_distance_m: {}; expected metres, or 0 for no limit",
+      max_distance_m
+  );
+  for (const double threshold : thresholds_m)
+    GLINT_CHECK(
+        max_distance_m == 0 || max_distance_m >= threshold,
+        kUsage,
+        "max_distance_m (--max-distance) is {}, below {} of thresholds_m (--thresholds), where F1 "
+        "would be 1 for any surface; raise it, or leave the threshold out",
+        max_distance_m,
+        threshold
+    );
+}
 
 void append_metrics(
     const std::string& prefix, const MeshProtocol& protocol, std::vector<Metric>& list
@@ -20,6 +63,12 @@ void append_metrics(
 }
 
 }  // namespace
+
+void check_mesh_protocol(const MeshProtocol& protocol) {
+  GLINT_CHECK(protocol.num_samples > 0, kUsage, "num_samples is 0; expected at least 1");
+  check_thresholds(protocol.thresholds_m);
+  check_max_distance(protocol.max_distance_m, protocol.thresholds_m);
+}
 
 std::vector<double> default_thresholds_m() { return {0.01, 0.02, 0.05, 0.10}; }
 

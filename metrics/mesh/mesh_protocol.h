@@ -52,6 +52,10 @@ struct MeshProtocol {
   }
 };
 
+// Errors (kUsage): no samples; a threshold that is not above 0, or stands there twice; a largest
+// distance that is negative, or below a threshold, where it would make every sample count.
+void check_mesh_protocol(const MeshProtocol& protocol);
+
 // "5cm", "0.5cm".
 std::string threshold_name(double threshold_m);
 

@@ -27,8 +27,8 @@ struct SurfaceDistances {
 };
 
 // Meshes are taken as they are: clean_mesh() and cull_unseen() come before. To a point cloud the
-// distance is to its nearest point under either protocol. Errors: kUsage (no samples, a threshold
-// that is not above 0), kBadPrediction and kBadReference (no faces, no points).
+// distance is to its nearest point under either protocol. Errors: check_mesh_protocol()'s;
+// kBadPrediction and kBadReference (no faces, no points).
 SurfaceDistances surface_distances(
     const Surface& prediction, const Surface& reference, const MeshProtocol& protocol
 );

@@ -18,23 +18,6 @@ constexpr std::size_t kBlock = 4096;  // samples; the first of each starts witho
 // A surface's samples must not be those of its copy: point to point would find each itself.
 constexpr std::uint64_t kReferenceStream = hash_name("reference");
 
-void check_protocol(const MeshProtocol& protocol) {
-  GLINT_CHECK(protocol.num_samples > 0, kUsage, "num_samples is 0; expected at least 1");
-  for (const double threshold : protocol.thresholds_m)
-    GLINT_CHECK(
-        std::isfinite(threshold) && threshold > 0,
-        kUsage,
-        "thresholds_m: {}; expected metres above 0",
-        threshold
-    );
-  GLINT_CHECK(
-      protocol.max_distance_m >= 0,
-      kUsage,
-      "max_distance_m: {}; expected metres, or 0 for no limit",
-      protocol.max_distance_m
-  );
-}
-
 bool has_content(const Surface& surface) {
   if (const auto* mesh = std::get_if<TriangleMesh>(&surface)) return !mesh->faces.empty();
   return !std::get<SurfacePoints>(surface).positions.empty();
@@ -107,7 +90,7 @@ DirectedDistances distances_to(
 SurfaceDistances surface_distances(
     const Surface& prediction, const Surface& reference, const MeshProtocol& protocol
 ) {
-  check_protocol(protocol);
+  check_mesh_protocol(protocol);
   GLINT_CHECK(has_content(prediction), kBadPrediction, "the prediction has no faces or points");
   GLINT_CHECK(has_content(reference), kBadReference, "the reference has no faces or points");
   const SurfacePoints predicted = samples_of(prediction, protocol, protocol.seed);

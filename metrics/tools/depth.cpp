@@ -6,6 +6,8 @@
 #include "glint/core/error.h"
 #include "glint/scene/camera.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
+#include "metrics/tools/numeric_options.h"
 #include "metrics/tools/tool.h"
 
 namespace glint {
@@ -30,7 +32,7 @@ class DepthTool final : public MetricTool {
         ->check(CLI::IsMember({"none", "median", "scale", "affine"}))
         ->capture_default_str();
     app.add_option("--max-depth", max_depth_, "metres; depths at or beyond do not exist")
-        ->check(CLI::PositiveNumber);
+        ->check(above_zero());
     auto* release = app.add_flag(
         "--release", release_, "the official release: median scale, below 20 m, holes skipped"
     );
@@ -54,9 +56,9 @@ class DepthTool final : public MetricTool {
   Image load_prediction(const fs::path& path) const override {
     const bool metric = protocol().alignment == DepthAlignment::kNone;
     GLINT_CHECK(
-        !metric || !is_integer_format(path),
+        !metric || !stores_integers(path),
         kBadPrediction,
-        "{}: an integer image holds no metres; give EXR or NPY, or fit it with --align",
+        "{}: integers hold no metres; give floats as EXR or NPY, or fit it with --align",
         path.string()
     );
     Image depth = read_image(path, 1);
@@ -65,9 +67,9 @@ class DepthTool final : public MetricTool {
   }
   Image load_reference(const fs::path& path) const override {
     GLINT_CHECK(
-        !is_integer_format(path),
+        !stores_integers(path),
         kBadReference,
-        "{}: an integer image holds no metres; give EXR or NPY",
+        "{}: integers hold no metres; give floats as EXR or NPY",
         path.string()
     );
     return read_image(path, 1);

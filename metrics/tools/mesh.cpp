@@ -10,6 +10,7 @@
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "metrics/tools/mesh_output.h"
+#include "metrics/tools/numeric_options.h"
 #include "metrics/tools/tool.h"
 
 namespace glint {
@@ -44,25 +45,25 @@ void add_inputs(CLI::App& app, MeshToolOptions& options) {
 void add_protocol(CLI::App& app, MeshToolOptions& options) {
   MeshProtocol& protocol = options.protocol;
   app.add_option("--tolerance", protocol.cull_tolerance_m, "of culling, metres (two voxels)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
   app.add_option(
          "--max-edge", protocol.cull_max_edge_m, "faces are split to it before culling, metres"
   )
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
   app.add_option("--samples", protocol.num_samples, "per surface")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   app.add_option("--seed", protocol.seed, "of the samples")->capture_default_str();
   app.add_option("--thresholds", protocol.thresholds_m, "of precision, recall and F1, metres")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   app.add_option("--distance", options.distance, "to the surface, or to its nearest sample")
       ->check(CLI::IsMember({"point-to-triangle", "point-to-point"}))
       ->capture_default_str();
   app.add_option("--max-distance", protocol.max_distance_m, "metres; clips what is further")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
 }
 
 void add_outputs(CLI::App& app, MeshToolOptions& options) {
@@ -73,7 +74,7 @@ void add_outputs(CLI::App& app, MeshToolOptions& options) {
   app.add_option(
       "--curve", options.curve, "FILE.png, and FILE.pdf beside it: F1 over the threshold"
   );
-  app.add_option("--threads", options.threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  app.add_option("--threads", options.threads, "0: all cores")->check(at_least_zero());
   app.add_flag("--quiet", options.quiet, "no progress on standard error");
 }
 
@@ -108,6 +109,7 @@ void complete(MeshToolOptions& options) {
   if (options.cull.empty()) options.cull = options.dataset.empty() ? "none" : "cameras";
   options.protocol.cull = Json(options.cull).get<MeshCulling>();
   options.protocol.distance = Json(options.distance).get<SurfaceDistance>();
+  check_mesh_protocol(options.protocol);
 }
 
 MeshReport load_surfaces(const MeshToolOptions& options) {

@@ -5,6 +5,7 @@
 
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
 #include "metrics/tools/tool.h"
 
 namespace glint {
@@ -39,7 +40,7 @@ Image load_normals(const fs::path& path, const std::string& axes) {
       path.string(),
       normals.channels()
   );
-  if (is_integer_format(path)) decode_integers(normals);
+  if (stores_integers(path)) decode_integers(normals);
   for (const Axes& known : kAxes)
     if (axes == known.name)
       for (std::size_t i = 0; i < normals.values().size(); ++i)
@@ -51,7 +52,8 @@ class NormalTool final : public MetricTool {
  public:
   std::string name() const override { return "glint-normal"; }
   std::string description() const override {
-    return "Angles between normal maps in camera space: EXR or NPY, or PNG as (n + 1) / 2.";
+    return "Angles between normal maps in camera space: floats (EXR, NPY), or integers (PNG, NPY) "
+           "as (n + 1) / 2.";
   }
   std::string example() const override {
     return "glint-normal predicted/ data/room_1/gt/normal --axes opengl --csv";

@@ -2,6 +2,7 @@
 #include "metrics/psnr.h"
 
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
 #include "metrics/tools/tool.h"
 
 namespace glint {
@@ -12,7 +13,7 @@ class PsnrTool final : public MetricTool {
   std::string name() const override { return "glint-psnr"; }
   std::string description() const override {
     return "Peak signal-to-noise ratio in dB. Float predictions (EXR, NPY) give psnr, integer ones "
-           "(PNG, JPEG) psnr-8bit.";
+           "(PNG, JPEG, NPY of uint8) psnr-8bit.";
   }
   std::string example() const override {
     return "glint-psnr out/ci/runs/room_1/2dgs/0 data/room_1 --json";
@@ -31,7 +32,7 @@ class PsnrTool final : public MetricTool {
     return {psnr_metrics({}), psnr_metrics(psnr_8bit_protocol())};
   }
   std::size_t family_for(const FilePair& files) const override {
-    return is_integer_format(files.prediction) ? 1 : 0;
+    return stores_integers(files.prediction) ? 1 : 0;
   }
 
   // Identical images count with the cap, so their number is told.

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+
 #include "glint/scene/image_files.h"
 #include "metrics/tools/tool.h"
 
@@ -38,6 +40,16 @@ class SsimTool final : public MetricTool {
     if (variant_ != "wang") borders.push_back(SsimBorder::kZeroPadded);
     if (variant_ != "3dgs") borders.push_back(SsimBorder::kValid);
     return {ssim_metrics(std::move(borders))};
+  }
+  std::string why_unfit(const std::string& metric_id, ImageSize size) const override {
+    if (metric_id != "ssim-wang" || std::min(size.width, size.height) >= kSsimTaps) return {};
+    return fmt::format(
+        "the picture of {0} x {1} pixels is smaller than the window of {2} x {2}; give larger "
+        "pictures, or --variant 3dgs",
+        size.width,
+        size.height,
+        kSsimTaps
+    );
   }
 
  private:

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -51,7 +50,7 @@ void add_common_options(CLI::App& app, ToolOptions& options) {
   app.add_flag("--allow-missing", pairing.allow_missing, "score the names that both sides have");
   auto* json = app.add_flag("--json", options.json, "one JSON document, numbers not rounded");
   app.add_flag("--csv", options.csv, "one row per image, numbers not rounded")->excludes(json);
-  app.add_option("--threads", options.threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  app.add_option("--threads", options.threads, "0: all cores")->check(at_least_zero());
   app.add_flag("--quiet", options.quiet, "no progress on standard error");
 }
 
@@ -117,12 +116,66 @@ std::vector<std::string> warnings_of(const MetricTool& tool, const LoadedPair& p
   return warnings;
 }
 
+PairMetrics family_of(const MetricTool& tool, const FilePair& files) {
+  return tool.families()[tool.family_for(files)];
+}
+
+bool has_scores(const std::vector<ToolScores>& regions) {
+  return std::any_of(regions.begin(), regions.end(), [](const ToolScores& scores) {
+    return !scores.empty();
+  });
+}
+
+// Whose fault it is: a reference that cannot be scored against itself either is none.
+[[noreturn]] void fail_unscored(
+    const MetricTool& tool, const LoadedPair& pair, std::span<const Region> regions
+) {
+  const FilePair& files = pair.files;
+  const std::string unfit =
+      tool.why_unfit(family_of(tool, files).metrics.front().id, pair.reference.size());
+  GLINT_CHECK(unfit.empty(), kBadReference, "{}: {}", files.reference.string(), unfit);
+  GLINT_CHECK(
+      !has_scores(tool.score({files, pair.reference, pair.reference}, regions)),
+      kBadPrediction,
+      "{}: no pixel to score: it has no value where {} has one; render it again",
+      files.prediction.string(),
+      files.reference.string()
+  );
+  throw Error(
+      ExitCode::kBadReference,
+      fmt::format(
+          "{}: no pixel to score (empty mask or a reference without values)",
+          files.reference.string()
+      )
+  );
+}
+
+// Metrics without a value where the pair has others, each with the reason.
+std::vector<std::string> left_out(
+    const MetricTool& tool, const LoadedPair& pair, const ToolScores& scores
+) {
+  std::vector<std::string> warnings;
+  for (const Metric& metric : family_of(tool, pair.files).metrics) {
+    const auto is_it = [&](const auto& score) { return score.first == metric.id; };
+    if (std::any_of(scores.begin(), scores.end(), is_it)) continue;
+    const std::string why = tool.why_unfit(metric.id, pair.reference.size());
+    warnings.push_back(fmt::format(
+        "{}: {} is left out: {}",
+        pair.files.reference.string(),
+        metric.id,
+        why.empty() ? "no pixel that counts has a value of it" : why
+    ));
+  }
+  return warnings;
+}
+
 ImageScores score_pair(const MetricTool& tool, const LoadedPair& pair) {
   const FilePair& files = pair.files;
   const std::vector<Region> regions = load_regions(pair);
   ImageScores image{files, {}, warnings_of(tool, pair)};
+  std::vector<ToolScores> scores;
   try {
-    const std::vector<ToolScores> scores = tool.score(pair, regions);
+    scores = tool.score(pair, regions);
     for (std::size_t r = 0; r < regions.size(); ++r)
       for (const auto& [id, value] : scores[r])
         image.scores.emplace_back(regions[r].name.empty() ? id : id + "@" + regions[r].name, value);
@@ -131,12 +184,9 @@ ImageScores score_pair(const MetricTool& tool, const LoadedPair& pair) {
         error.code() == ExitCode::kBadPrediction ? files.prediction : files.reference;
     throw Error(error.code(), file.string() + ": " + error.what());
   }
-  GLINT_CHECK(
-      !image.scores.empty(),
-      kBadReference,
-      "{}: no pixel to score (empty mask or a reference without values)",
-      files.reference.string()
-  );
+  if (!has_scores(scores)) fail_unscored(tool, pair, regions);
+  for (std::string& warning : left_out(tool, pair, scores[0]))
+    image.warnings.push_back(std::move(warning));
   return image;
 }
 
@@ -236,7 +286,7 @@ void run(MetricTool& tool, ToolOptions& options, std::ostream& out) {
 
 std::vector<ToolScores> MetricTool::score(const LoadedPair& pair, std::span<const Region> regions)
     const {
-  const PairMetrics family = families()[family_for(pair.files)];
+  const PairMetrics family = family_of(*this, pair.files);
   std::vector<ToolScores> scores(regions.size());
   const std::vector<MetricValues> rows = family.score(pair.prediction, pair.reference, regions);
   for (std::size_t r = 0; r < rows.size(); ++r)
@@ -327,12 +377,6 @@ MaskImage load_mask(const fs::path& path, ImageSize size) {
 const FolderLayout& mask_layout() {
   static const FolderLayout layout{{"gt/glass", "masks"}, {}};
   return layout;
-}
-
-bool is_integer_format(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
 }
 
 }  // namespace glint

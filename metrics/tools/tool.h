@@ -33,7 +33,7 @@ struct LoadedPair {
 struct ImageScores {
   FilePair files;
   ToolScores scores;                  // "psnr", then "psnr@glass", ...
-  std::vector<std::string> warnings;  // of its files, whose scores hold all the same
+  std::vector<std::string> warnings;  // of its files, and of metrics that are left out
 };
 
 class MetricTool {
@@ -58,6 +58,8 @@ class MetricTool {
   // What pairs are scored by, as the options say; family_for() chooses for a pair.
   virtual std::vector<PairMetrics> families() const = 0;
   virtual std::size_t family_for(const FilePair&) const { return 0; }
+  // Why pictures of that size have no value of the metric; empty: they may have one.
+  virtual std::string why_unfit(const std::string& /*metric_id*/, ImageSize) const { return {}; }
   // Pairs are scored by several threads otherwise.
   virtual bool one_at_a_time() const { return false; }
   // What the options add to the protocol of every metric.
@@ -98,8 +100,5 @@ std::unique_ptr<MetricTool> make_lpips_tool();
 MaskImage load_mask(const fs::path& path, ImageSize size);
 // Where a dataset folder has its masks.
 const FolderLayout& mask_layout();
-
-// ".png", ".jpg", ".jpeg": integers, so that values are multiples of a step.
-bool is_integer_format(const fs::path& path);
 
 }  // namespace glint

@@ -14,6 +14,7 @@
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"
 #include "metrics/fusion/tsdf.h"
+#include "metrics/tools/numeric_options.h"
 #include "metrics/tools/pairing.h"
 #include "metrics/tools/tool.h"
 #include "metrics/tools/tool_output.h"
@@ -49,7 +50,7 @@ void add_options(CLI::App& app, TsdfArguments& a) {
   app.add_flag("--ray", a.ray, "the maps hold distances along rays");
   auto* json = app.add_flag("--json", a.json, "one JSON document");
   app.add_flag("--csv", a.csv, "one row")->excludes(json);
-  app.add_option("--threads", a.threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  app.add_option("--threads", a.threads, "0: all cores")->check(at_least_zero());
   app.add_flag("--quiet", a.quiet, "no progress on standard error");
   app.footer("Example:\n  glint-tsdf renders/ data/room_1 --voxel 0.02 --out mesh.ply\n");
 }

@@ -8,11 +8,11 @@
 #include "glint/core/machine.h"
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf_volume.h"
-#include "metrics/metric.h"
-#include "reports/bench/evaluate.h"
 #include "reports/bench/memory_estimate.h"
 #include "reports/bench/mesh_stage.h"
+#include "reports/bench/run_record.h"
 #include "reports/bench/run_stage.h"
+#include "reports/bench/stage_documents.h"
 #include "reports/bench/stages.h"
 #include "reports/records/environment.h"
 #include "reports/records/failure_kinds.h"
@@ -90,7 +90,7 @@ Failure failure_of(const std::exception& error, const std::string& stage, const 
 std::string why_no_mesh(
     const RunSpec& spec, const Scene& scene, Method& method, const TsdfOptions& options
 ) {
-  for (const MeshLayer& layer : kMeshLayers) fs::remove(spec.folder / layer.mesh);
+  remove_meshes(spec.folder);
   if (!has_tsdf_volume()) return "no Open3D";
   try {
     mesh_stage(spec, scene, method, options);
@@ -163,53 +163,49 @@ class CellRun {
       render_stage(spec_, scene_, *method_);
       return std::string();
     });
-    run(Stage::kMesh,
-        [&] { return why_no_mesh(spec_, scene_, *method_, profile_.tsdf_options()); });
+    run(Stage::kMesh, [&] { return make_meshes(); });
     enter(Stage::kScore);
     run_stage(spec_.folder, Stage::kScore, stages_[Stage::kScore].document, [&] {
       score();
       return std::string();
     });
     clock_.leave();
-    record_.timings["train"] = trained_cost(spec_)->seconds;
   }
 
   void run(Stage stage, const std::function<std::string()>& work) {
     if (stages_[stage].done) return;
     enter(stage);
-    run_stage(spec_.folder, stage, stages_[stage].document, work);
+    begin_stage(spec_.folder, stage);
+    const std::string note = work();
+    end_stage(spec_.folder, stage, stages_[stage].document, note);
     clock_.leave();
   }
   void enter(Stage stage) { clock_.enter(std::string(stage_name(stage))); }
 
+  // Without a mesh, the stage and the scores behind it also go by the memory that was allowed.
+  std::string make_meshes() {
+    const TsdfOptions options = profile_.tsdf_options();
+    std::string why = why_no_mesh(spec_, scene_, *method_, options);
+    if (why.empty()) return why;
+    Json& document = stages_[Stage::kMesh].document;
+    document = document_without_mesh(document, options);
+    stages_[Stage::kScore].document["inputs"]["mesh"] = stage_key(document);
+    record_.score_key = stages_[Stage::kScore].key();
+    return why;
+  }
+
   void score() {
-    record_.not_measured = missing_metrics();
-    if (const std::string why = finished_stage(spec_.folder, Stage::kMesh, "mesh").note;
-        !why.empty())
-      for (const Metric& metric : mesh_metric_list()) record_.not_measured[metric.id] = why;
-    const TrainCost cost = trained_cost(spec_).value_or(TrainCost{});
     const TimingOptions timing{profile_.timing_frames, profile_.timing_warmup};
-    record_.metrics = eval_stage(
-        spec_,
-        scene_,
-        {{"fps", measure_fps(*method_, scene_, timing)},
-         {"num-surfels", static_cast<double>(method_->num_surfels())},
-         {"train-minutes", cost.seconds / 60},
-         {"peak-memory", cost.peak_memory_mb}},
-        profile_.mesh_protocol()
-    );
-    record_.not_applicable = not_applicable(record_.metrics, record_.not_measured);
-    record_.num_surfels = method_->num_surfels();
-    record_.warnings = cost.warnings;
-    record_.notes = cost.notes;
-    record_.data_notes = cost.data_notes;
-    const Camera& camera = scene_.test.front().camera;
-    record_.resolution = fmt::format("{}x{}", camera.width, camera.height);
+    Scores cost = training_cost(spec_);
+    cost["fps"] = measure_fps(*method_, scene_, timing);
+    cost["num-surfels"] = static_cast<double>(method_->num_surfels());
+    record_.metrics = eval_stage(spec_, scene_, cost, profile_.mesh_protocol());
+    describe_run(record_, spec_, scene_);
   }
 
   const Profile& profile_;
   const Scene& scene_;
-  const CellStages& stages_;
+  CellStages stages_;
   RunSpec spec_;
   Record record_;
   StageClock clock_;

@@ -56,6 +56,13 @@ class Judge {
         wanted};
   }
 
+  // A stage that ended without a mesh is done for as long as no other memory is allowed.
+  StageState mesh(const Json& wanted, const TsdfOptions& options) const {
+    const auto found = run_.empty() ? std::nullopt : read_stage(run_, Stage::kMesh);
+    const bool without = found && !found->note.empty();
+    return (*this)(Stage::kMesh, without ? document_without_mesh(wanted, options) : wanted);
+  }
+
  private:
   const fs::path& run_;
   const Record* record_;
@@ -130,8 +137,11 @@ CellStages cell_stages(
   );
   const std::string train_key = stages[Stage::kTrain].key();
   stages[Stage::kRender] = judge(Stage::kRender, render_document(method, train_key));
-  stages[Stage::kMesh] =
-      judge(Stage::kMesh, mesh_document(method, train_key, profile.tsdf_options()));
+  const TsdfOptions fusion = profile.tsdf_options();
+  const Json mesh = mesh_document(method, train_key, fusion);
+  stages[Stage::kMesh] = judge.mesh(mesh, fusion);
+  for (const Stage stage : {Stage::kRender, Stage::kMesh}) follow(stages, stage, {Stage::kTrain});
+  if (!stages[Stage::kMesh].done) stages[Stage::kMesh].document = mesh;  // there may be one now
   stages[Stage::kScore] = judge(
       Stage::kScore,
       score_document(
@@ -141,7 +151,6 @@ CellStages cell_stages(
           TimingOptions{profile.timing_frames, profile.timing_warmup}
       )
   );
-  for (const Stage stage : {Stage::kRender, Stage::kMesh}) follow(stages, stage, {Stage::kTrain});
   follow(stages, Stage::kScore, {Stage::kRender, Stage::kMesh});
   heed_record(stages, record);
   return stages;

@@ -38,12 +38,34 @@ std::vector<std::string> environment_with(const std::vector<std::string>& settin
   return all;
 }
 
-struct Pipe {
-  int read = -1, write = -1;
-  Pipe() {
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) == 0) read = ends[0], write = ends[1];
+// An open file of this process, closed with the object; -1: none.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int number() const { return number_; }
+  int release() { return std::exchange(number_, -1); }
+  void close() {
+    if (number_ >= 0) ::close(release());
   }
+
+ private:
+  int number_;
+};
+
+std::array<int, 2> open_pipe() {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return {-1, -1};
+  return ends;
+}
+
+struct Pipe {
+  Descriptor read, write;
+  explicit Pipe(const std::array<int, 2>& ends = open_pipe()) : read(ends[0]), write(ends[1]) {}
+  bool is_open() const { return read.number() >= 0; }
 };
 
 // Between fork() and exec() only calls that are safe in a signal handler are allowed.
@@ -80,7 +102,6 @@ int wait_for_exec(int failure) {
   int why = 0;
   while (::read(failure, &why, sizeof why) < 0 && errno == EINTR) {
   }
-  ::close(failure);
   return why;
 }
 
@@ -96,30 +117,28 @@ ChildProcess::ChildProcess(const Words& words, const Words& settings) {
   Words shown = words;
   if (words.at(0) == kThisProgram) shown[0] = program_invocation_short_name;
   const auto word_pointers = pointers_to(shown), environment_pointers = pointers_to(environment);
-  const Pipe output, failure;
+  Pipe output, failure;
   const pid_t parent = ::getpid();
-  id_ = output.write < 0 || failure.write < 0 ? -1 : ::fork();
+  id_ = output.is_open() && failure.is_open() ? ::fork() : -1;
   const int no_process = errno;
   if (id_ == 0)
     become(
         words[0].c_str(),
         word_pointers.data(),
         environment_pointers.data(),
-        output.write,
-        failure.write,
+        output.write.number(),
+        failure.write.number(),
         parent
     );
-  ::close(output.write);
-  ::close(failure.write);
-  output_ = output.read;
-  const int why = id_ < 0 ? no_process : wait_for_exec(failure.read);
+  output.write.close();
+  failure.write.close();
+  const int why = id_ < 0 ? no_process : wait_for_exec(failure.read.number());
   if (why == 0) {
+    output_ = output.read.release();
     ::fcntl(output_, F_SETFL, O_NONBLOCK);
     return;
   }
   if (id_ > 0) ::waitpid(id_, nullptr, 0);
-  ::close(output_);
-  id_ = output_ = -1;
   throw Error(
       ExitCode::kEnvironment,
       fmt::format("{}: cannot be started ({})", words.at(0), std::strerror(why))

@@ -40,8 +40,6 @@ Json fuse_renders(const RunSpec& spec, const Scene& scene, TsdfOptions options) 
   Json result = {{"options", config_to_json(options)}, {"views", "training"}};
   result["meshes"] = Json::object();
   for (const MeshLayer& layer : kMeshLayers) {
-    std::error_code code;
-    fs::remove(spec.folder / layer.mesh, code);
     if (!has_map(spec.folder, scene, layer.map)) continue;
     const auto view = [&](std::size_t i) {
       throw_if_interrupted();

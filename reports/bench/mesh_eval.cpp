@@ -4,6 +4,7 @@
 #include "metrics/mesh/mesh_scores.h"
 #include "metrics/tools/mesh_inputs.h"
 #include "reports/bench/mesh_stage.h"
+#include "reports/records/stage_files.h"
 
 namespace glint {
 namespace {
@@ -33,9 +34,16 @@ Surface prepared(
   return std::move(input.surface);
 }
 
+// Of earlier versions, a mesh may lie beside a note that says there is none.
+bool ended_without_mesh(const fs::path& run) {
+  const auto done = read_stage(run, Stage::kMesh);
+  return done && !done->note.empty();
+}
+
 MeshValues score_run_meshes(
     const RunSpec& spec, const Scene& scene, const MeshProtocol& protocol, Json& recipe
 ) {
+  if (ended_without_mesh(spec.folder)) return {};
   const std::vector<Camera> cameras = train_cameras(scene);
   std::map<std::string, double> values;
   recipe["protocol"] = config_to_json(protocol);

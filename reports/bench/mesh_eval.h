@@ -13,8 +13,8 @@
 namespace glint {
 
 // Both distances, to triangles and to samples. `recipe` gets the protocol and what was done to
-// either mesh, to stand beside the values. Empty: no mesh, or no true one. Errors: kBadPrediction
-// and kBadReference for damaged meshes.
+// either mesh, to stand beside the values. Empty: no mesh (or the mesh stage ended with a note), or
+// no true one. Errors: kBadPrediction and kBadReference for damaged meshes.
 using MeshValues = std::map<std::string, double>;  // by metric id
 inline constinit Service<
     MeshValues(const RunSpec& spec, const Scene& scene, const MeshProtocol& protocol, Json& recipe)>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/mesh_stage.h"
-#include "reports/records/earlier_run.h"
 
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
+#include "reports/bench/run_stage.h"
+#include "reports/records/earlier_run.h"
 
 namespace glint {
 namespace {
@@ -20,11 +21,28 @@ Image depth_through_glass(const MapSet& output) {
   return depth;
 }
 
+// Do the renders have what depth_through_glass() goes by?
+bool looks_behind_glass(const fs::path& run) {
+  std::error_code code, unseen;
+  const auto has = [&](const fs::path& view, MapId map) {
+    return fs::exists(view / map.row().file, unseen);
+  };
+  for (fs::directory_iterator it(run / "renders", code), end; !code && it != end;
+       it.increment(code))
+    if (has(it->path(), "behind_depth") && has(it->path(), "transparency")) return true;
+  return false;
+}
+
 }  // namespace
 
 fs::path mesh_of(const fs::path& run, const MeshLayer& layer) {
   const fs::path path = run / layer.mesh;
-  return fs::exists(path) ? path : run / kMeshLayers[0].mesh;
+  return fs::exists(path) || looks_behind_glass(run) ? path : run / kMeshLayers[0].mesh;
+}
+
+void remove_meshes(const fs::path& run) {
+  std::error_code code;
+  for (const std::string& file : stage_outputs(Stage::kMesh)) fs::remove(run / file, code);
 }
 
 fs::path train_view_folder(const fs::path& run, const View& view) {
@@ -55,11 +73,22 @@ Json mesh_stage(
     bool keep_renders
 ) {
   fuse_stage.require();
-  remove_renders(spec.folder / "renders_train");
-  render_train_stage(spec, scene, method);
-  const Json result = fuse_stage(spec, scene, options);
-  if (!keep_renders) remove_renders(spec.folder / "renders_train");
-  return result;
+  const fs::path renders = spec.folder / "renders_train";
+  const auto drop_renders = [&] {
+    if (!keep_renders) remove_renders(renders);
+  };
+  remove_meshes(spec.folder);
+  remove_renders(renders);
+  try {
+    render_train_stage(spec, scene, method);
+    Json result = fuse_stage(spec, scene, options);
+    drop_renders();
+    return result;
+  } catch (...) {
+    remove_meshes(spec.folder);  // one layer without the other would be scored as both
+    drop_renders();
+    throw;
+  }
 }
 
 }  // namespace glint

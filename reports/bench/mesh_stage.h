@@ -22,8 +22,8 @@ inline constexpr MeshLayer kMeshLayers[] = {
     {"depth", "mesh.ply", "gt/mesh.ply", ""},
     {"behind_depth", "mesh_transmission.ply", "gt/mesh_behind.ply", kBehindMesh}};
 
-// The run's mesh of that layer. A run without one behind glass has its mesh.ply there: a single
-// layer may lie behind the glass.
+// The run's mesh of that layer, or where it would be. A method that does not look behind glass, as
+// its renders say, has its mesh.ply there: a single layer may lie behind the glass.
 fs::path mesh_of(const fs::path& run, const MeshLayer& layer);
 
 // Where a training view is rendered to.
@@ -39,8 +39,12 @@ void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method)
 inline constinit Service<Json(const RunSpec& spec, const Scene& scene, TsdfOptions options)>
     fuse_stage{"meshes", "use the full build"};
 
+// Removes the meshes and mesh.json, as far as they are there.
+void remove_meshes(const fs::path& run);
+
 // Both (first asking whether the second can be done), and renders_train/ removed again unless
-// `keep_renders`.
+// `keep_renders`. Where either fails, no mesh is left, not even of the layers before. Errors: those
+// of the method and of fuse_stage.
 Json mesh_stage(
     const RunSpec& spec,
     const Scene& scene,

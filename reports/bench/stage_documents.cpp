@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/stage_documents.h"
 
+#include <cmath>
+
 #include "glint/core/device.h"
+#include "glint/core/machine.h"
 #include "glint/train/perceptual.h"
 #include "metrics/fusion/tsdf_volume.h"
 #include "metrics/metric.h"
@@ -9,6 +12,8 @@
 
 namespace glint {
 namespace {
+
+constexpr const char* kMemoryLimit = "max_memory_mb";  // of TsdfOptions
 
 const char* device_kind() { return on_gpu() ? "cuda" : "cpu"; }
 
@@ -81,13 +86,21 @@ Json mesh_document(
     const std::string& method, const std::string& train_key, const TsdfOptions& options
 ) {
   Json fields = config_to_json(options);
-  fields.erase("max_memory_mb");  // decides whether there is a mesh at all, not which
+  fields.erase(kMemoryLimit);  // decides whether there is a mesh at all, not which
   return {
       {"inputs", {{"train", train_key}}},
       {"mesh", fields},
       {"device", device_kind()},
       {"machine", {{"Open3D", has_tsdf_volume() ? Json::object() : Json("missing")}}},
       {"code", code_for(method, "mesh")}};
+}
+
+Json document_without_mesh(Json document, const TsdfOptions& options) {
+  document["mesh"][kMemoryLimit] = options.max_memory_mb;
+  if (options.max_memory_mb <= 0 && has_tsdf_volume())  // whole numbers: kernels keep some MB
+    document["mesh"]["machine_memory_gb"] =
+        std::llround(static_cast<double>(this_machine().memory_bytes) / 1e9);
+  return document;
 }
 
 Json score_document(

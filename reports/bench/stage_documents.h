@@ -22,6 +22,9 @@ Json render_document(const std::string& method, const std::string& train_key);
 Json mesh_document(
     const std::string& method, const std::string& train_key, const TsdfOptions& options
 );
+// That of a mesh stage that ended without a mesh, which more memory may give: with the limit, and
+// the machine's memory where the limit is a share of that.
+Json document_without_mesh(Json document, const TsdfOptions& options);
 
 struct ScoreInputs {
   std::string render_key, mesh_key;

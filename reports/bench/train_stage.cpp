@@ -38,12 +38,13 @@ std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
   write_run_spec(spec, method->config());
   reset_peak_memory();
   const TrainReport report = train(*method, scene, train_options(spec));
-  const auto files =
+  auto files =
       save_in_place(spec.folder, [&](const fs::path& folder) { method->save(folder.string()); });
   write_trained(
       spec,
       {report.seconds, report.peak_memory_mb, method->warnings(), method->notes(), scene.data_notes}
   );
+  files.emplace_back("env.json");
   write_stage(spec.folder, Stage::kTrain, spec.train_document, files);
   fs::remove(checkpoint);
   earlier.drop();

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "glint/core/left_behind.h"
 #include "reports/bench/child_process.h"
 
 namespace glint {
@@ -43,7 +44,7 @@ std::vector<std::string> video_command(const fs::path& pattern, double fps, cons
 }
 
 std::string write_video(const fs::path& pattern, double fps, const fs::path& video) {
-  const fs::path temporary = video.parent_path() / (".partial-" + video.filename().string());
+  const fs::path temporary = unfinished_path(video);
   const auto result = run_command(video_command(pattern, fps, temporary));
   std::error_code ignored;
   if (!result) return "ffmpeg is not installed";

@@ -138,13 +138,14 @@ std::vector<std::string> import_model(
   }
   EarlierRun earlier(spec.folder);
   write_run_spec(spec, spec.train_document.at("config"));
-  const std::vector<std::string> names = save_in_place(spec.folder, [&](const fs::path& folder) {
+  std::vector<std::string> names = save_in_place(spec.folder, [&](const fs::path& folder) {
     for (std::size_t i = 0; i < clouds.size(); ++i)
       write_surfel_ply(folder / files.sets[i].name, clouds[i]);
   });
   TrainCost cost;
   cost.notes = notes;
   write_trained(spec, cost);
+  names.emplace_back("env.json");
   write_stage(spec.folder, Stage::kTrain, spec.train_document, names);
   earlier.drop();
   return notes;

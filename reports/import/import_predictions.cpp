@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
 #include "metrics/depth.h"
 #include "metrics/normal.h"
 #include "reports/pictures/strip.h"
@@ -165,8 +166,7 @@ void note_absent(
 // Do they come as integers?
 bool has_eight_bit_images(const PredictionFiles& found) {
   return std::any_of(found.views.begin(), found.views.end(), [](const auto& files) {
-    const std::string extension = files.at("rgb").extension().string();
-    return extension != ".exr" && extension != ".npy" && extension != ".tiff";
+    return stores_integers(files.at("rgb"));
   });
 }
 

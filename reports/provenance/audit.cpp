@@ -130,6 +130,7 @@ class MethodAudit {
     run(Stage::kScore, [&] { trial.metrics = eval_stage(spec_, scene_, {}, options_.mesh); });
     for (const Stage stage : kStages)
       if (auto done = read_stage(spec_.folder, stage)) trial.hashes.merge(done->hashes);
+    trial.hashes.erase("env.json");  // what it took, which no two trainings share
   }
 
   // A method that was trained this shortly may have no surface yet.

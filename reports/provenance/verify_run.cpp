@@ -54,8 +54,12 @@ Json document_now(Stage stage, const RunSpec& spec, const Json& then, const Json
   if (stage == Stage::kTrain) return train_document(spec.method, spec.config, spec.options, data);
   const std::string trained = input_of(then, Stage::kTrain);
   if (stage == Stage::kRender) return render_document(spec.method, trained);
-  if (stage == Stage::kMesh)
-    return mesh_document(spec.method, trained, options_in<TsdfOptions>(then, "mesh"));
+  if (stage == Stage::kMesh) {
+    const auto options = options_in<TsdfOptions>(then, "mesh");
+    const Json document = mesh_document(spec.method, trained, options);
+    const bool without = then.at("mesh").contains("max_memory_mb");
+    return without ? document_without_mesh(document, options) : document;
+  }
   std::optional<TimingOptions> timing;
   if (then.at("timing_frames").is_number())
     timing = TimingOptions{then["timing_frames"], then.at("timing_warmup")};

@@ -269,9 +269,21 @@ EarlierRun::EarlierRun(const fs::path& folder, bool goes_on) : folder_(folder) {
   GLINT_CHECK(!code, kEnvironment, "{}: cannot be made ({})", folder.string(), code.message());
 }
 
-EarlierRun::~EarlierRun() try {
+// The handler is inside: that of a destructor's function-try-block throws on at its end.
+EarlierRun::~EarlierRun() {
+  if (dropped_) return;
+  try {
+    put_back();
+  } catch (const std::exception& error) {
+    log::warn(
+        fmt::format("{}: the earlier run could not be put back: {}", folder_.string(), error.what())
+    );
+  }
+}
+
+void EarlierRun::put_back() const {
   const fs::path previous = folder_ / kPreviousRun;
-  if (dropped_ || !is_our_run(previous)) return;
+  if (!is_our_run(previous)) return;
   for (const char* sign : {"log.jsonl", kCheckpoint, "env.json", "metrics.json"})
     if (fs::exists(folder_ / sign)) {
       log::warn(fmt::format("the run that was there before is kept in {}", previous.string()));
@@ -281,10 +293,6 @@ EarlierRun::~EarlierRun() try {
   move_run(previous, folder_);
   std::error_code code;
   fs::remove(previous, code);
-} catch (const std::exception& error) {
-  log::warn(
-      fmt::format("{}: the earlier run could not be put back: {}", folder_.string(), error.what())
-  );
 }
 
 void EarlierRun::drop() {

@@ -42,7 +42,7 @@ class EarlierRun {
   // check_run_folder()'s; kEnvironment: files cannot be moved.
   explicit EarlierRun(const fs::path& folder, bool goes_on = false);
   // Without drop(): puts the finished run back if the new one has got nowhere (no log, no
-  // checkpoint, no scores), else says where it lies.
+  // checkpoint, no scores), else says where it lies. What cannot be put back is a warning.
   ~EarlierRun();
   EarlierRun(const EarlierRun&) = delete;
   EarlierRun& operator=(const EarlierRun&) = delete;
@@ -50,6 +50,8 @@ class EarlierRun {
   void drop();  // the new run has ended: the earlier one goes
 
  private:
+  void put_back() const;  // errors: kEnvironment, files cannot be moved
+
   fs::path folder_;
   bool dropped_ = false;
 };

@@ -63,6 +63,25 @@ std::vector<SceneSource> manifest_sources(const std::string& id, const std::stri
   return sources;
 }
 
+template <class T>
+void check_once(const std::vector<T>& values, const char* field, const std::string& where) {
+  std::set<T> seen;
+  for (const T& value : values)
+    GLINT_CHECK(
+        seen.insert(value).second,
+        kUsage,
+        "{}: {} has {} twice; expected each once",
+        where,
+        field,
+        value
+    );
+}
+
+void check_lists(const Profile& profile, const std::string& where) {
+  check_once(profile.methods, "methods", where);
+  check_once(profile.seeds, "seeds", where);
+}
+
 }  // namespace
 
 Profile load_profile(const std::string& name) {
@@ -76,14 +95,19 @@ Profile load_profile(const std::string& name) {
       "{}: iterations and timing_frames must be positive",
       where
   );
+  check_lists(profile, where);
   profile.sources();
-  profile.mesh_protocol();
+  check_mesh_protocol(profile.mesh_protocol());
   return profile;
 }
 
 TsdfOptions Profile::tsdf_options() const {
   TsdfOptions options;
-  config_from_json(options, mesh, fmt::format("profile {} [mesh]", name));
+  const std::string where = fmt::format("profile {} [mesh]", name);
+  config_from_json(options, mesh, where);
+  GLINT_CHECK(
+      options.voxel > 0, kUsage, "{}: voxel is {}; expected metres above 0", where, options.voxel
+  );
   return options;
 }
 

@@ -94,7 +94,7 @@ struct Profile {
     v("mesh_metrics", mesh_metrics, "comparison: num_samples, thresholds_m, ...");
   }
 
-  // Errors (kUsage): unknown fields of [mesh] and [mesh_metrics].
+  // Errors (kUsage): unknown fields of [mesh] and [mesh_metrics], a voxel without an edge.
   TsdfOptions tsdf_options() const;
   MeshProtocol mesh_protocol() const;
 
@@ -103,7 +103,8 @@ struct Profile {
 };
 
 // `name`: an embedded profile, or the path of a TOML file (its stem becomes the name).
-// Errors (kUsage): neither; the message lists the embedded ones.
+// Errors (kUsage): neither, the message lists the embedded ones; what the members say; a method or
+// a seed twice, [mesh_metrics] that cannot be (check_mesh_protocol()).
 Profile load_profile(const std::string& name);
 
 // The fields of `assignments` ("name=value", or "method.name=value" for one method) laid over the

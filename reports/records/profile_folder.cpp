@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "reports/records/embedded.h"
 #include "reports/records/records.h"
 
 namespace glint {
@@ -10,6 +11,7 @@ namespace glint {
 namespace {
 
 constexpr const char* kRecordsFile = "records.jsonl";
+constexpr const char* kSingleRuns = "single";  // in records of runs apart from profiles
 
 bool has_records(const fs::path& folder) {
   std::error_code code;
@@ -33,6 +35,18 @@ std::string other_profiles(const fs::path& out) {
   );
 }
 
+std::string whose_records(const std::string& profile) {
+  return profile == kSingleRuns ? "single runs" : "profile " + profile;
+}
+
+// How another command would use records that are there; empty: no --profile names them.
+std::string how_to_name(const std::string& profile) {
+  if (profile == kSingleRuns) return "";
+  const std::vector<std::string> known = embedded_names("profiles");
+  const bool embedded = std::find(known.begin(), known.end(), profile) != known.end();
+  return (embedded ? "--profile " + profile : "--profile with its file") + ", or ";
+}
+
 }  // namespace
 
 fs::path profile_folder(const fs::path& out, const std::string& profile) {
@@ -50,17 +64,17 @@ fs::path own_profile_folder(const fs::path& out, const std::string& profile) {
   GLINT_CHECK(
       own || records.empty(),
       kUsage,
-      "--out {}: holds the records of profile {}; give --profile {}, or another --out for profile "
-      "{}",
+      "--out {}: holds the records of {}; give {}another --out for {}",
       out.string(),
-      records.front().profile,
-      records.front().profile,
-      profile
+      whose_records(records.front().profile),
+      how_to_name(records.front().profile),
+      whose_records(profile)
   );
   return folder;
 }
 
-fs::path folder_with_records(const fs::path& out, const std::string& profile) {
+fs::path folder_with_records(const fs::path& out, const std::string& given_profile) {
+  const std::string profile = fs::path(given_profile).stem().string();
   const fs::path folder = profile_folder(out, profile);
   if (!has_records(folder)) {
     // A folder that is named like its profile was meant itself.
@@ -71,7 +85,7 @@ fs::path folder_with_records(const fs::path& out, const std::string& profile) {
         fmt::format(
             "{}: no records.jsonl; run `glint-bench all --profile {} --out {}` first{}",
             (itself ? out : folder).string(),
-            profile,
+            given_profile,
             (itself ? parent : out).string(),
             other_profiles(out)
         )

@@ -16,8 +16,9 @@ fs::path profile_folder(const fs::path& out, const std::string& profile);
 // profiles only.
 fs::path own_profile_folder(const fs::path& out, const std::string& profile);
 
-// The same for what shows results. Errors (kBadPrediction): no record is there; the message says
-// what to run and which other profiles in OUT have some.
-fs::path folder_with_records(const fs::path& out, const std::string& profile);
+// The same for what shows results, of a profile as --profile gives it: a name or a TOML file.
+// Errors (kBadPrediction): no record is there; the message says what to run and which other
+// profiles in OUT have some.
+fs::path folder_with_records(const fs::path& out, const std::string& given_profile);
 
 }  // namespace glint

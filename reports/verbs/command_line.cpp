@@ -64,21 +64,19 @@ void add_profile_options(const CommonOptionAdder& add, CommonOptions& common) {
 void add_training_options(const CommonOptionAdder& add, CommonOptions& common) {
   add.option(kSeedOption, "--seed", common.seed, "one seed, a whole number");
   const char* iterations = "training steps; else as the profile says";
-  add.option(kIterationsOption, "--iterations", common.iterations, iterations)
-      ->check(CLI::PositiveNumber);
+  add.option(kIterationsOption, "--iterations", common.iterations, iterations)->check(above_zero());
   const char* set =
       "config field: name=value or method.name=value (`glint-bench methods ID` lists them)";
   add.option(kSetOption, "--set", common.set, set);
   const char* checkpoint = "seconds between checkpoints, from which a stopped training goes on";
   add.option(kCheckpointOption, "--checkpoint-seconds", common.checkpoint_seconds, checkpoint)
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
 }
 
 void add_machine_options(const CommonOptionAdder& add, CommonOptions& common) {
   add.option(kDeviceOption, "--device", common.device, "auto, cpu or cuda")->capture_default_str();
-  add.option(kThreadsOption, "--threads", common.threads, "0: all cores")
-      ->check(CLI::NonNegativeNumber);
+  add.option(kThreadsOption, "--threads", common.threads, "0: all cores")->check(at_least_zero());
   add.flag(kJsonOption, "--json", common.json, "one JSON document on standard output");
   add.flag(kQuietOption, "--quiet", common.quiet, "no progress and no notes on standard error");
 }

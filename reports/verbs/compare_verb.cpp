@@ -5,6 +5,7 @@
 
 #include "glint/core/nearest.h"
 #include "glint/core/progress.h"
+#include "metrics/tools/numeric_options.h"
 #include "reports/tables/compare.h"
 #include "reports/verbs/verb.h"
 
@@ -85,7 +86,7 @@ void add_compare_verb(CommandLine& line) {
           options->compare.tolerance,
           "relative change that is no regression where there is one seed"
   )
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
   verb->add_option(
       "--metric",

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "metrics/tools/numeric_options.h"
 #include "reports/pictures/radiance_difference.h"
 
 namespace glint {
@@ -100,7 +101,7 @@ void add_dataset_compare(CommandLine& line, CLI::App& dataset) {
   verb->add_option("second", arguments->second, "the same views by another renderer")->required();
   verb->add_option("--picture", arguments->picture, "PNG: first, second, relative difference");
   verb->add_option("--range", arguments->range, "difference of the strongest colour")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
 }
 

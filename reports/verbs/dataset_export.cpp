@@ -8,6 +8,7 @@
 #include "datasets/dataset.h"
 #include "datasets/export/exporter.h"
 #include "glint/core/error.h"
+#include "metrics/tools/numeric_options.h"
 
 namespace glint {
 
@@ -82,7 +83,7 @@ void add_dataset_export(CommandLine& line, CLI::App& dataset) {
       ->capture_default_str();
   add_load_options(app, arguments->load);
   app.add_option("--max-pixels", arguments->load.max_pixels, "shrink images below this area")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
   app.add_flag("--force", arguments->force, "replace an earlier export in --out");
 }
 

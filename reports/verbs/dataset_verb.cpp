@@ -7,6 +7,7 @@
 #include "datasets/packed_scene.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
+#include "metrics/tools/numeric_options.h"
 #include "reports/verbs/dataset_compare.h"
 #include "reports/verbs/dataset_export.h"
 #include "reports/verbs/dataset_front3d.h"
@@ -171,7 +172,26 @@ struct PackOptions : FolderOptions {
   bool test_truth_only = false;
 };
 
+// An earlier packed scene is replaced; whatever else lies there is somebody's.
+void check_pack_target(const fs::path& file) {
+  std::error_code code;
+  GLINT_CHECK(
+      file.has_filename() && !fs::is_directory(file, code),
+      kUsage,
+      "{}: is a folder; give the name of a file, such as {}",
+      file.string(),
+      (file / "scene.safetensors").string()
+  );
+  GLINT_CHECK(
+      !fs::exists(file, code) || is_packed_scene(file),
+      kUsage,
+      "{}: is there and is no packed scene; it is left as it is, give another name or move it away",
+      file.string()
+  );
+}
+
 int run_pack(const CommonOptions& common, const PackOptions& options) {
+  check_pack_target(options.file);
   Scene scene = load_scene(options.folder, options.load);
   if (options.test_truth_only)
     for (View& view : scene.train) view.truth = {};
@@ -200,7 +220,7 @@ void add_pack(CommandLine& line, CLI::App& dataset) {
   pack->add_option("file", options->file, "for example room_1.safetensors")->required();
   add_load_options(*pack, options->load);
   pack->add_option("--max-pixels", options->load.max_pixels, "shrink images below this area")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
   pack->add_flag(
       "--test-truth-only",
       options->test_truth_only,

@@ -4,7 +4,8 @@
 #include "datasets/dataset.h"
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf.h"
-#include "reports/bench/evaluate.h"
+#include "metrics/tools/numeric_options.h"
+#include "reports/bench/run_record.h"
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
 #include "reports/import/import_model.h"
@@ -18,15 +19,21 @@ namespace glint {
 
 namespace {
 
-using Scores = std::map<std::string, double>;
-
-// What an earlier scoring of the run found out about its cost; scoring again does not change it.
-Scores earlier_cost(const RunSpec& spec) {
-  Scores cost;
-  if (const auto trained = trained_cost(spec); trained && trained->seconds > 0) {
-    cost["train-minutes"] = trained->seconds / 60;
-    cost["peak-memory"] = trained->peak_memory_mb;
+// Of the trained model; nothing: another program's renders, or its files are gone.
+std::optional<std::size_t> count_surfels(const RunSpec& spec) {
+  if (!read_stage(spec.folder, Stage::kTrain)) return std::nullopt;
+  try {
+    return load_trained(spec)->num_surfels();
+  } catch (const Error& error) {
+    log::warn(fmt::format("{}: surfels are not counted: {}", spec.folder.string(), error.what()));
+    return std::nullopt;
   }
+}
+
+// What the run says about its cost, and an earlier scoring; scoring again does not change it.
+Scores known_cost(const RunSpec& spec) {
+  Scores cost = training_cost(spec);
+  if (const auto surfels = count_surfels(spec)) cost["num-surfels"] = static_cast<double>(*surfels);
   const fs::path path = spec.folder / "metrics.json";
   if (!fs::exists(path)) return cost;
   const Json json = parse_json(read_file(path));
@@ -35,7 +42,7 @@ Scores earlier_cost(const RunSpec& spec) {
   if (json.is_object() && json.value("metrics", Json()).is_object())
     for (const char* id : {"fps", "num-surfels"})
       if (const auto it = json["metrics"].find(id); it != json["metrics"].end() && it->is_number())
-        cost[id] = it->get<double>();
+        cost.emplace(id, it->get<double>());
   return cost;
 }
 
@@ -104,18 +111,10 @@ Record single_record(const SingleRun& single, const Json& score_document, const 
   record.metrics = means;
   record.train_key = key_of(spec.folder, Stage::kTrain);
   record.score_key = stage_key(score_document);
-  record.dataset_hash = spec.dataset_hash;
+  record.dataset_hash = single.scene.spec_hash;
   record.environment = environment_json();
-  record.not_measured = missing_metrics();
-  record.not_applicable = not_applicable(means, record.not_measured);
-  const Camera& camera = single.scene.test.front().camera;
-  record.resolution = fmt::format("{}x{}", camera.width, camera.height);
-  if (const auto cost = trained_cost(spec)) {
-    record.warnings = cost->warnings;
-    record.notes = cost->notes;
-    if (cost->seconds > 0) record.timings["train"] = cost->seconds;
-    record.data_notes = cost->data_notes;
-  }
+  describe_run(record, spec, single.scene);
+  if (!single.data_warning.empty()) record.warnings.push_back(single.data_warning);
   return record;
 }
 
@@ -145,6 +144,16 @@ void record_single(const CommonOptions& common, const RunSpec& spec, const Recor
   ));
 }
 
+// Errors (kBadReference): nothing to score.
+void check_test_views(const Scene& scene, const fs::path& dataset) {
+  GLINT_CHECK(
+      !scene.test.empty(),
+      kBadReference,
+      "{}: no test views, which are what is scored; name some in scene.json (test_views)",
+      dataset.string()
+  );
+}
+
 struct EvalArguments {
   std::string run, predictions, dataset, method, depth = "planar", axes = "opencv", mesh;
   double max_pixels = 0;
@@ -154,6 +163,7 @@ struct EvalArguments {
 int eval_run(const CommonOptions& common, const EvalArguments& arguments) {
   const std::string& folder = arguments.run;
   const SingleRun single = open_single_run(folder, arguments.dataset);
+  check_test_views(single.scene, single.spec.dataset_folder);
   const MeshProtocol protocol = mesh_protocol_of(single.spec);
   const Json document = score_document(
       single.spec.method,
@@ -163,7 +173,7 @@ int eval_run(const CommonOptions& common, const EvalArguments& arguments) {
   );
   Scores means;
   run_stage(folder, Stage::kScore, document, [&] {
-    means = eval_stage(single.spec, single.scene, earlier_cost(single.spec), protocol);
+    means = eval_stage(single.spec, single.scene, known_cost(single.spec), protocol);
     return std::string();
   });
   record_single(common, single.spec, single_record(single, document, means));
@@ -235,6 +245,7 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
   LoadOptions load;
   load.max_pixels = arguments.max_pixels;
   const Scene scene = load_scene(arguments.dataset, load);
+  check_test_views(scene, arguments.dataset);
   const Profile profile = import_profile(common);
   const RunSpec spec = spec_of(common, profile, arguments, scene);
   const ImportOptions options{
@@ -284,7 +295,7 @@ void add_prediction_options(CLI::App& verb, CLI::Option& predictions, EvalArgume
       ->capture_default_str();
   add("--mesh", arguments.mesh, "PLY of theirs; otherwise looked for");
   add("--max-pixels", arguments.max_pixels, "shrink images below this area")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
 }
 
 void add_eval_verb(CommandLine& line) {

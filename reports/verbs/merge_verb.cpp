@@ -67,9 +67,8 @@ Json merged_json(const std::vector<MergedCell>& merged, const fs::path& into) {
 }
 
 int run_merge(const CommonOptions& common, const MergeOptions& options) {
-  const std::string profile = load_profile(common.profile).name;
-  const fs::path into = own_profile_folder(common.out, profile);
-  const auto merged = merge_all(into, profile, options);
+  const fs::path into = own_profile_folder(common.out, load_profile(common.profile).name);
+  const auto merged = merge_all(into, common.profile, options);
   if (common.json)
     print_json(merged_json(merged, into));
   else

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "glint/core/interrupt.h"
+#include "metrics/tools/numeric_options.h"
 #include "reports/bench/mesh_stage.h"
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
@@ -77,7 +78,7 @@ void add_mesh_verb(CommandLine& line) {
           arguments->voxel,
           "metres; if not given, a pixel of the training views at the scene's usual depth"
   )
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb->add_option("--truncation", options.truncation_voxels, "voxels")->capture_default_str();
   verb->add_option("--max-depth", options.max_depth, "metres; 0: the bounds' diagonal");
   verb->add_option("--min-cluster", options.min_cluster, "triangles")->capture_default_str();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "metrics/tools/numeric_options.h"
 #include "reports/perf/perf.h"
 #include "reports/perf/scaling.h"
 #include "reports/verbs/verb.h"
@@ -85,13 +86,12 @@ void add_perf_verb(CommandLine& line) {
       [chosen, &common] { return run(common, *chosen); },
       kDeviceOption | kDeviceMatters | kJsonOption | kQuietOption
   );
-  verb->add_option("--width", options->width, "pixels")->check(CLI::PositiveNumber);
-  verb->add_option("--height", options->height, "pixels")->check(CLI::PositiveNumber);
-  verb->add_option("--surfels", options->surfels, "surfels of the scene")
-      ->check(CLI::PositiveNumber);
+  verb->add_option("--width", options->width, "pixels")->check(above_zero());
+  verb->add_option("--height", options->height, "pixels")->check(above_zero());
+  verb->add_option("--surfels", options->surfels, "surfels of the scene")->check(above_zero());
   verb->add_option("--overlap", options->overlap, "surfels' sigma over half their spacing")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--runs", options->runs, "runs of each op")->check(CLI::PositiveNumber);
+      ->check(above_zero());
+  verb->add_option("--runs", options->runs, "runs of each op")->check(above_zero());
   verb->add_option(
       "--op", options->only, "only ops whose name matches a glob, or one of several: '2dgs*|glint*'"
   );
@@ -104,7 +104,7 @@ void add_perf_verb(CommandLine& line) {
       "pixels; tables and picture into a folder"
   );
   verb->add_option("--scaling-surfels", chosen->scaling_surfels, "surfels of a set")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb->add_option("--scaling-sizes", chosen->scaling_sizes, "pixels, such as 160x90");
   verb->add_option("--write-scene", chosen->scene, "only write surfels and camera to a folder");
 }

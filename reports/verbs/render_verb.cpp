@@ -5,6 +5,7 @@
 #include "glint/core/printable.h"
 #include "glint/core/progress.h"
 #include "glint/scene/camera_path.h"
+#include "metrics/tools/numeric_options.h"
 #include "reports/bench/path_frames.h"
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
@@ -183,16 +184,15 @@ void add_path_options(CLI::App& verb, RenderArguments& arguments) {
   const auto add = [&](const std::string& name, auto& value, const std::string& help) {
     return verb.add_option(name, value, help)->needs(path);
   };
-  add("--frames", arguments.frames, "of orbit and spline; 120 if not given")
-      ->check(CLI::PositiveNumber);
+  add("--frames", arguments.frames, "of orbit and spline; 120 if not given")->check(above_zero());
   add("--fps", arguments.fps, "frames a second of the video; the file's, or 24")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   add("--size", arguments.size, "WIDTHxHEIGHT; the data's if not given");
   add("--keys", arguments.keys, "views that the spline passes through")
       ->check(CLI::IsMember({"train", "test"}))
       ->capture_default_str();
   add("--radius", arguments.radius, "of the orbit, metres; else the cameras' mean")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   add("--maps", arguments.maps, "rgb,depth,...; all that the method renders if not given")
       ->delimiter(',');
   add("--to", arguments.to, "folder of the frames; RUN/paths/NAME if not given");
@@ -214,7 +214,7 @@ void add_model_options(CLI::App& verb, RenderArguments& arguments) {
           "--max-pixels", arguments.max_pixels, "of the model: shrink images below this area"
   )
       ->needs(model)
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
   verb.add_flag("--force", arguments.force, "of the model: replace the run that is there")
       ->needs(model);
 }

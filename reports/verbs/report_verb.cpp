@@ -25,7 +25,8 @@ int run_report(const CommonOptions& common, const PageForm& form) {
 }  // namespace
 
 fs::path folder_with_records(const CommonOptions& common) {
-  return folder_with_records(common.out, load_profile(common.profile).name);
+  load_profile(common.profile);  // has the message where there is none
+  return folder_with_records(common.out, common.profile);
 }
 
 Scene load_run_data(const RunSpec& spec) {

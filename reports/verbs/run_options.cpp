@@ -8,6 +8,7 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
+#include "metrics/tools/numeric_options.h"
 #include "reports/bench/child_process.h"
 #include "reports/records/manifest.h"
 
@@ -114,7 +115,7 @@ void add_cell_run_options(CLI::App& verb, CellRunOptions& options) {
   const char* time_limit = "of a cell: 90s, 30m, 4h; its checkpoint stays";
   verb.add_option("--time-limit", options.time_limit, time_limit);
   const char* failures = "no cell begins after so many have failed; 0: any number";
-  verb.add_option("--max-failures", options.max_failures, failures)->check(CLI::NonNegativeNumber);
+  verb.add_option("--max-failures", options.max_failures, failures)->check(at_least_zero());
   verb.add_option("--sbatch", options.sbatch, "option for sbatch, as --sbatch=--partition=gpu");
 }
 

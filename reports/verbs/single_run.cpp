@@ -133,15 +133,17 @@ SingleRun open_single_run(const std::string& run_folder, const std::string& data
       run_folder
   );
   single.scene = load_dataset(spec);
-  const std::string& hash = single.scene.spec_hash;
-  if (!dataset.empty() && !spec.dataset_hash.empty() && hash != spec.dataset_hash)
-    log::warn(fmt::format(
+  if (const std::string& hash = single.scene.spec_hash;
+      !spec.dataset_hash.empty() && hash != spec.dataset_hash) {
+    single.data_warning = fmt::format(
         "{} is not what {} was trained on (hash {}, then {})",
-        dataset,
+        spec.dataset_folder.string(),
         run_folder,
         hash.substr(0, 12),
         spec.dataset_hash.substr(0, 12)
-    ));
+    );
+    log::warn(single.data_warning);
+  }
   return single;
 }
 

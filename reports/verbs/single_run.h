@@ -23,6 +23,7 @@ struct SingleRun {
   RunSpec spec;
   Scene scene;
   std::optional<FileLock> lock;  // nobody else writes into the folder
+  std::string data_warning;      // the data are not those it was trained on; empty: they are
 };
 SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& options);
 

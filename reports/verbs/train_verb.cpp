@@ -3,6 +3,7 @@
 
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
+#include "metrics/tools/numeric_options.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {
@@ -18,7 +19,7 @@ int run_train(
   const std::string folder = single.spec.folder.string();
   try {
     const auto method = train_stage(single.spec, single.scene);
-    const TrainCost cost = *trained_cost(single.spec);
+    const TrainCost cost = trained_cost(single.spec).value();
     if (common.json)
       print_json(
           {{"run", folder},
@@ -60,7 +61,7 @@ void add_train_verb(CommandLine& line) {
       ->check(CLI::IsMember({"raster", "trace"}));
   verb->add_flag("--force", options->force, "train again in a folder that holds a run");
   verb->add_option("--max-pixels", options->max_pixels, "shrink images below this area")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
   verb->add_option(
           "--image-ratio", options->image_ratio, "shrink both sides of images to this share"
   )

@@ -84,10 +84,10 @@ VerifyPlan make_verify_plan(const CommonOptions& common, const VerifyArguments& 
       kUsage,
       "--dataset is of one run: name its folder; rooms of several are looked for below --data, too"
   );
-  if (arguments.place.empty())
-    return plan_of_folder(
-        folder_with_records(common.out, load_profile(common.profile).name), common.filter()
-    );
+  if (arguments.place.empty()) {
+    load_profile(common.profile);  // has the message where there is none
+    return plan_of_folder(folder_with_records(common.out, common.profile), common.filter());
+  }
   if (!is_one && is_folder_of_runs(arguments.place))
     return plan_of_folder(arguments.place, common.filter());
   return plan_of_run(common, arguments.place);

@@ -14,6 +14,7 @@
 #include "glint/core/rng.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"
+#include "tests/support/as_nobody.h"
 #include "tests/support/box_room.h"
 #include "tests/support/temp_folder.h"
 
@@ -455,4 +456,47 @@ TEST_CASE("float images of another range are found") {
   Camera& camera = index.views[0].camera;
   camera.fx = camera.fy = 8, camera.cx = 4, camera.cy = 3;
   CHECK_THAT(list(check_indexed(index)), Contains("[color-values]") && Contains("by 255"));
+}
+
+TEST_CASE("a folder that may not be read is told as that") {
+  const TempFolder folder;
+  fs::permissions(folder.path(), fs::perms(0755));
+  write_easyvolcap(folder / "room", box_room_views(2, kSize));
+  fs::permissions(folder / "room", fs::perms::none);
+  {
+    const AsNobody nobody;
+    if (nobody.lacks_privileges())
+      CHECK_THAT(
+          error_of(ExitCode::kEnvironment, [&] { find_loader(folder / "room"); }),
+          Contains("room: permission denied")
+      );
+  }
+  fs::permissions(folder / "room", fs::perms::owner_all);
+}
+
+TEST_CASE("an image of another size than its maps is named itself") {
+  const auto shrink = [](const fs::path& folder) {
+    write_png(folder / "images/0003/000000.png", Image(48, 36, 3, 0.5f));
+  };
+  const Finding finding = only(findings_after_damage(shrink), "wrong-size");
+  CHECK_THAT(finding.where, Contains("images/0003"));
+  CHECK_THAT(
+      finding.message, Contains("48 x 36 pixels, its camera and its 4 maps 96 x 72; store the")
+  );
+}
+
+TEST_CASE("a split that leaves no train view or no test view is told with the way out") {
+  const TempFolder folder;
+  write_easyvolcap(folder.path(), box_room_views(1, kSize));
+  const std::string message = bad_reference([&] { load_scene(folder.path(), {}); });
+  CHECK_THAT(
+      message, Contains("the only view is a test view") && Contains("scene.json as \"test_views\"")
+  );
+  CHECK_THAT(list(check_dataset(folder.path())), Contains("[no-views]") && Contains("test view;"));
+  only(
+      findings_after_damage([](const fs::path& f) {
+        write_file(f / "scene.json", R"({"test_views": []})");
+      }),
+      "no-test-views"
+  );
 }

@@ -94,6 +94,8 @@ TEST_CASE("scenes made by hand survive, with points without normals and odd name
   scene.points = {};
   write_packed_scene(folder / "x", scene);
   check_same(read_packed_scene(folder / "x"), scene);
+  REQUIRE(check_dataset(folder / "x").size() == 1);
+  CHECK(check_dataset(folder / "x")[0].check == "no-test-views");
 }
 
 TEST_CASE("packing twice gives the same bytes") {

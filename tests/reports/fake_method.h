@@ -21,7 +21,8 @@ namespace glint {
 
 struct FakeConfig {
   float grey = 0.5f;  // of every rendered pixel
-  // "", "initialize", "step", "loss", "render", "device", or one of what ends a process (end_by)
+  // "", "initialize", "step", "loss", "render", "device", "behind" (nothing lies behind its glass),
+  // or one of what ends a process (end_by)
   std::string fails;
   template <class V>
   void visit(V&& v) {
@@ -58,13 +59,15 @@ class FakeMethod final : public Method {
     output["depth"] = Image(camera.width, camera.height, 1, 2.0f);
     output["transparency"] = Image(camera.width, camera.height, 1, 0.25f);
     output["interface"] = output["rgb"];
+    if (config_.fails == "behind") output["behind_depth"] = Image(camera.width, camera.height, 1);
     return output;
   }
   // Views of the dataset show another transparency than cameras.
   static constexpr float kTransparencyOfViews = 0.5f;
   MapSet render_view(const View& view) override {
     MapSet output = render(view.camera);
-    output["transparency"] = Image(view.camera.width, view.camera.height, 1, kTransparencyOfViews);
+    const float transparency = config_.fails == "behind" ? 1 : kTransparencyOfViews;
+    output["transparency"] = Image(view.camera.width, view.camera.height, 1, transparency);
     return output;
   }
   std::vector<std::string> notes() const override { return {"a fake"}; }

@@ -55,15 +55,17 @@ class HostExec {
       in_host_order(blocks, [&](std::size_t i) { run_block(body, static_cast<int>(i)); });
     });
   }
-  // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count].
-  template <class T>
-  void exclusive_sum_on_device(const Buffer<T>& counts, std::size_t count, Buffer<T>& sums) {
+  // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count], added by `add`.
+  template <class T, class Add = gpu::Plus>
+  void exclusive_sum_on_device(
+      const Buffer<T>& counts, std::size_t count, Buffer<T>& sums, Add add = {}
+  ) {
     sums.resize(count + 1);
     ++device_counters.launches;
-    host_recorder().now_or_later([from = counts.data(), count, to = sums.data()] {
+    host_recorder().now_or_later([from = counts.data(), count, to = sums.data(), add] {
       const OpenMemory open(OpenMemory::kDevice);
       to[0] = T{};
-      std::partial_sum(from, from + count, to + 1);
+      std::partial_sum(from, from + count, to + 1, add);
     });
   }
   // Stable, by the low `bits` bits of the keys.

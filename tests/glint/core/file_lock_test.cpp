@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/as_nobody.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -55,4 +56,18 @@ TEST_CASE("A process that is killed holds nothing") {
   CHECK(fs::exists(file));
   CHECK(holder_of(file).empty());
   CHECK(!fs::exists(file));
+}
+
+TEST_CASE("A folder that may not be made is named with the reason") {
+  const test::TempFolder folder;
+  fs::permissions(folder.path(), fs::perms(0555));
+  {
+    const test::AsNobody nobody;
+    if (nobody.lacks_privileges())
+      CHECK_THAT(
+          test::error_of(ExitCode::kEnvironment, [&] { FileLock::take(folder / "runs" / "lock"); }),
+          Catch::Contains("/runs: cannot be made (Permission denied)")
+      );
+  }
+  fs::permissions(folder.path(), fs::perms::owner_all);
 }

@@ -308,6 +308,45 @@ TEST_CASE("Where only the gradients lack room, they are zero") {
   use_cpu();
 }
 
+TEST_CASE("Counts of pairs that are too large for 32 bits stay at the largest number, each alone") {
+  const AddPairCounts add;
+  const PairCounts large = pair_counts(0xc0000000u, 5), sum = add(large, large);
+  CHECK(pairs_of(sum) == 0xffffffffu);
+  CHECK(slots_of(sum) == 10);
+  CHECK(add(sum, pair_counts(7, 1)) == pair_counts(0xffffffffu, 11));
+  CHECK(slots_of(add(pair_counts(1, 0x80000000u), pair_counts(1, 0x80000000u))) == 0xffffffffu);
+  CHECK(add(pair_counts(1, 2), pair_counts(3, 4)) == pair_counts(4, 6));
+}
+
+TEST_CASE("More pairs than the GPU can list are an error, and make a silent step void") {
+  use_host_kernels();
+  HostExec exec;
+  CountedRoom<HostExec> counted;
+  const auto count = [&](std::vector<PairCounts> counts, std::uint32_t* overflow) {
+    HostExec::Buffer<PairCounts> buffer;
+    buffer.resize(counts.size());
+    {
+      const OpenMemory open(OpenMemory::kBoth);
+      std::copy(counts.begin(), counts.end(), buffer.data());
+    }
+    return counted.count(exec, buffer, counts.size(), {640, 480}, overflow);
+  };
+  const PairCounts many_pairs = pair_counts(0x40000000u, 1);
+  const PairCounts many_slots = pair_counts(1, kMostPairs.slots);
+  CHECK(count({many_slots}, nullptr).slots == kMostPairs.slots);
+  for (const PairCounts many : {many_pairs, many_slots}) {
+    CHECK_THROWS_WITH(
+        count({many, many}, nullptr),
+        Catch::Matchers::Contains("2 surfels") && Catch::Matchers::Contains("640x480")
+    );
+    std::uint32_t overflow = 0;
+    const SilentStep silent(true);
+    count({many, many}, &overflow);
+    CHECK(overflow == 1);
+  }
+  use_cpu();
+}
+
 TEST_CASE("A second pass of the GPU's rasteriser over the same surfels uses the lists of the first"
 ) {
   const Case& c = kCases[2];

@@ -24,7 +24,7 @@ TEST_CASE("a mirror mirrors: angles are equal, the normal component turns round"
   CHECK(length(cross(w - d, n)) == Approx(0).margin(1e-12));
 }
 
-TEST_CASE("the two branches of Eq. 5-7 and their sum are one formula") {
+TEST_CASE("the two branches of Eq. 5, 8 and 10 and their sum are one formula") {
   const GlassRadiance<double> p{{0.2, 0.4, 0.6}, {0.9, 0.1, 0.3}, {0.5, 0.7, 0.2}, 0.3, 0.15};
   const Vec3d opaque = 0.85 * p.interface + 0.15 * p.reflection;
   const Vec3d transparent = 0.85 * p.transmission + 0.15 * p.reflection;

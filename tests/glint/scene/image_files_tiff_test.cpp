@@ -7,6 +7,7 @@
 
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -43,12 +44,18 @@ TEST_CASE("TIFF of float32 and of integers is read as stored") {
   for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW}) {
     write_tiff(folder / "depth.tiff", 3, depth, SAMPLEFORMAT_IEEEFP, compression);
     const Image image = read_image(folder / "depth.tiff", 1);
+    CHECK_FALSE(stores_integers(folder / "depth.tiff"));
     CHECK(image.size() == ImageSize{3, 2});
     CHECK(std::vector<float>(image.values().begin(), image.values().end()) == depth);
   }
   const std::vector<std::uint16_t> grey = {0, 65535, 13107, 6};
   write_tiff(folder / "grey.tif", 2, grey, SAMPLEFORMAT_UINT, COMPRESSION_NONE);
   CHECK(read_image(folder / "grey.tif", 1).at(0, 1) == Approx(0.2));
+  CHECK(stores_integers(folder / "grey.tif"));
+  write_tiff(
+      folder / "bytes.tif", 2, std::vector<std::uint8_t>(4), SAMPLEFORMAT_UINT, COMPRESSION_NONE
+  );
+  CHECK(stores_integers(folder / "bytes.tif"));
 }
 
 TEST_CASE("A damaged TIFF is refused by name") {

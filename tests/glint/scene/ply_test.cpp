@@ -250,6 +250,37 @@ TEST_CASE("polygons become fans, and faces to vertices that are not there are er
   CHECK_THAT(message("99999 0 1 2\n"), Contains("cut off or damaged"));
 }
 
+TEST_CASE("faces are the list of their vertices and no other") {
+  const TempFolder folder;
+  const auto message = [&](const std::string& faces) {
+    write_file(
+        folder / "x.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\n" +
+            faces
+    );
+    return bad_reference([&] { read_mesh_ply(folder / "x.ply"); });
+  };
+  CHECK_THAT(
+      message("element face 1\nproperty list uchar float texcoord\nend_header\n"
+              "0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n"),
+      Contains("x.ply") && Contains("vertex_indices") && Contains("found: texcoord")
+  );
+}
+
+TEST_CASE("faces without a list are an error, unless there are none") {
+  const TempFolder folder;
+  const auto file = [](const std::string& count, const std::string& rows) {
+    return "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+           "property float z\nelement face " +
+           count + "\nproperty int material\nend_header\n0 0 0\n" + rows;
+  };
+  write_file(folder / "x.ply", file("2", "5\n6\n"));
+  CHECK_THAT(bad_reference([&] { read_mesh_ply(folder / "x.ply"); }), Contains("found: none"));
+  write_file(folder / "x.ply", file("0", ""));
+  CHECK(read_mesh_ply(folder / "x.ply").faces.empty());
+}
+
 TEST_CASE("a count that the file cannot hold allocates nothing") {
   const TempFolder folder;
   const auto message = [&](const std::string& file) {

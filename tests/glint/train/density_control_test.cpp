@@ -172,6 +172,27 @@ TEST_CASE("A large surfel becomes five in its plane, unless it is among the leas
   }
 }
 
+TEST_CASE("Large surfels become five as long as there is room for them") {
+  DensifyConfig config = every_step();
+  config.split_large = true;
+  const auto split_with = [&](int max_surfels) {
+    config.max_surfels = max_surfels;
+    SurfelCloud cloud = cloud_of(12);
+    for (std::size_t i = 0; i < 3; ++i) enlarge(cloud, i);
+    SurfelAdam adam = adam_of(cloud);
+    Densifier densifier(config, 1, 0);
+    observe(densifier, std::vector<float>(12, 1.0f));
+    const DensifyCounts counts = densifier.update(1, cloud, adam);
+    CHECK(counts.pruned == 0);
+    CHECK(cloud.size() == 12 + 4 * counts.split);
+    return counts.split;
+  };
+  CHECK(split_with(100) == 3);
+  CHECK(split_with(23) == 2);
+  CHECK(split_with(15) == 0);
+  CHECK(split_with(5) == 0);
+}
+
 TEST_CASE("Weights are means over the views that saw a surfel") {
   // Two large surfels: the first is seen often and faintly, the second once and well.
   DensifyConfig config = every_step();

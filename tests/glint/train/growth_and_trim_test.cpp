@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "glint/render/activations.h"
+#include "glint/render/void_steps.h"
 #include "glint/train/trainable_set.h"
 #include "tests/support/gpu_backends.h"
+#include "tests/support/host_exec.h"
 
 using namespace glint;
 
@@ -150,6 +152,27 @@ TEST_CASE("The mean is over views, the radius the largest since the last densifi
   CHECK(densifier.update(1, cloud, adam).split == 0);  // mean 7.5e-4; never large
   observe(densifier, {{0, 2e-3f, 5}, {0, 2e-3f, 21}});
   CHECK(densifier.update(2, cloud, adam).split == 1);  // the first was large before that only
+}
+
+TEST_CASE("A void step leaves what was observed as it is") {
+  test::use_host_kernels();
+  DensifyConfig config = every_step();
+  config.max_abs_splits = 10;
+  SurfelCloud cloud = cloud_of(2);
+  SurfelAdam adam;
+  Densifier densifier(config, 1, 5);
+  observe(densifier, {{0, 2e-3f, 5}, {0, 0, 25}});
+  {
+    const SilentStep silent(true);
+    test::HostExec().for_each(1, [word = void_word()](std::size_t) { *word = 1; });
+    observe(densifier, {{1e-3f, 2e-3f, 25}, {1e-3f, 2e-3f, 25}});
+    end_silent_step();
+  }
+  CHECK(take_void_steps() == 1);
+  const DensifyCounts counts = densifier.update(1, cloud, adam);
+  CHECK(counts.cloned == 0);
+  CHECK(counts.split == 0);
+  use_cpu();
 }
 
 TEST_CASE("Splits by the absolute gradient ask for the statistics they need") {

@@ -172,7 +172,6 @@ TEST_CASE("Offsets and gradients are those of the publication's text in double")
   for (const bool reflection : {true, false}) {
     Fixture f(small_config(reflection));
     const FloatArray offsets = f.forward();
-    CHECK(f.appearance.num_visible() == 5);
     const Vector p = all_parameters(f.appearance);
     double loss = 0;
     for (std::size_t i = 0; i < offsets.size(); ++i) {
@@ -307,7 +306,7 @@ TEST_CASE("A cloud and a camera give what their arrays give, there and back") {
   mark_in_pyramid(cloud, camera, plain.visible);
   plain.eye = cast<float>(camera.center());
   CHECK(offsets == plain.forward());
-  CHECK(plain.appearance.num_visible() > 0);
+  CHECK(std::count(plain.visible.begin(), plain.visible.end(), 1) > 0);
   for (std::size_t i = 0; i < kSurfels; ++i)
     std::copy_n(&gradient.features[4 * i], 3, &plain.g[3 * i]);
   plain.appearance.backward(plain.g);

@@ -225,9 +225,3 @@ TEST_CASE("A value that is not finite is named") {
       net.parameters().check_finite("network"), Catch::Contains("network: value 2 of 3")
   );
 }
-
-TEST_CASE("A log-linear rate ends where it should") {
-  CHECK(log_linear_rate(1e-2f, 1e-4f, 0, 10) == Approx(1e-2));
-  CHECK(log_linear_rate(1e-2f, 1e-4f, 5, 10) == Approx(1e-3));
-  CHECK(log_linear_rate(1e-2f, 1e-4f, 30, 10) == Approx(1e-4));
-}

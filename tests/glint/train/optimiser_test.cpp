@@ -82,6 +82,27 @@ TEST_CASE("Adam by what was seen: no gradient, no drift, and the moments wait") 
   CHECK(cloud.opacity_logits[0] < before);  // momentum
 }
 
+TEST_CASE("A log-linear rate ends where it should") {
+  CHECK(log_linear_rate(1e-2f, 1e-4f, 0, 10) == Approx(1e-2));
+  CHECK(log_linear_rate(1e-2f, 1e-4f, 5, 10) == Approx(1e-3));
+  CHECK(log_linear_rate(1e-2f, 1e-4f, 30, 10) == Approx(1e-4));
+}
+
+TEST_CASE("A rate that falls log-linearly to zero is an error; what starts at zero stays there") {
+  CHECK(log_linear_rate(0, 1e-4f, 5, 10) == 0);
+  CHECK(log_linear_rate(0, 0, 5, 10) == 0);
+  CHECK_THROWS_WITH(log_linear_rate(1e-2f, 0, 0, 10), Catch::Contains("above 0"));
+  SurfelCloud cloud = cloud_of(1), gradient = cloud_of(1);
+  SurfelRates rates;
+  rates.means_final = 0;
+  CHECK_THROWS_WITH(SurfelAdam().step(cloud, gradient, rates, 1), Catch::Contains("above 0"));
+  rates.means = 0;
+  gradient.means[0] = 1;
+  const FloatArray before = cloud.means;
+  SurfelAdam().step(cloud, gradient, rates, 1);
+  CHECK(cloud.means == before);
+}
+
 TEST_CASE("The position rate falls log-linearly to its final value") {
   SurfelRates rates;
   rates.means_steps = 100;

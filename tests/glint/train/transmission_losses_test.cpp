@@ -347,6 +347,11 @@ TEST_CASE("Where masks show that too little glass is dark, a warning says that t
   CHECK_THAT(warnings[0], Catch::Contains("44 %") && Catch::Contains("more than 50 %"));
   config.transparent_weight = 4;  // asks for a fifth
   CHECK(losses.set_up(config, f.scene, "test").empty());
+  config.low_albedo = 0.001f;  // who asks for a fifth already is not told to
+  CHECK_THAT(
+      losses.set_up(config, f.scene, "test").at(0),
+      Catch::Contains("a larger transparent_weight") && !Catch::Contains("glint/robust")
+  );
   config.transparent_weight = 1;
   config.low_albedo = 0.5f;
   CHECK(losses.set_up(config, f.scene, "test").empty());

@@ -2,6 +2,7 @@
 // Depth maps of spheres, whose surface is known.
 #include "metrics/fusion/tsdf.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -179,6 +180,34 @@ TEST_CASE("Fusion refuses what cannot be fused, before it takes memory") {
     return view;
   };
   CHECK(code_of([&] { fuse_depth(cropped, kViews, coarse()); }) == ExitCode::kBadPrediction);
+}
+
+TEST_CASE("Each view is asked for twice, and opens the blocks it needs whichever comes first") {
+  SKIP_WITHOUT_OPEN3D();
+  // From either side, one with pixels four times as wide, of which more have to open blocks.
+  const auto view_from = [](double x, int width) {
+    FusionView view{
+        Image(width, width, 1), {}, look_at({x, 0, 0}, {0, 0, 0}, {0, 0, 1}, {width, width}, 60)};
+    for (int j = 0; j < width; ++j)
+      for (int i = 0; i < width; ++i)
+        view.depth.at(i, j) =
+            static_cast<float>(depth_along(view.camera, i, j, {{{0, 0, 0}, 0.5}}));
+    return view;
+  };
+  TsdfOptions options = coarse();
+  options.voxel = 0.01;
+  const auto megabytes = [&](std::size_t first) {
+    std::array<int, 2> asked{};
+    const FusionSource source = [&](std::size_t index) {
+      ++asked[index];
+      return index == first ? view_from(2.5, 96) : view_from(-2.5, 24);
+    };
+    TsdfReport report;
+    fuse_depth(source, 2, options, &report);
+    CHECK(asked == std::array<int, 2>{2, 2});
+    return report.memory_mb;
+  };
+  CHECK(megabytes(0) == megabytes(1));
 }
 
 TEST_CASE("Pieces are found in meshes that are not manifold") {

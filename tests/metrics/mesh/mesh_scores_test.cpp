@@ -209,6 +209,19 @@ TEST_CASE("nothing to sample, no samples and impossible thresholds are errors of
   error_of(ExitCode::kUsage, [&] { mesh_scores(unit_square(0), unit_square(0), clipped); });
 }
 
+TEST_CASE("a threshold stands there once, and none is above the largest distance") {
+  const auto error = [](MeshProtocol protocol) {
+    return error_of(ExitCode::kUsage, [&] { check_mesh_protocol(protocol); });
+  };
+  MeshProtocol protocol;
+  protocol.max_distance_m = 0.07;
+  CHECK_THAT(error(protocol), Catch::Contains("max_distance_m") && Catch::Contains("below 0.1 of"));
+  protocol.max_distance_m = 0.1;  // what is cut off there is not strictly nearer
+  check_mesh_protocol(protocol);
+  protocol.thresholds_m = {0.01, 0.05, 0.01};
+  CHECK_THAT(error(protocol), Catch::Contains("0.01 stands there twice (1cm)"));
+}
+
 TEST_CASE("values carry the ids that tables name, and the registry knows them") {
   MeshProtocol protocol = protocol_of(100);
   for (const auto& [id, value] :

@@ -272,3 +272,17 @@ TEST_CASE("impossible options are usage errors, and help has an example") {
   CHECK(help.code == 0);
   CHECK_THAT(help.out, Contains("glint-mesh out/ci/runs/room_1/2dgs/0 data/room_1"));
 }
+
+TEST_CASE("glint-mesh refuses thresholds beyond the largest distance, repeated ones, odd seeds") {
+  const Pair pair;
+  const Result beyond = pair.run({"--max-distance", "0.04"});
+  CHECK(beyond.code == 1);
+  CHECK_THAT(beyond.err, Contains("--max-distance") && Contains("--thresholds"));
+  CHECK(pair.run({"--max-distance", "0.1"}).code == 0);
+  CHECK(pair.run({"--thresholds", "0.05", "0.05"}).code == 1);
+  for (const char* seed : {"-1", "99999999999999999999"})
+    CHECK_THAT(pair.run({"--seed", seed}).err, Contains("--seed is"));
+  CHECK_THAT(
+      pair.run({"--max-distance", "0"}).err, Contains("--max-distance: '0' must be above 0\n")
+  );
+}

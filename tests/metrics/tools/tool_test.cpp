@@ -60,6 +60,21 @@ void write_text(const fs::path& path, const std::string& text) {
   std::ofstream(path) << text;
 }
 
+// NumPy's file of kWidth x kHeight values, or three of each.
+void write_integers_npy(
+    const fs::path& path, const std::string& type, int channels, const std::string& values
+) {
+  std::string header = fmt::format(
+      "{{'descr': '{}', 'fortran_order': False, 'shape': ({}, {}, {}), }}\n",
+      type,
+      kHeight,
+      kWidth,
+      channels
+  );
+  const std::string length = {static_cast<char>(header.size()), '\0'};
+  write_file(path, std::string("\x93NUMPY\x01\0", 8) + length + header + values);
+}
+
 // A run folder and a dataset folder with views named 2 and 10.
 void write_run(const test::TempFolder& folder) {
   for (const char* view : {"2", "10"}) {
@@ -88,6 +103,23 @@ TEST_CASE("glint-psnr gives psnr for a float file and psnr-8bit for a PNG") {
   CHECK(png["mean"]["psnr-8bit"] == psnr_8bit(rendered(), truth));
   CHECK(exr["protocol"]["psnr"]["clamp"] == true);
   CHECK(png["protocol"]["psnr-8bit"]["eight_bit"] == true);
+}
+
+TEST_CASE("integers are told by what the file holds, whatever its name") {
+  const test::TempFolder folder;
+  const ByteImage bytes = to_bytes(rendered());
+  write_integers_npy(
+      folder / "bytes.npy", "|u1", 3, std::string(bytes.values().begin(), bytes.values().end())
+  );
+  write_npy(folder / "floats.npy", rendered());
+  write_png16(folder / "words.png", Image(kWidth, kHeight, 1, 0.3f));
+  const Image truth = stored_reference(folder);
+  const auto means = [&](const char* prediction) -> Json {
+    return psnr_tool({folder / prediction, folder / "stored.png", "--json"}).json()["mean"];
+  };
+  CHECK(means("bytes.npy") == Json{{"psnr-8bit", psnr_8bit(rendered(), truth)}});
+  CHECK(means("floats.npy") == Json{{"psnr", psnr(rendered(), truth)}});
+  CHECK(means("words.png").contains("psnr-8bit"));
 }
 
 TEST_CASE("a run folder is matched with a dataset folder by view name, in natural order") {
@@ -350,6 +382,21 @@ TEST_CASE("glint-ssim prints one variant or all") {
   CHECK(all["protocol"]["ssim-wang"]["border"] == "valid region");
 }
 
+TEST_CASE("a picture smaller than the window has no ssim-wang, which is told") {
+  const test::TempFolder folder;
+  write_png(folder / "a.png", Image(5, 3, 3, 0.5f));
+  const std::string file = folder / "a.png";
+  const Result wang = ssim_tool({file, file, "--variant", "wang"});
+  CHECK(wang.code == 3);
+  CHECK_THAT(wang.err, Catch::Contains("5 x 3 pixels is smaller than the window of 11 x 11"));
+  const Result all = ssim_tool({file, file, "--variant", "all"});
+  CHECK(all.code == 0);
+  CHECK_THAT(
+      all.out,
+      Catch::StartsWith("ssim-3dgs 1.0") && Catch::Contains("a.png: ssim-wang is left out: the")
+  );
+}
+
 TEST_CASE("glint-depth aligns on request and names the alignment in the id") {
   const test::TempFolder folder;
   const Image truth = golden::true_depth_map(kWidth, kHeight);
@@ -390,6 +437,23 @@ TEST_CASE("a PNG holds no metric depth") {
   CHECK(depth_tool({folder / "depth.png", folder / "truth.exr"}).code == 2);
   CHECK(depth_tool({folder / "truth.exr", folder / "depth.png"}).code == 3);
   CHECK(depth_tool({folder / "depth.png", folder / "truth.exr", "--align", "affine"}).code == 0);
+}
+
+TEST_CASE("integers of 16 bits hold no metric depth, whatever the file's name") {
+  const test::TempFolder folder;
+  write_integers_npy(folder / "depth.npy", "<u2", 1, std::string(2 * kWidth * kHeight, '\x07'));
+  write_exr(folder / "truth.exr", golden::true_depth_map(kWidth, kHeight));
+  CHECK(depth_tool({folder / "depth.npy", folder / "truth.exr"}).code == 2);
+  CHECK(depth_tool({folder / "truth.exr", folder / "depth.npy"}).code == 3);
+}
+
+TEST_CASE("a prediction of holes alone is the prediction's fault") {
+  const test::TempFolder folder;
+  write_exr(folder / "holes.exr", Image(kWidth, kHeight, 1));
+  write_exr(folder / "depth.exr", Image(kWidth, kHeight, 1, 1.0f));
+  const Result result = depth_tool({folder / "holes.exr", folder / "depth.exr", "--release"});
+  CHECK(result.code == 2);
+  CHECK_THAT(result.err, Catch::Contains("holes.exr: no pixel to score"));
 }
 
 TEST_CASE("a depth reference without any depth is the reference's fault") {

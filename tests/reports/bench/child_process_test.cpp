@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/child_process.h"
 
+#include <fcntl.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <catch2/catch.hpp>
@@ -36,6 +38,31 @@ std::string first_line_of(const fs::path& file) {
   return "";
 }
 
+int open_descriptors() {
+  int count = 0;
+  for (int number = 0; number < 256; ++number) count += ::fcntl(number, F_GETFD) >= 0 ? 1 : 0;
+  return count;
+}
+
+// A user who may have no further process; false: this one cannot become such.
+bool forbid_processes() {
+  const rlimit none{0, 0};
+  constexpr uid_t kNobody = 65534;  // of root, processes are not counted
+  return ::setrlimit(RLIMIT_NPROC, &none) == 0 && (::geteuid() != 0 || ::setuid(kNobody) == 0);
+}
+
+// Files that are left open where no process can be made; -1: this cannot be brought about here.
+int left_open_without_process() {
+  if (!forbid_processes()) return -1;
+  const int before = open_descriptors();
+  try {
+    const ChildProcess child({"true"});
+    return -1;
+  } catch (const Error&) {
+    return open_descriptors() - before;
+  }
+}
+
 }  // namespace
 
 TEST_CASE("words reach a program as they are: no shell reads them") {
@@ -64,6 +91,18 @@ TEST_CASE("a program that is not there is an error that names it") {
   CHECK_THROWS_WITH(
       ChildProcess({"glint-no-such-program"}), Catch::Contains("glint-no-such-program: cannot be")
   );
+}
+
+TEST_CASE("where no process can be made, no file stays open") {
+  const pid_t apart = ::fork();
+  if (apart == 0) ::_exit(left_open_without_process() & 0xff);
+  int status = 0;
+  REQUIRE(::waitpid(apart, &status, 0) == apart);
+  REQUIRE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 0xff)
+    WARN("skipped: the number of processes cannot be limited here");
+  else
+    CHECK(WEXITSTATUS(status) == 0);
 }
 
 TEST_CASE("settings stand in for those of the environment") {

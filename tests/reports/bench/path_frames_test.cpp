@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 
+#include "glint/core/left_behind.h"
 #include "glint/scene/camera_path.h"
 #include "glint/scene/image_files.h"
 #include "reports/bench/video.h"
@@ -106,6 +107,13 @@ TEST_CASE("ffmpeg makes the video where it is installed, and may fail") {
   const std::string frames = (fs::current_path() / "layers/%04d.png").string();
   CHECK(read_file(video).find("-framerate 12 -i " + frames) != std::string::npos);
   fs::remove(video);
+  // Under a name that `clean` knows until it is whole.
+  const fs::path names = folder / "names";
+  install_ffmpeg(
+      folder.path(), "for last; do :; done\necho \"$last\" > " + names.string() + "\nexit 3\n"
+  );
+  write_video("layers/%04d.png", 12, video);
+  CHECK(read_file(names) == unfinished_path(video).string() + "\n");
   install_ffmpeg(folder.path(), "exit 3\n");
   CHECK(write_video("layers/%04d.png", 12, video) == "ffmpeg ended with 3");
   CHECK(!fs::exists(video));

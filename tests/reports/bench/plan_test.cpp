@@ -60,6 +60,9 @@ TEST_CASE("unknown methods and fields stop a plan before anything runs") {
   CHECK_THROWS_WITH(make_plan(profile, {}, {"grey"}), Catch::Contains("name=value"));
   profile.methods = {"fakee"};
   CHECK_THROWS_WITH(make_plan(profile, {}, {}), Catch::Contains("'fake'"));
+  profile = fake_profile();
+  profile.overrides["fakee"] = Json::object();
+  CHECK_THROWS_WITH(make_plan(profile, {}, {}), Catch::Contains("'fake'"));
 }
 
 TEST_CASE("time is estimated for the stages to do, from finished cells of the same method") {
@@ -121,6 +124,16 @@ TEST_CASE("a profile file of the user's is read, and its mistakes are named") {
       load_profile(file.string()),
       Catch::Contains("scene 'a': priors is 'porr'") && Catch::Contains("did you mean 'poor'")
   );
+  const auto check_refused = [&](const std::string& text, const std::string& message) {
+    write_file(file, text);
+    INFO(text);
+    CHECK_THROWS_WITH(load_profile(file.string()), Catch::Contains(message));
+  };
+  check_refused("methods = ['2dgs', '2dgs']\n", "methods has 2dgs twice");
+  check_refused("seeds = [0, 1, 0]\n", "seeds has 0 twice");
+  check_refused("[mesh]\nvoxel = -1\n", "voxel is -1");
+  check_refused("[mesh_metrics]\nnum_samples = 0\n", "num_samples");
+  check_refused("[mesh_metrics]\nthresholds_m = [-0.1]\n", "thresholds_m");
   write_file(file, "scenes = [\n");
   CHECK_THROWS_WITH(load_profile(file.string()), Catch::Contains("mine.toml:"));
   CHECK_THROWS_WITH(

@@ -44,3 +44,21 @@ TEST_CASE("a folder without records says what to run and where there are some") 
   write_file(out / "ci/records.jsonl", "");
   CHECK_THROWS_AS(folder_with_records(out.path(), "ci"), Error);
 }
+
+TEST_CASE("what to give is named by a profile that there is, or by its file") {
+  const test::TempFolder out;
+  const auto refusal = [&](const std::string& profile) {
+    write_record(out.path(), profile);
+    return test::error_of(ExitCode::kUsage, [&] { own_profile_folder(out.path(), "small"); });
+  };
+  CHECK_THAT(refusal("ci"), Catch::Contains("give --profile ci, or another --out for profile"));
+  fs::remove(out / "records.jsonl");
+  CHECK_THAT(refusal("single"), Catch::Contains("of single runs; give another --out for profile"));
+  fs::remove(out / "records.jsonl");
+  CHECK_THAT(refusal("tiny"), Catch::Contains("of profile tiny; give --profile with its file, or"));
+  fs::remove(out / "records.jsonl");
+  CHECK_THROWS_WITH(
+      folder_with_records(out.path(), "cfg/tiny.toml"),
+      Catch::Contains("/tiny: no records.jsonl; run `glint-bench all --profile cfg/tiny.toml --out")
+  );
+}

@@ -246,3 +246,20 @@ TEST_CASE("numbers that are not finite are usage errors") {
     CHECK_THAT(errors, Catch::Contains("--max-memory"));
   }
 }
+
+TEST_CASE("seeds that no 64 bits hold and numbers out of range are told in a short line") {
+  const auto errors_of = [](const std::vector<std::string>& words) {
+    return test::captured(2, [&] { CHECK(test::run(words) == 1); });
+  };
+  for (const char* seed : {"-1", "-5", "99999999999999999999"})
+    CHECK_THAT(
+        errors_of({"plan", "--seed", seed}),
+        Catch::Contains(std::string("--seed is ") + seed + "; expected a whole number from 0 to")
+    );
+  const std::string errors = errors_of({"plan", "--iterations", "0"});
+  CHECK_THAT(errors, Catch::Contains("--iterations: '0' must be above 0"));
+  CHECK(errors.size() < 200);
+  CHECK_THAT(
+      errors_of({"plan", "--checkpoint-seconds", "nan"}), Catch::Contains("must be at least 0")
+  );
+}

@@ -45,6 +45,21 @@ TEST_CASE("a scene and its packed file are exported to every format and checked 
   }
 }
 
+TEST_CASE("dataset pack replaces a packed scene, and no other file or folder") {
+  const TempFolder folder;
+  const std::string room = small_room_folder().string(), picture = folder / "picture.png";
+  const auto refusal = [&](const std::string& target) {
+    return captured(2, [&] { CHECK(run({"dataset", "pack", room, target, "--quiet"}) == 1); });
+  };
+  write_file(picture, "a picture");
+  CHECK_THAT(refusal(picture), Contains("picture.png: is there and is no packed scene"));
+  CHECK(read_file(picture) == "a picture");
+  CHECK_THAT(refusal(folder.path()), Contains(": is a folder; give the name of a file"));
+  CHECK_THAT(refusal(folder / "new/"), Contains("new/scene.safetensors"));
+  const std::string packed = folder / "room.safetensors";
+  for (int i = 0; i < 2; ++i) CHECK(run({"dataset", "pack", room, packed, "--quiet"}) == 0);
+}
+
 TEST_CASE("an export needs a folder, a format and a scene") {
   const TempFolder folder;
   const std::string out = folder / "out", room = small_room_folder().string();

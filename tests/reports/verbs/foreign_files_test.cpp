@@ -174,6 +174,22 @@ TEST_CASE("a run that stops after its first steps leaves the one before beside i
   CHECK_FALSE(fs::exists(place.mine / "previous_run"));
 }
 
+TEST_CASE("a run that cannot be put back is a warning that names it, and stays where it is") {
+  const Place place;
+  REQUIRE(place.train() == 0);
+  const std::string model = read_file(place.mine / "interface.ply");
+  const std::string said = test::captured(2, [&] {
+    const EarlierRun earlier(place.mine);
+    write_file(place.mine / "interface.ply/notes.txt", "a folder of that name");
+  });
+  CHECK_THAT(said, Catch::Contains("mine: the earlier run could not be put back: "));
+  CHECK(read_file(place.mine / "previous_run/interface.ply") == model);
+  CHECK(read_file(place.mine / "interface.ply/notes.txt") == "a folder of that name");
+  fs::remove_all(place.mine / "interface.ply");
+  { const EarlierRun goes_on(place.mine); }
+  CHECK(read_file(place.mine / "interface.ply") == model);
+}
+
 TEST_CASE("making room goes on where it was cut off") {
   const Place place;
   REQUIRE(place.train() == 0);

@@ -6,6 +6,8 @@
 
 #include "glint/scene/image_files.h"
 #include "reports/records/records.h"
+#include "reports/records/run_folder.h"
+#include "reports/records/stage_files.h"
 #include "reports/verbs/command_line.h"
 #include "reports/verbs/headline_scores.h"
 #include "tests/support/small_room.h"
@@ -52,9 +54,56 @@ TEST_CASE("a single run lands in the records of OUT/single when it is scored") {
   CHECK(records[0].cell == CellKey{"room_1", "2dgs", 0});
   CHECK(records[0].metrics.contains("psnr"));
   CHECK(records[0].resolution == "64x36");
+  CHECK(records[0].num_surfels > 0);
+  CHECK(records[0].metrics.at("num-surfels") == static_cast<double>(records[0].num_surfels));
+  CHECK(records[0].metrics.at("train-minutes") > 0);
   CHECK_FALSE(records[0].train_key.empty());
   CHECK(run({"table", "--out", (folder / "out/single").string()}) == 0);
   CHECK(fs::exists(folder / "out/single/tables/summary.md"));
+}
+
+TEST_CASE("the record of a single run says why it has no mesh, and goes without a lost model") {
+  const test::TempFolder folder;
+  const std::string out = folder / "out", data = folder / "data", mine = folder / "mine";
+  REQUIRE(
+      run({"train", "--dataset", room(), "--run", mine, "--iterations", "3", "--data", data}) == 0
+  );
+  REQUIRE(run({"render", "--run", mine}) == 0);
+  write_stage(mine, Stage::kMesh, {{"mesh", Json::object()}}, {}, "no mesh: no depth to fuse");
+  const auto record = [&] {
+    REQUIRE(run({"eval", "--run", mine, "--out", out}) == 0);
+    return read_records(folder / "out/single/records.jsonl").at(0);
+  };
+  const Record first = record();
+  for (const char* id : {"mesh-cd", "behind-mesh-cd"})
+    CHECK(first.not_measured.at(id) == "no mesh: no depth to fuse");
+  fs::remove(folder / "mine/interface.ply");
+  CHECK(record().num_surfels == first.num_surfels);  // as it was scored before
+}
+
+TEST_CASE("a run that is scored on other data says so in its record; without test views it is not"
+) {
+  const test::TempFolder folder;
+  const fs::path copy = folder.path() / "room";
+  fs::copy(room(), copy, fs::copy_options::recursive);
+  const std::string out = folder / "out", mine = folder / "mine";
+  const std::vector<std::string> train = {
+      "train", "--dataset", copy.string(), "--run", mine, "--iterations", "3", "--data", out};
+  REQUIRE(run(train) == 0);
+  const auto change = [&](const char* field, const Json& value) {
+    Json scene = read_json_object(copy / "scene.json");
+    scene[field] = value;
+    write_file(copy / "scene.json", scene.dump());
+  };
+  change("hash", "of other data");
+  REQUIRE(run({"render", "--run", mine}) == 0);
+  REQUIRE(run({"eval", "--run", mine, "--out", out}) == 0);
+  const Record record = read_records(fs::path(out) / "single/records.jsonl").at(0);
+  REQUIRE_FALSE(record.warnings.empty());
+  CHECK_THAT(record.warnings.back(), Catch::Contains("is not what"));
+  CHECK(record.dataset_hash != read_run_spec(mine).dataset_hash);
+  change("test_views", Json::array());
+  CHECK(run({"eval", "--run", mine, "--out", out}) == 3);
 }
 
 TEST_CASE("a training that was cut off before its first checkpoint needs no --force") {

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "glint/setting_ranges.h"
+
+namespace glint {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr ValueRange at_least(double least) { return {least}; }
+constexpr ValueRange above(double least) { return {least, kInfinity, true}; }
+constexpr ValueRange kShare{0, 1}, kBelowOne{0, 1, false, true}, kAboveZero{0, 1, true};
+constexpr ValueRange kInside{0, 1, true, true};  // its logit is finite
+
+// Neighbour distances, where initial scales come from, need three others.
+constexpr ValueRange kPoints = at_least(4);
+
+constexpr SettingRange kRanges[] = {
+    // Initial surfels.
+    {"random_points", kPoints},
+    {"reflection_cells", at_least(1)},
+    {"points_per_cell", at_least(1)},
+    {"reflection_points_per_pixel", above(0)},
+    {"initial_transparency", kInside},
+    {"initial_specular", kInside},
+    {"reflection_opacity", kInside},
+    {"initial_opacity", kInside},
+    {"initial_roughness", kInside},
+    {"initial_albedo", kAboveZero},
+    {"initial_scale", above(0)},
+    {"feature_spread", at_least(0)},
+    // Radiance transport.
+    {"f0", kShare},
+    {"mirror_transmittance", kBelowOne},
+    {"mirror_hits", at_least(1)},
+    {"mirror_share_below", at_least(0)},
+    {"mirror_share_block", at_least(1)},
+    {"mirror_weight_below", at_least(0)},
+    {"mirror_near", at_least(0)},
+    {"surface_weight", kShare},
+    // Phases.
+    {"sh_interval", at_least(1)},
+    {"trim_interval", at_least(1)},
+    {"bootstrap_interval", at_least(1)},
+    {"opacity_pause", at_least(0)},
+    {"propagation_opacity", kInside},
+    {"propagation_scale", above(0)},
+    // Losses.
+    {"lambda_ssim", kShare},
+    {"l1_weight", at_least(0)},
+    {"ssim_weight", at_least(0)},
+    {"depth_gradient_scales", at_least(0)},
+    {"neighbors", at_least(0)},
+    {"neighbor_max_angle", {0, 180}},
+    {"scene_unit", above(0)},
+    {"max_patches", at_least(0)},
+    // Density control.
+    {"densify_interval", at_least(1)},
+    {"densify_slow_interval", at_least(0)},
+    {"secondary_densify_interval", at_least(1)},
+    {"environment_densify_interval", at_least(1)},
+    {"opacity_reset_interval", at_least(1)},
+    {"secondary_reset_interval", at_least(1)},
+    {"environment_reset_interval", at_least(1)},
+    {"densify_reference_rows", at_least(1)},
+    {"min_opacity", kBelowOne},
+    {"transmission_min_opacity", {-kInfinity, 1, false, true}},
+    {"max_scale", above(0)},
+    {"max_surfels", at_least(1)},
+    {"environment_max_surfels", at_least(1)},
+    {"secondary_max_surfels", at_least(0)},
+    {"max_abs_splits", at_least(0)},
+    {"min_observations", at_least(0)},
+    {"prune_holiday", at_least(-1)},
+    // Rates. Those that fall do so log-linearly.
+    {"rate_position", at_least(0)},
+    {"rate_position_final", above(0), "rate_position"},
+    {"position_steps", at_least(1)},
+    {"rate_color", at_least(0)},
+    {"rate_sh", at_least(0)},
+    {"rate_opacity", at_least(0)},
+    {"rate_scale", at_least(0)},
+    {"rate_rotation", at_least(0)},
+    {"rate_transparency", at_least(0)},
+    {"rate_specular", at_least(0)},
+    {"rate_albedo", at_least(0)},
+    {"rate_roughness", at_least(0)},
+    {"rate_feature", at_least(0)},
+    {"rate_map", at_least(0)},
+    {"rate_network", at_least(0)},
+    {"rate_exposure", at_least(0)},
+    {"rate_lobe_feature", at_least(0)},
+    {"rate_lobe", at_least(0)},
+    {"rate_lobe_final", above(0), "rate_lobe"},
+    {"rate_surface_opacity", at_least(0)},
+    {"rate_transmissivity", at_least(0)},
+    {"rate_reflectance", at_least(0)},
+};
+
+// As people write it: a float's digits, not those of the double that JSON keeps it in.
+std::string written(const Json& value) {
+  if (!value.is_number_float()) return value.dump();
+  return fmt::format("{}", static_cast<float>(value.get<double>()));
+}
+
+void check_setting(const std::string& method, const SettingRange& setting, const Json& config) {
+  const auto found = config.find(setting.name);
+  if (found == config.end() || !found->is_number()) return;
+  const bool moot =
+      setting.unless_zero != nullptr && number_or(config, setting.unless_zero, 1) == 0;
+  GLINT_CHECK(
+      moot || setting.range.holds(found->get<double>()),
+      kUsage,
+      "{}: {} is {}, expected {}{}",
+      method,
+      setting.name,
+      written(*found),
+      setting.range.text(),
+      setting.unless_zero != nullptr ? fmt::format(", or {}=0", setting.unless_zero) : ""
+  );
+}
+
+}  // namespace
+
+bool ValueRange::holds(double value) const {
+  const bool high_enough = without_least ? value > least : value >= least;
+  return high_enough && (without_most ? value < most : value <= most);
+}
+
+std::string ValueRange::text() const {
+  std::string text;
+  if (least > -kInfinity) text = fmt::format("{} {}", without_least ? "above" : "at least", least);
+  if (most == kInfinity) return text;
+  if (!text.empty()) text += " and ";
+  return text + fmt::format("{} {}", without_most ? "below" : "at most", most);
+}
+
+std::span<const SettingRange> setting_ranges() { return kRanges; }
+
+void check_settings(const std::string& method, const Json& config) {
+  for (const SettingRange& setting : setting_ranges()) check_setting(method, setting, config);
+}
+
+}  // namespace glint

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "reports/bench/run_record.h"
+
+#include "metrics/metric.h"
+#include "reports/records/stage_files.h"
+
+namespace glint {
+namespace {
+
+// Cost that is not known has no value: a zero would be the best of a table.
+void add_unmeasured(Record& record, const RunSpec& spec, const std::optional<TrainCost>& cost) {
+  record.not_measured = missing_metrics();
+  if (const auto mesh = read_stage(spec.folder, Stage::kMesh); mesh && !mesh->note.empty())
+    for (const Metric& metric : mesh_metric_list()) record.not_measured[metric.id] = mesh->note;
+  if (!cost && read_stage(spec.folder, Stage::kTrain))
+    for (const char* id : {"train-minutes", "peak-memory"}) record.not_measured[id] = "no env.json";
+}
+
+void add_training(Record& record, const TrainCost& cost) {
+  if (cost.seconds > 0) record.timings["train"] = cost.seconds;
+  record.warnings = cost.warnings;
+  record.notes = cost.notes;
+  record.data_notes = cost.data_notes;
+}
+
+}  // namespace
+
+Scores training_cost(const RunSpec& spec) {
+  const auto cost = trained_cost(spec);
+  if (!cost || cost->seconds <= 0) return {};
+  return {{"train-minutes", cost->seconds / 60}, {"peak-memory", cost->peak_memory_mb}};
+}
+
+void describe_run(Record& record, const RunSpec& spec, const Scene& scene) {
+  const std::optional<TrainCost> cost = trained_cost(spec);
+  add_unmeasured(record, spec, cost);
+  record.not_applicable = not_applicable(record.metrics, record.not_measured);
+  record.timings.erase("train");  // of a cell whose training was only loaded
+  if (cost) add_training(record, *cost);
+  if (const auto surfels = record.metrics.find("num-surfels"); surfels != record.metrics.end())
+    record.num_surfels = static_cast<std::size_t>(surfels->second);
+  const Camera& camera = scene.test.front().camera;
+  record.resolution = fmt::format("{}x{}", camera.width, camera.height);
+}
+
+}  // namespace glint
