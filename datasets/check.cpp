@@ -8,6 +8,7 @@
 #include <set>
 
 #include "datasets/check_views.h"
+#include "datasets/recorded_files.h"
 #include "datasets/scene_index.h"
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
@@ -142,6 +143,7 @@ std::vector<Finding> check_indexed(const SceneIndex& index) {
   });
   for (std::vector<Finding>& of_view : of_views)
     std::move(of_view.begin(), of_view.end(), std::back_inserter(findings));
+  check_recorded(index.folder, findings);
   check_leaks(index, findings);
   check_points(index, findings);
   check_agreement(index, findings);

@@ -10,6 +10,7 @@
 #include "datasets/glassroom/replace_scene.h"
 #include "datasets/glassroom/sfm_points.h"
 #include "datasets/glassroom/write_scene.h"
+#include "datasets/recorded_files.h"
 #include "datasets/scene_index.h"
 #include "glint/core/error.h"
 #include "glint/core/interrupt.h"
@@ -40,20 +41,15 @@ bool was_a_scene(
 // The first file of a finished scene that is not there or not as it was written; empty: none.
 // Earlier versions made no mesh of what lies behind the glass.
 std::string damaged_file(const fs::path& folder) {
-  const Json files = read_json_object(folder / "scene.json").value("files", Json::object());
-  for (const auto& [name, hash] : files.items()) {
-    std::error_code code;
-    const fs::path file = folder / name;
-    const bool there = fs::is_regular_file(file, code);
-    if (!there && file.filename() == kBehindMeshFile) continue;
-    if (!there || hash != fmt::format("{:016x}", hash_name(read_file(file)))) return name;
-  }
-  return {};
+  const RecordedFiles files = compare_recorded(folder);
+  for (const std::string& name : files.missing)
+    if (fs::path(name).filename() != kBehindMeshFile) return name;
+  return files.changed.empty() ? "" : files.changed.front();
 }
 
-// Hash of the scene that a folder holds; empty when there is nothing. A folder with anything else
-// in it is not touched.
-std::string stored_hash(const SceneRecipe& recipe, const fs::path& folder) {
+// The description of the scene that a folder holds; null when there is nothing, or a damaged one. A
+// folder with anything else in it is not touched.
+Json stored_description(const SceneRecipe& recipe, const fs::path& folder) {
   std::error_code code;
   if (!fs::exists(folder, code) || fs::is_empty(folder, code)) return {};
   const fs::path description = folder / "scene.json";
@@ -68,7 +64,20 @@ std::string stored_hash(const SceneRecipe& recipe, const fs::path& folder) {
       folder.string(),
       recipe.title
   );
-  return json["hash"];
+  return json;
+}
+
+// "width 96, now 240; spp 4, now 128": of the options of two scenes.
+std::string changed_options(const Json& before, const Json& now) {
+  std::string text;
+  for (const auto& [name, value] : now.items()) {
+    const Json earlier = before.is_object() ? before.value(name, Json()) : Json();
+    if (earlier == value) continue;
+    text += fmt::format(
+        "{}{} {}, now {}", text.empty() ? "" : "; ", name, earlier.dump(), value.dump()
+    );
+  }
+  return text.empty() ? "another version made it" : text;
 }
 
 Image albedo_behind(const PathTracer& tracer, const Camera& camera) {
@@ -291,7 +300,15 @@ Json pose_json(const Pose& pose) {
 }
 
 bool make_scene(const SceneRecipe& recipe, const fs::path& folder, bool again) {
-  const bool is_same = stored_hash(recipe, folder) == recipe.hash && !again;
+  const Json stored = stored_description(recipe, folder);
+  const bool is_other = stored.is_object() && stored["hash"] != recipe.hash;
+  const bool is_same = stored.is_object() && !is_other && !again;
+  if (is_other)
+    log::warn(fmt::format(
+        "{}: the scene there is replaced ({})",
+        folder.string(),
+        changed_options(stored.value("options", Json()), recipe.options)
+    ));
   const std::string damaged = is_same ? damaged_file(folder) : "";
   if (!damaged.empty())
     log::warn(fmt::format("{}: damaged; making the scene again", (folder / damaged).string()));

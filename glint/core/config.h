@@ -132,7 +132,8 @@ void config_from_json(Config& config, const Json& json, std::string_view where) 
       if (key != name) return;
       found = true;
       const bool fits = detail::set_field(field, value);
-      GLINT_CHECK(fits, kUsage, "{}: {} cannot be {}", where, key, value.dump());
+      const std::string type = fits ? "" : ConfigField{key, field, ""}.type();
+      GLINT_CHECK(fits, kUsage, "{}: {} cannot be {}; expected {}", where, key, value.dump(), type);
     });
     GLINT_CHECK(
         found,

@@ -9,6 +9,7 @@
 #include "glint/scene/image_files_stored.h"
 #include "metrics/depth.h"
 #include "metrics/normal.h"
+#include "reports/import/map_values.h"
 #include "reports/pictures/strip.h"
 #include "reports/records/earlier_run.h"
 
@@ -62,7 +63,10 @@ std::vector<std::string> names_of(const std::vector<View>& views) {
 }
 
 MapSet read_view(
-    const std::map<std::string, fs::path>& files, const View& view, const ImportOptions& options
+    const std::map<std::string, fs::path>& files,
+    const View& view,
+    const ImportOptions& options,
+    OddValues& odd
 ) {
   MapSet rendered;
   for (const MapRow& row : maps()) {
@@ -71,6 +75,7 @@ MapSet read_view(
     Image& map = rendered[row] = read_for(file->second, row.channels(), view);
     if (row.kind == MapKind::kNormal) to_our_normals(map, view.camera, options.normals);
     if (row.kind == MapKind::kDepth) to_our_depth(map, view.camera, options.depth);
+    odd.look(row, file->second.string(), map, view.truth[row]);
   }
   return rendered;
 }
@@ -218,12 +223,14 @@ std::vector<std::string> import_predictions(
        {"import", config_to_json(options)},
        {kEightBitField, eight_bit}}
   );
+  OddValues odd;
   for (std::size_t i = 0; i < scene.test.size(); ++i) {
-    const MapSet rendered = read_view(found.views[i], scene.test[i], options);
+    const MapSet rendered = read_view(found.views[i], scene.test[i], options, odd);
     if (const std::string problem = color_range_problem(rendered["rgb"]); !problem.empty())
       notes.push_back(fmt::format("{}: {}", found.views[i].at("rgb").string(), problem));
     write_render(view_folder(spec.folder, scene.test[i].name), rendered, eight_bit);
   }
+  for (std::string& note : odd.notes()) notes.push_back(std::move(note));
   const fs::path mesh = options.mesh.empty() ? found.mesh : fs::path(options.mesh);
   if (!mesh.empty()) copy_mesh(mesh, spec.folder / "mesh.ply");
   if (write_strips.here()) write_strips(spec.folder, scene.test);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reports/records/profile.h"
 
+#include <charconv>
+#include <cmath>
 #include <set>
 
 #include "glint/core/files.h"
@@ -80,6 +82,16 @@ void check_once(const std::vector<T>& values, const char* field, const std::stri
 void check_lists(const Profile& profile, const std::string& where) {
   check_once(profile.methods, "methods", where);
   check_once(profile.seeds, "seeds", where);
+}
+
+// A value as it is typed: JSON, numbers that JSON does not know (.5, 5., -.5), or text.
+Json assigned_value(const std::string& text) {
+  if (Json value = parse_json(text); !value.is_discarded()) return value;
+  double number = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error == std::errc() && stop == end && std::isfinite(number)) return number;
+  return text;
 }
 
 }  // namespace
@@ -164,9 +176,7 @@ Json method_overrides(
       continue;
     }
     const std::size_t equals = assignment.find('=');
-    Json value = parse_json(assignment.substr(equals + 1));
-    if (value.is_discarded()) value = assignment.substr(equals + 1);
-    config[assignment.substr(0, equals)] = value;
+    config[assignment.substr(0, equals)] = assigned_value(assignment.substr(equals + 1));
   }
   return config;
 }

@@ -73,7 +73,8 @@ void add_dataset_export(CommandLine& line, CLI::App& dataset) {
       "a scene as a folder that other programs train on (docs/LOADERS.md)",
       [&line, arguments, verb] {
         return run_export(line.common, *arguments, (*verb)->count("--out") > 0);
-      }
+      },
+      kOutOption | kThreadsOption | kJsonOption | kQuietOption
   );
   CLI::App& app = **verb;
   app.add_option("folder", arguments->folder, "dataset folder or packed scene")->required();

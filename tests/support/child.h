@@ -36,13 +36,19 @@ inline double peak_bytes(const std::function<int()>& body) {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-// Killed after so many microseconds, if it has not ended by then.
-inline void kill_after(useconds_t time, const std::function<int()>& body) {
+// Killed so many microseconds after `has_begun` says so; however loaded the machine is, it is
+// killed at its work.
+inline void kill_after(
+    useconds_t time, const std::function<bool()>& has_begun, const std::function<int()>& body
+) {
+  constexpr useconds_t kPoll = 1000, kLongest = 60'000'000;
   const pid_t child = start_child(body);
+  for (useconds_t waited = 0; waited < kLongest && !has_begun(); waited += kPoll) ::usleep(kPoll);
   ::usleep(time);
   ::kill(child, SIGKILL);
   int status = 0;
   REQUIRE(::waitpid(child, &status, 0) == child);
+  CHECK(WIFSIGNALED(status));
 }
 
 }  // namespace glint::test

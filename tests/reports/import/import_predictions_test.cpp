@@ -4,6 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <functional>
+#include <limits>
+
 #include "glint/scene/image_files.h"
 #include "reports/bench/stages.h"
 #include "tests/support/small_room.h"
@@ -166,4 +169,42 @@ TEST_CASE("Float renders of another range are told in the record's notes") {
     write_exr(c.folder.path() / "theirs/rgb" / (view.name + ".exr"), bytes);
   }
   CHECK_THAT(fmt::format("{}", fmt::join(c.import({}), "; ")), Catch::Contains("divide bytes by"));
+}
+
+TEST_CASE("values in other units, of no direction or none at all are noted once a map") {
+  const auto note_of = [](const std::string& map, const std::function<void(Image&)>& change) {
+    Case c;
+    for (const View& view : test::small_room().test) {
+      Image values = map == "depth" ? view.truth["depth"] : opengl_normals(view);
+      change(values);
+      write_npy(c.folder.path() / "theirs" / map / (view.name + ".npy"), values);
+    }
+    const auto notes = c.import({DepthConvention::kPlanar, NormalAxes::kOpengl, {}});
+    std::string found;
+    for (const std::string& note : notes)
+      if (note.find("/" + map + "/") != std::string::npos) found += note + "\n";
+    return found;
+  };
+  const auto times = [](float factor) {
+    return [factor](Image& map) {
+      for (float& v : map.values()) v *= factor;
+    };
+  };
+  const auto nothing = [](Image& map) {
+    for (float& v : map.values()) v = std::numeric_limits<float>::quiet_NaN();
+  };
+  const auto as_color = [](Image& map) {
+    for (float& v : map.values()) v = (v + 1) / 2;
+  };
+  CHECK(note_of("depth", times(1)).empty());
+  CHECK(note_of("normal", times(1)).empty());
+  CHECK_THAT(
+      note_of("depth", times(1000)),
+      Catch::Contains("depth is 1e+03 times the true one") &&
+          Catch::Contains("(2 maps of depth are odd)")
+  );
+  CHECK_THAT(note_of("depth", nothing), Catch::Contains("no pixel has a finite depth"));
+  CHECK_THAT(note_of("normal", times(5)), Catch::Contains("normals are 5 long"));
+  CHECK_THAT(note_of("normal", as_color), Catch::Contains("not colours"));
+  CHECK_THAT(note_of("normal", nothing), Catch::Contains("no pixel has a finite normal"));
 }

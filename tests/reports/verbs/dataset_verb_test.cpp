@@ -73,32 +73,51 @@ TEST_CASE("an export needs a folder, a format and a scene") {
   CHECK_FALSE(fs::exists(out));
 }
 
+namespace {
+
+std::vector<std::string> make_tiny(const std::string& out, const std::string& priors) {
+  std::vector<std::string> words{"dataset", "make", "glassroom", "--out", out, "--priors", priors};
+  for (const char* word : {"--width", "32", "--height", "18", "--views", "8", "--spp", "1"})
+    words.emplace_back(word);
+  words.emplace_back("--quiet");
+  return words;
+}
+
+}  // namespace
+
 TEST_CASE("dataset make takes a level of priors, and no other word") {
   const TempFolder folder;
-  const auto make = [&](const std::string& priors) {
-    return run(
-        {"dataset",
-         "make",
-         "glassroom",
-         "--out",
-         folder / priors,
-         "--priors",
-         priors,
-         "--quiet",
-         "--width",
-         "32",
-         "--height",
-         "18",
-         "--views",
-         "8",
-         "--spp",
-         "1"}
-    );
-  };
-  CHECK(make("awful") == 1);
+  CHECK(run(make_tiny(folder / "awful", "awful")) == 1);
   CHECK_FALSE(fs::exists(folder / "awful"));
-  REQUIRE(make("poor") == 0);
+  REQUIRE(run(make_tiny(folder / "poor", "poor")) == 0);
   CHECK(Json::parse(read_file(folder / "poor/scene.json"))["prior_level"] == "poor");
+}
+
+TEST_CASE("a scene of other options is replaced, and what they were is said") {
+  const TempFolder folder;
+  const std::string out = folder / "room";
+  const auto said_of = [&](const std::string& priors) {
+    return captured(2, [&] { CHECK(run(make_tiny(out, priors)) == 0); });
+  };
+  CHECK(said_of("poor").empty());
+  CHECK(said_of("poor").empty());  // was there already
+  CHECK_THAT(
+      said_of("good"), Contains("room: the scene there is replaced (priors \"poor\", now \"good\")")
+  );
+}
+
+TEST_CASE("files of a made scene that are gone or changed are found") {
+  const TempFolder folder;
+  const std::string room = folder / "room";
+  fs::copy(small_room_folder(), room, fs::copy_options::recursive);
+  const auto found = [&] {
+    return captured(1, [&] { run({"dataset", "check", room, "--quiet"}); });
+  };
+  CHECK_THAT(found(), Contains("nothing wrong"));
+  fs::remove_all(fs::path(room) / "diffrens");
+  CHECK_THAT(found(), Contains("recorded-files") && Contains("diffrens") && Contains("is missing"));
+  write_file(fs::path(room) / "sparse/0/points3D.ply", read_file(fs::path(room) / "gt/mesh.ply"));
+  CHECK_THAT(found(), Contains("points3D.ply: has other bytes than it was written with"));
 }
 
 TEST_CASE("dataset make front3d takes a house, and says what is wrong with one") {

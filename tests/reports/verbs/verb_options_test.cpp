@@ -99,6 +99,28 @@ TEST_CASE("misspelt words are answered with the nearest") {
   CHECK(errors_of({"render", "surplus"}).find("no use for 'surplus'") != std::string::npos);
 }
 
+TEST_CASE(
+    "values of --set are read as people type them, and another type is told with the right one"
+) {
+  const auto plan = [](const std::string& assignment) {
+    return std::vector<std::string>{
+        "plan", "--profile", "smoke", "--methods", "2dgs", "--set", assignment, "--json"};
+  };
+  const auto train_key = [&](const std::string& assignment) {
+    const std::string said = captured(1, [&] { CHECK(run(plan(assignment)) == 0); });
+    return Json::parse(said)["cells"][0]["stages"]["train"]["key"].get<std::string>();
+  };
+  const std::string half = train_key("lambda_ssim=0.5");
+  for (const char* value : {".5", "5e-1"})
+    CHECK(train_key(std::string("lambda_ssim=") + value) == half);
+  CHECK_THAT(
+      errors_of(plan("lambda_ssim=half")), Catch::Contains("cannot be \"half\"; expected number")
+  );
+  CHECK_THAT(
+      errors_of(plan("sh_interval=1.5")), Catch::Contains("cannot be 1.5; expected integer")
+  );
+}
+
 TEST_CASE("a misspelt metric is answered with the nearest of the stores") {
   const test::TempFolder folder;
   write_file(
