@@ -8,8 +8,11 @@
 // where the user has no weights; SH see unit directions; the grid of the environment and the end of
 // mirrored rays are those of GLINT here (ReflectionGrid, MirrorCutoffs); no pruning for opacity
 // soon after an opacity reset (DensifyConfig::prune_holiday); surfels that a densification adds are
-// not dropped by its cap, having no weights yet. The real-scene setting: a synthetic one differs
-// in windows and in the initial s, and weighs all depths alike.
+// not dropped by its cap, having no weights yet; normals get all of the gradient of the mirrored
+// direction, of which the official tracer keeps the last hit's SH part; positions of the
+// environment slow down by its own steps and the extent (there by the run's, and twice the extent);
+// every pixel is traced. The real-scene setting: a synthetic one differs in windows and in the
+// initial s, and weighs all depths alike.
 //
 // "envgs/simple" leaves out what the other baselines have no counterpart of: colour sabotage,
 // normal propagation, resets of the environment and of s, splitting in five, caps by visibility,
@@ -51,7 +54,7 @@ struct EnvGsConfig {
   // Density control of the environment; its steps are counted from `environment_clock` on.
   float environment_gradient = 1e-4f;
   int environment_clock = 0;
-  int environment_densify_from = 3500, environment_densify_until = 21000;
+  int environment_densify_from = 3000, environment_densify_until = 21000;
   int environment_densify_interval = 500, environment_reset_interval = 6000;
   bool reset_environment = true;
   int environment_max_surfels = 700000;
@@ -70,7 +73,8 @@ struct EnvGsConfig {
     densify.slow_interval = 500;
     densify.split_large = densify.cap_by_visibility = true;
     densify.max_surfels = 2000000;
-    mirror.share_below = 0;  // it would cost the mirrored part 0.2 dB (docs/GLINT_NOTES.md)
+    grid.brightness = 1.0f / 255;  // as its code has it: black, but for what random numbers say
+    mirror.share_below = 0;        // it would cost the mirrored part 0.2 dB (docs/GLINT_NOTES.md)
     bootstrap.color_sabotage = bootstrap.normal_propagation = true;
   }
   template <class V>
@@ -107,7 +111,11 @@ struct EnvGsConfig {
     environment_densify_from = scaled(environment_densify_from, 0);
     environment_densify_until = scaled(environment_densify_until, 0);
     environment_clock = scaled(environment_clock, 0);
-    rates = rates.for_shorter_run(static_cast<double>(kPublishedIterations) / iterations);
+    const double shortening = static_cast<double>(kPublishedIterations) / iterations;
+    rates = rates.for_shorter_run(shortening);
+    // Else s is still at its start when sabotage and propagation ask for it, 100 steps after a
+    // reset.
+    rate_specular *= faster_rates(shortening);
     geometry.scale(scaled);
     densify.scale(scaled);
     bootstrap.scale(scaled);
@@ -115,6 +123,13 @@ struct EnvGsConfig {
     // At least 300 steps for each published 3000, as the base has them.
     environment_reset_interval =
         scaled(environment_reset_interval, environment_reset_interval / 10);
+  }
+  // Of the base, in a run's windows. s is first reset with the second reset of opacities.
+  DensifyConfig base_densify(std::size_t training_views) const {
+    DensifyConfig config = densify;
+    const int second = densify.for_views(training_views).reset_interval + 1;
+    if (reset_specular) config.channel_resets = {{kSpecular, initial_specular, second}};
+    return config;
   }
   // Of the environment, in a run's windows.
   DensifyConfig environment_densify(ImageSize size) const {
@@ -143,11 +158,9 @@ class EnvGs final : public Method {
     set_up_losses();
     InitialSurfels initial;
     initial.seed = options.seed;
-    initial.extra = {{kSpecular, config_.initial_specular, config_.rate_specular}};
+    initial.extra = {{kSpecular, config_.initial_specular, windows_.rate_specular}};
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
-    DensifyConfig densify = windows_.densify;
-    if (config_.reset_specular) densify.channel_resets = {{kSpecular, config_.initial_specular}};
-    base_ = new_set(points, initial, densify);
+    base_ = new_set(points, initial, windows_.base_densify(scene.train.size()));
     initial = {};
     initial.seed = options.seed + 2;
     const PointCloud grid = config_.grid.points(scene, options.seed);

@@ -71,12 +71,13 @@ struct ShadeDeferred {
 struct ShadeDeferredVjp {
   DeferredPixels pixels;
   const float* dL_dimage;
-  float *dL_dfeatures, *dL_dalpha;  // added to
+  float *dL_dfeatures, *dL_dalpha;  // added to; dL_dalpha null: alpha is held constant
   float* dL_doutputs;
 
   GLINT_HD void operator()(std::size_t i) const {
     const Vec3f dL_dcolor = get3(dL_dimage, i);
     Vec3f dL_dalbedo{}, dL_dx{};
+    float dL_da = 0;
     if (pixels.shaded(i))
       deferred_color_vjp(
           pixels.alpha[i],
@@ -84,12 +85,13 @@ struct ShadeDeferredVjp {
           pixels.albedo_of(i),
           get3(pixels.outputs, i),
           dL_dcolor,
-          dL_dalpha[i],
+          dL_da,
           dL_dalbedo,
           dL_dx
       );
     else
-      dL_dalpha[i] -= dot(dL_dcolor, pixels.background);
+      dL_da = -dot(dL_dcolor, pixels.background);
+    if (dL_dalpha != nullptr) dL_dalpha[i] += dL_da;
     float* g = dL_dfeatures + pixels.albedo_at(i);
     put3(g, 0, get3(g, 0) + dL_dalbedo);
     put3(dL_doutputs, i, dL_dx);

@@ -73,6 +73,7 @@ struct RtSplattingConfig {
     perceptual.lpips_from = 15000;
     geometry.lambda_consistency = 0.05f;
     geometry.consistency_from = surface_from;
+    geometry.unit_consistency = true;
     densify.channel_resets = {{"surface_opacity", densify.reset_opacity, 0, true}};
     rates.sh_dc = 0.002f;
     rates.sh_rest = 1e-4f;

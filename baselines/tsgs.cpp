@@ -63,6 +63,11 @@ struct TsgsConfig {
   int lobes_from = 18000;
   LobeRates lobe_rates;
 
+  TsgsConfig() {
+    // Its own defaults; [Chen24]'s are brought to rooms by that paper's advice, these are not.
+    planar.densify.min_opacity = 0.005f;
+    planar.densify.max_abs_splits = 50000;
+  }
   template <class V>
   void visit(V&& v) {
     planar.visit(v);

@@ -11,11 +11,15 @@
 // weights that the user has, and is off without. What the paper leaves open (weights, initial t and
 // s, windows) is in GlintConfig.
 //
-// `glint/release` follows the official code instead where both differ. Not in it: the second
+// `glint/release` follows the official code instead where both differ: the weights of its second
+// state, the clone start of its first, the geometry freeze of its third. Not in it: the second
 // reflection at the transmission set, multi-view consistency, the variance of depth patches, the
-// weights of guidance by explained error. In it and not in the newest code: the transmission set
-// from a clone of the interface. Deviation: its loss on the opacity of the transmission set has the
-// gradient that the first release forgot.
+// weights of guidance by explained error; of the third also t's gradients kept from geometry, soft
+// confidence of depth, a gate that rises, late cleanup of t, limits of scale and of growth.
+// Deviations: its loss on the opacity of the transmission set has the gradient that the first
+// release forgot; until reflections begin, the mirrored share is not taken from the rest; positions
+// of secondary sets slow down by their own steps, at the interface's rate (there by the run's, at
+// rates times powers of the extent).
 #include <algorithm>
 #include <cmath>
 
@@ -216,7 +220,7 @@ class Glint final : public Method {
           stats
       );
   }
-  // The secondary sets count steps from where they start.
+  // The secondary sets count steps from where they start, if the config does not say otherwise.
   void update(int iteration, StepStats& stats) {
     const auto update_set = [&](TrainableSet& set, int from, const char* name) {
       note_reset(set.update(iteration - from + 1), name, stats);
@@ -225,9 +229,11 @@ class Glint final : public Method {
       update_set(model_.interface, 0, "interface");
       bootstrap_.update(iteration + 1, model_.interface);
     }
+    const auto start = [&](int from) { return config_.secondary_run_clock ? 0 : from; };
     if (phase_.transmission)
-      update_set(model_.transmission, windows_.transmission_from, "transmission");
-    if (phase_.reflection) update_set(model_.reflection, windows_.reflection_from, "reflection");
+      update_set(model_.transmission, start(windows_.transmission_from), "transmission");
+    if (phase_.reflection)
+      update_set(model_.reflection, start(windows_.reflection_from), "reflection");
   }
 
   GlintConfig config_, windows_;

@@ -62,6 +62,7 @@ DensifyConfig GlintConfig::secondary_densify() const {
 DensifyConfig GlintConfig::transmission_densify() const {
   DensifyConfig config = secondary_densify();
   config.gradient_threshold = transmission_gradient;
+  config.only_weighted_views = transmission_weighted_views;
   if (transmission_min_opacity >= 0) config.min_opacity = transmission_min_opacity;
   return config;
 }
@@ -89,6 +90,9 @@ void GlintConfig::check() const {
   transmission_losses.check("glint");
 }
 
+// The release takes means of smoothness over the three components, too.
+constexpr double kReleaseSmooth = 0.05 / 3;
+
 Json glint_release_overrides() {
   return Json{
       {"detach_origins", true},
@@ -111,7 +115,7 @@ Json glint_release_overrides() {
       {"lambda_consistency", 0.1},
       {"consistency_from", 0},
       {"near_consistency", true},
-      {"lambda_smooth", 0.05},
+      {"lambda_smooth", kReleaseSmooth},
       {"guidance", "release"},
       {"lambda_transparency", 0.01},
       {"transparency_from", 5000},
@@ -120,7 +124,7 @@ Json glint_release_overrides() {
       {"direct_lpips", true},
       {"lambda_direct_consistency", 0.1},
       {"direct_near_consistency", true},
-      {"lambda_direct_smooth", 0.005},
+      {"lambda_direct_smooth", 0.1 * kReleaseSmooth},
       {"lambda_opacity", 0.01},
       {"lambda_plausible", 0.05},
       {"lambda_transparency_prior", 0.01},
@@ -134,6 +138,7 @@ Json glint_release_overrides() {
       {"min_opacity", 0.08},
       {"transmission_min_opacity", 0.05},
       {"reflection_gradient", 2e-4},
+      {"secondary_run_clock", true},
       {"secondary_densify_interval", 500},
       {"secondary_reset_interval", 6000},
       {"reset_secondary", true},

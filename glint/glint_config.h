@@ -42,6 +42,8 @@ struct GlintConfig {
   // Density control.
   DensifyConfig densify;
   float transmission_gradient = 2e-4f, reflection_gradient = 1e-4f;
+  bool transmission_weighted_views = true;
+  bool secondary_run_clock = false;
   int secondary_densify_interval = 100, secondary_reset_interval = 3000;
   // Opacity resets of the secondary sets. Off: their gradient is weighted by t and k_s, so most of
   // their surfels would not recover before the next pruning.
@@ -90,6 +92,12 @@ struct GlintConfig {
     v("rate_transparency", rate_transparency, "learning rate of transparency");
     v("rate_specular", rate_specular, "learning rate of specularity");
     v("transmission_gradient", transmission_gradient, "threshold of the transmission set");
+    v("secondary_run_clock",
+      secondary_run_clock,
+      "density control of secondary sets counts steps of the run, not their own");
+    v("transmission_weighted_views",
+      transmission_weighted_views,
+      "its mean gradient is over views with weight of it, as where it is traced");
     v("reflection_gradient", reflection_gradient, "densification threshold of the reflection set");
     v("secondary_densify_interval", secondary_densify_interval, "steps, of secondary sets");
     v("secondary_reset_interval", secondary_reset_interval, "steps, of secondary sets");

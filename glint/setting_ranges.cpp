@@ -21,6 +21,7 @@ constexpr SettingRange kRanges[] = {
     {"reflection_cells", at_least(1)},
     {"points_per_cell", at_least(1)},
     {"reflection_points_per_pixel", above(0)},
+    {"reflection_brightness", kShare},
     {"initial_transparency", kInside},
     {"initial_specular", kInside},
     {"reflection_opacity", kInside},

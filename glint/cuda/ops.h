@@ -61,6 +61,7 @@ inline DeviceRasterCall device_call(const RasterCall& call, RasterOutput& output
       .camera = camera_of(call),
       .near_limit = call.input.near_limit.get().array().device_for_reading(),
       .has = call.maps(),
+      .screen_with_low_pass = call.settings.screen_with_low_pass,
       .range = distortion_range(call.settings),
       .out = device_maps(output),
       .seen =

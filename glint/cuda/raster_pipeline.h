@@ -18,6 +18,7 @@ struct DeviceRasterCall {
   CameraOf<float> camera;
   const float* near_limit;  // null: none
   MapChannels has;
+  bool screen_with_low_pass;
   DistortionRange range;
   DeviceMaps out;
   DeviceSeen seen;
@@ -147,7 +148,14 @@ class RasterPipeline {
     exec_.for_each(
         call_.surfels.count,
         SurfelVjp{
-            call_.surfels, call_.camera, pass_.lists, sums_.data(), stride, call_.has, gradients}
+            call_.surfels,
+            call_.camera,
+            pass_.lists,
+            sums_.data(),
+            stride,
+            call_.has,
+            call_.screen_with_low_pass,
+            gradients}
     );
   }
   void fit_kept() {

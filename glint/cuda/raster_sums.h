@@ -148,6 +148,7 @@ struct SurfelVjp {
   const float* sums;  // [N][stride]
   int stride;
   MapChannels has;
+  bool screen_with_low_pass;
   DeviceGradients out;
 
   GLINT_HD void operator()(std::size_t i) const {
@@ -158,7 +159,10 @@ struct SurfelVjp {
     SurfelGeometry<float> dL_dsurfel{};
     Vec3f dL_dm{};
     // Surfels without pairs get exact zeros, whatever their parameters (they may not be finite).
-    if (seen) project_surfel_vjp(geometry_at(surfels, i), camera, g, dL_dsurfel, dL_dm);
+    if (seen)
+      project_surfel_vjp(
+          geometry_at(surfels, i), camera, g, screen_with_low_pass, dL_dsurfel, dL_dm
+      );
     const float z = seen ? lists.splats[i].z_center : 1.0f;
     store(i, s, dL_dsurfel, screen_gradient(dL_dm, z, camera));
   }

@@ -288,12 +288,16 @@ GLINT_HD T screen_radius(const SurfelGeometry<T>& surfel, const CameraOf<T>& cam
 
 // dL/d(projected): map, low-pass centre, z_center, normal and plane_distance are set; the box has
 // no gradient.
-// dL_dm: dL/d(centre in camera space), for the screen-space statistic of densification.
+// dL_dm: dL/d(centre in camera space) as the screen-space statistic of densification counts it:
+// through hits within the disc, as the kernels of [Huang24], and with `count_low_pass` through
+// those of the low-pass, too, as where the low-pass is part of the footprint [Chen24]. What
+// plane_distance says of the centre is in neither.
 template <class T>
 GLINT_HD void project_surfel_vjp(
     const SurfelGeometry<T>& surfel,
     const CameraOf<T>& camera,
     const ProjectedSurfel<T>& dL_dprojected,
+    bool count_low_pass,
     SurfelGeometry<T>& dL_dsurfel,
     Vec3<T>& dL_dm
 ) {
@@ -304,6 +308,7 @@ GLINT_HD void project_surfel_vjp(
   const PlaneMap<T> dL_dmap = pixel_plane_map_vjp(dL_dprojected.map, ref.direction, camera);
   SurfelInCam<T> g{};
   plane_map_vjp(s.h0, s.h1, s.m, dL_dmap, g.h0, g.h1, g.m);
+  dL_dm = g.m;
 
   const ScreenRows<T> rows = screen_rows(s, camera, ref.x, ref.y);
   ScreenRows<T> g_rows{};
@@ -323,11 +328,12 @@ GLINT_HD void project_surfel_vjp(
   const Vec3<T> zero{T(0), T(0), T(0)};
   g.h0 += select<T>(projects, pick(0), zero);
   g.h1 += select<T>(projects, pick(1), zero);
-  g.m += select<T>(projects, pick(2), zero);
+  const Vec3<T> of_low_pass = select<T>(projects, pick(2), zero);
+  g.m += of_low_pass;
+  if (count_low_pass) dL_dm += of_low_pass;
   g.m.z += dL_dprojected.z_center;
   g.normal = dL_dprojected.normal - dL_dprojected.plane_distance * s.m;
   g.m += -dL_dprojected.plane_distance * s.normal;
-  dL_dm = g.m;
   surfel_in_cam_vjp(surfel, camera, s.facing, g, dL_dsurfel);
 }
 

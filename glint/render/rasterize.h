@@ -32,6 +32,8 @@ struct RasterSettings {
   bool with_surface = true;
   // Also owned_pixels and radii of the output and screen_abs of the gradient.
   bool with_statistics = false;
+  // RasterGradient::screen, the statistic of density control, counts hits of the low-pass, too.
+  bool screen_with_low_pass = false;
   // On the CPU: at most so many pixels at once, of the widths that there are (16 with AVX-512, 8,
   // 1: without SIMD); the same text, and the same bytes with 8 and 16. For perf and tests.
   int lanes = 16;

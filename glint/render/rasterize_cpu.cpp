@@ -115,7 +115,9 @@ void surfel_vjp_lanes(
   SurfelGeometry<T> g{};
   Vec3<T> dL_dm;
   const auto sum = [&](int slot) { return load_strided<T>(sums + slot, width); };
-  project_surfel_vjp(surfel, c, projected_gradient<T>(has, sum), g, dL_dm);
+  project_surfel_vjp(
+      surfel, c, projected_gradient<T>(has, sum), call.settings.screen_with_low_pass, g, dL_dm
+  );
   zero_unseen<T>(load_lanes<T>(num_pairs) > T(0), g, dL_dm);
   store3(out.means, first, g.mean);
   store_strided(&out.scales[2 * first], 2, g.scale.x);

@@ -177,7 +177,8 @@ void Densifier::observe(
           gradient.screen.on_device(),
           second,
           visibility,
-          scale}
+          scale,
+          config_.only_weighted_views}
   );
   const bool has_footprints = !gradient.screen_abs.empty() && !output.radii.empty();
   GLINT_CHECK(
@@ -200,6 +201,7 @@ void Densifier::observe_footprints(const RasterOutput& output, const RasterGradi
           output.in_view.on_device(),
           gradient.screen_abs.on_device(),
           output.radii.on_device(),
+          output.owned_pixels.on_device(),
           scale_of(output.alpha.height()),
           abs_sum_.on_device(),
           max_radius_.on_device(),
@@ -244,14 +246,15 @@ void Densifier::append_splits(
 }
 
 std::vector<std::uint32_t> Densifier::abs_splits(
-    const std::vector<std::uint8_t>& taken, std::size_t room
+    const SurfelCloud& cloud, const std::vector<std::uint8_t>& taken, std::size_t room
 ) const {
   std::vector<std::uint32_t> result;
   if (config_.max_abs_splits == 0) return result;
   const auto mean = [&](std::uint32_t i) { return abs_sum_[i] / static_cast<float>(views_[i]); };
   for (std::uint32_t i = 0; i < abs_sum_.size(); ++i)
     if (taken[i] == 0 && views_[i] > 0 && mean(i) >= config_.abs_gradient &&
-        max_radius_[i] > config_.abs_radius_px)
+        max_radius_[i] > config_.abs_radius_px &&
+        max_scale_of(cloud, i) > config_.clone_scale * extent_)
       result.push_back(i);
   // The largest gradients where there are too many.
   std::stable_sort(result.begin(), result.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -286,7 +289,8 @@ DensifyRows Densifier::grow(SurfelCloud& cloud, DensifyCounts& counts) {
   }
   const std::size_t grown = count + clones.size() + splits.size();
   const auto cap = static_cast<std::size_t>(config_.max_surfels);
-  for (const std::uint32_t i : abs_splits(taken, cap - std::min(cap, grown))) splits.push_back(i);
+  for (const std::uint32_t i : abs_splits(cloud, taken, cap - std::min(cap, grown)))
+    splits.push_back(i);
   append_rows(cloud, clones);
   for (std::size_t i = count; config_.sample_clones && i < cloud.size(); ++i)
     move_in_plane(cloud, i);

@@ -40,6 +40,9 @@ struct DensifyConfig {
   float max_scale = 0.1f;  // x extent: larger surfels go, after the first reset
   float reset_opacity = 0.01f;
   int max_surfels = 1000000;
+  // Of rasterised sets: views count where a pixel has some of the surfel, not where its box is in
+  // the image. For sets that mostly are behind others' limits, as the official code traces them.
+  bool only_weighted_views = false;
   bool sample_clones = false;  // clones at places drawn from the surfel, not on it
   int max_abs_splits = 0;      // a densification; 0: none; else with RasterSettings' statistics
   float abs_gradient = 8e-4f;  // mean norm of RasterGradient::screen_abs, at reference_rows
@@ -69,6 +72,7 @@ struct DensifyConfig {
     v("min_opacity", min_opacity, "surfels below are pruned");
     v("max_scale", max_scale, "of the extent: larger surfels are pruned");
     v("max_surfels", max_surfels, "no growth beyond");
+    v("only_weighted_views", only_weighted_views, "the mean gradient is over views with weight");
     v("sample_clones", sample_clones, "clones are placed at points drawn from the surfel");
     v("max_abs_splits", max_abs_splits, "splits by absolute gradient a densification; 0: none");
     v("abs_gradient", abs_gradient, "mean absolute NDC gradient that splits large surfels");
@@ -186,8 +190,9 @@ class Densifier {
   float scale_of(int rows) const;  // that brings gradients to reference_rows
   void observe_footprints(const RasterOutput& output, const RasterGradient& gradient);
   // Surfels to split by their absolute gradient, at most `room`; not those that `taken` marks.
-  std::vector<std::uint32_t> abs_splits(const std::vector<std::uint8_t>& taken, std::size_t room)
-      const;
+  std::vector<std::uint32_t> abs_splits(
+      const SurfelCloud& cloud, const std::vector<std::uint8_t>& taken, std::size_t room
+  ) const;
   void move_in_plane(SurfelCloud& cloud, std::size_t i);
   void append_splits(SurfelCloud& cloud, const std::vector<std::uint32_t>& parents, Shape shape);
 

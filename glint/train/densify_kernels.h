@@ -30,10 +30,12 @@ struct ObserveRaster {
   const float* more;            // the same of a second rasterisation, added to it; null: none
   const float* visibility;      // [N]; null: not known
   float scale;
+  bool only_weighted;
 
   GLINT_HD void operator()(std::size_t i) const {
     if (in_view[i] == 0) return;
     const float weight = visibility != nullptr ? visibility[i] : 0.0f;
+    if (only_weighted && visibility != nullptr && weight <= 0) return;
     float x = screen[2 * i], y = screen[2 * i + 1];
     if (more != nullptr) {
       x += more[2 * i];
@@ -49,6 +51,7 @@ struct ObserveFootprint {
   const std::uint8_t* in_view;  // [N]
   const float* screen_abs;      // [N][2]
   const float* radii;           // [N] pixels
+  const float* owned_pixels;    // [N]: radii count where it owns one
   float scale;
   float *gradient_sums, *max_radii;        // [N]
   const std::uint32_t* is_void = nullptr;  // void_steps.h; null: no
@@ -56,7 +59,7 @@ struct ObserveFootprint {
   GLINT_HD void operator()(std::size_t i) const {
     if (in_view[i] == 0 || (is_void != nullptr && *is_void != 0)) return;
     gradient_sums[i] += scale * hypotf(screen_abs[2 * i], screen_abs[2 * i + 1]);
-    max_radii[i] = max_of(max_radii[i], radii[i] / scale);
+    if (owned_pixels[i] > 0) max_radii[i] = max_of(max_radii[i], radii[i] / scale);
   }
 };
 

@@ -17,7 +17,7 @@ struct ViewExposure {
   int steps = 0;
 
   GLINT_HD void adam_step(double dL_dlog_gain, double dL_doffset, double rate) {
-    constexpr double kBeta1 = 0.9, kBeta2 = 0.999, kEpsilon = 1e-8;
+    constexpr double kBeta1 = 0.9, kBeta2 = 0.99, kEpsilon = 1e-8;
     ++steps;
     const double gradients[2] = {dL_dlog_gain, dL_doffset};
     double* parameters[2] = {&log_gain, &offset};

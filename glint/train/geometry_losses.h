@@ -22,6 +22,7 @@ struct GeometryLossConfig {
   float min_cosine = 0.3f;
   float normal_l1 = 0;
   bool near_first = false, near_consistency = false;
+  bool unit_consistency = false;
   int depth_gradient_scales = 0;
 
   template <class V>
@@ -37,6 +38,7 @@ struct GeometryLossConfig {
     v("normal_l1", normal_l1, "|n - prior|_1 beside 1 - cosine in the normal prior");
     v("near_first", near_first, "the normal prior weighs near pixels more");
     v("near_consistency", near_consistency, "normal consistency weighs near pixels more");
+    v("unit_consistency", unit_consistency, "normal consistency is of unit normals");
     v("depth_gradient_scales", depth_gradient_scales, "scales of the depth prior's gradient term");
   }
   // The priors that these weights look at (Method::inputs).

@@ -86,7 +86,8 @@ PointCloud ReflectionGrid::points(const Scene& scene, std::uint64_t seed) const 
     for (int i = 0; i < points_per_cell; ++i) {
       const Vec3f place = corner + Vec3f{rng.uniform(), rng.uniform(), rng.uniform()};
       points.positions.push_back(scene.bounds_min + hadamard(place, cell));
-      points.colors.push_back({rng.uniform(), rng.uniform(), rng.uniform()});
+      const Vec3f color{rng.uniform(), rng.uniform(), rng.uniform()};
+      points.colors.push_back(brightness * color);
     }
   }
   return points;

@@ -20,18 +20,20 @@ void warn_without_points(
 );
 
 // The initial cloud of sets that mirrored rays are traced into [Xie25; Na26 supplement]: uniform
-// points in each of cells^3 equal boxes of the scene's bounds, random colours.
+// points in each of cells^3 equal boxes of the scene's bounds, colours random up to `brightness`.
 struct ReflectionGrid {
   int cells = 32, points_per_cell = 5;
   // Deviation: 32^3 cells are meant for images of 480x270; smaller ones start with as many points a
   // pixel, for more could not be told apart by so few rays. Larger images keep `cells`.
   float points_per_pixel = 1.264f;
+  float brightness = 1;
 
   template <class V>
   void visit(V&& v) {
     v("reflection_cells", cells, "most cells of the reflection grid along each axis");
     v("points_per_cell", points_per_cell, "initial reflection surfels of each cell");
     v("reflection_points_per_pixel", points_per_pixel, "fewer cells in small images");
+    v("reflection_brightness", brightness, "initial colours are random, from 0 to this");
   }
   int cells_for(ImageSize size) const;
   // How many times as far apart points are as with all cells. Deviation: the size at which density

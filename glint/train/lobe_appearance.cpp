@@ -209,7 +209,9 @@ void LobeAppearance::backward(const FloatArray& dL_doffsets) {
 
 void LobeAppearance::step(int step, int steps) {
   const LobeRates& rates = config_.rates;
-  const float rate = log_linear_rate(rates.network, rates.network_final, step, steps);
+  // Linear, not log-linear as that of positions.
+  const float t = std::clamp(static_cast<float>(step) / static_cast<float>(steps), 0.0f, 1.0f);
+  const float rate = (1 - t) * rates.network + t * rates.network_final;
   features_.step(rates.feature);
   to_lobes_.parameters().step(rate);
   to_color_.parameters().step(rate);

@@ -19,7 +19,10 @@ double NormalConsistencyLoss::evaluate(
 ) {
   if (!pixel_weight.empty())
     check_fits("weights of normal consistency", pixel_weight, depth.size(), 1);
-  return loss_.evaluate(camera, normal, depth, alpha, pixel_weight, weight, dL_dnormal, dL_ddepth);
+  const auto evaluate = [&](auto& loss) {
+    return loss.evaluate(camera, normal, depth, alpha, pixel_weight, weight, dL_dnormal, dL_ddepth);
+  };
+  return unit_normals ? evaluate(of_units_) : evaluate(loss_);
 }
 
 Image NormalConsistencyLoss::depth_normals(const Camera& camera, const Image& depth) {

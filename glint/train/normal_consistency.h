@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Normal consistency [Huang24 Eq. 14]: mean over pixels of m (1 - N . (A N_d)), with N the
-// composited normal (not normalised), N_d the normal of the surface depth, A the alpha map held
-// constant, m = 1 or the factors of [Xie25].
+// composited normal (not normalised; its unit vector in [Zhang25]), N_d the normal of the surface
+// depth, A the alpha map held constant, m = 1 or the factors of [Xie25].
 #pragma once
 
 #include "glint/train/depth_normal_loss.h"
@@ -10,6 +10,8 @@ namespace glint {
 
 class NormalConsistencyLoss {
  public:
+  bool unit_normals = false;  // N / |N|
+
   // normal: [H][W][3] camera space; depth: [H][W][1] planar z, metres; alpha: [H][W][1];
   // pixel_weight: m, [H][W][1] or empty; the mean divides by the number of pixels. Adds
   // weight * gradient to dL_dnormal and dL_ddepth. Returns the unweighted loss. Pixels at the
@@ -29,6 +31,7 @@ class NormalConsistencyLoss {
 
  private:
   DepthNormalLoss<NormalConsistencyAt> loss_;
+  DepthNormalLoss<UnitNormalConsistencyAt> of_units_;
 };
 
 }  // namespace glint

@@ -145,7 +145,9 @@ GLINT_HD DepthDifferences differences_at(const Unprojector& p, int x, int y) {
   return {true, p.point(x + 1, y) - p.point(x - 1, y), p.point(x, y + 1) - p.point(x, y - 1)};
 }
 
-struct NormalConsistencyAt {
+// kUnit: of N / |N|, else of N.
+template <bool kUnit>
+struct ConsistencyAt {
   Unprojector unproject;
   ImageView normal, alpha, pixel_weight;  // pixel_weight may be empty
   float scale;
@@ -159,10 +161,17 @@ struct NormalConsistencyAt {
     Vec3f g_right_left{}, g_down_up{};
     double loss = 1;
     if (d.valid) {
-      const Vec3f n = load3<float>(normal, x, y);
+      const Vec3f sum = load3<float>(normal, x, y);
+      const Vec3f n = kUnit ? unit_normal(sum) : sum;
       const Vec3f target = alpha.at(x, y) * normal_from_differences(d.right_left, d.down_up);
       loss -= static_cast<double>(dot(n, target));
-      add3(dL_dnormal, x, y, -share * target);
+      Vec3f dL_dsum = -share * target;
+      if constexpr (kUnit) {
+        const Vec3f dL_dn = dL_dsum;
+        dL_dsum = {};
+        unit_normal_vjp(sum, dL_dn, dL_dsum);
+      }
+      add3(dL_dnormal, x, y, dL_dsum);
       normal_from_differences_vjp(
           d.right_left, d.down_up, (-share * alpha.at(x, y)) * n, g_right_left, g_down_up
       );
@@ -172,6 +181,8 @@ struct NormalConsistencyAt {
     return static_cast<double>(factor) * loss;
   }
 };
+using NormalConsistencyAt = ConsistencyAt<false>;
+using UnitNormalConsistencyAt = ConsistencyAt<true>;
 // W |A N_D - N|_1 (plane_consistency.h).
 struct PlaneConsistencyAt {
   Unprojector unproject;
@@ -225,6 +236,7 @@ using NormalKernels = KernelList<
     NormalPriorAt<float>,
     NormalSmoothnessAt<float>,
     NormalConsistencyAt,
+    UnitNormalConsistencyAt,
     PlaneConsistencyAt>;
 
 }  // namespace glint

@@ -43,6 +43,27 @@ struct OpacityPenalty {
   }
 };
 
-using OpacityPenaltyKernels = KernelList<CountInView, OpacityPenalty>;
+// The same of the binary entropy -o log o - (1 - o) log(1 - o), whose slope in the logit x is
+// -x o (1 - o).
+struct OpacityEntropy {
+  SurfelsInView surfels;
+  const float* logits;  // [N]
+  const double* num_in_view;
+  float weight;
+  float* dL_dlogits;  // added to
+
+  GLINT_HD double operator()(int x, int y) const {
+    if (!surfels.has(x, y)) return 0;
+    const std::size_t i = surfels.at(x, y);
+    const float logit = logits[i], opacity = sigmoid(logit);
+    dL_dlogits[i] -= weight / static_cast<float>(*num_in_view) * logit * opacity * (1 - opacity);
+    // softplus(x) - o x, which is finite where o is 0 or 1.
+    const double l = static_cast<double>(logit);
+    const double softplus = (l > 0 ? l : 0) + log1p(exp(l > 0 ? -l : l));
+    return softplus - static_cast<double>(opacity) * l;
+  }
+};
+
+using OpacityPenaltyKernels = KernelList<CountInView, OpacityPenalty, OpacityEntropy>;
 
 }  // namespace glint

@@ -66,6 +66,7 @@ const View& PlanarModel::forward(int iteration, StepStats& stats) {
   RasterSettings settings;
   settings.with_plane_distance = iteration >= windows_.planes.from;
   settings.with_statistics = windows_.densify.max_abs_splits > 0;
+  settings.screen_with_low_pass = true;
   rasterize(view.camera, settings);
   clear_gradient(view.camera.size(), output_->features.channels(), gradient_);
   if (settings.with_plane_distance) clear_image(gradient_.plane_distance, view.camera.size(), 1);
@@ -87,8 +88,8 @@ void PlanarModel::backward(StepStats& stats) {
   RasterPass& pass = set_.pass();
   const RasterGradient& gradient = set_.backward(gradient_, pass, true);
   if (lobes_ != nullptr) lobes_->backward(gradient, pass.activated.channels);
+  trim(stats.iteration + 1);  // before a reset, which would show what is hidden
   note_reset(set_.update(stats.iteration + 1), "", stats);
-  trim(stats.iteration + 1);
   stats.num_surfels = set_.cloud().size();
 }
 

@@ -108,19 +108,28 @@ void TrainableSet::observe(
   training().densifier.observe(pass.rasterizer.output(), a, &b);
 }
 
-double TrainableSet::penalise_opacity(float weight, const Array<std::uint8_t>& in_view) {
+template <class Penalty>
+double TrainableSet::penalise(float weight, const Array<std::uint8_t>& in_view) {
   constexpr int kRow = 256;  // surfels that are summed one after the other
   const SurfelsInView surfels{in_view.on_device(), cloud_.size(), kRow};
   const ImageSize layout{kRow, static_cast<int>((cloud_.size() + kRow - 1) / kRow)};
   Array<double>& count = training().num_in_view;
   sum_kernel_to(layout, CountInView{surfels}, count);
-  const OpacityPenalty penalty{
+  const Penalty penalty{
       surfels,
       cloud_.opacity_logits.on_device(),
       count.on_device(),
       weight,
       training().gradient.opacity_logits.on_device()};
   return sum_kernel(layout, penalty) / std::max(told(count), 1.0);
+}
+
+double TrainableSet::penalise_opacity(float weight, const Array<std::uint8_t>& in_view) {
+  return penalise<OpacityPenalty>(weight, in_view);
+}
+
+double TrainableSet::penalise_opacity_entropy(float weight, const Array<std::uint8_t>& in_view) {
+  return penalise<OpacityEntropy>(weight, in_view);
 }
 
 const Rays& TrainableSet::trace_backward(const TraceOutputGradient& dL_doutput) {

@@ -56,7 +56,9 @@ class TrainableSet final : public SurfelSet {
   // Adds the gradient of weight * (mean opacity of the surfels in view, in_view [N]) and returns
   // the mean; 0 where none is.
   double penalise_opacity(float weight, const Array<std::uint8_t>& in_view);
-  // The same for the last trace(); returns the rays' gradient, valid until the next call.
+  // The same of the mean binary entropy of these opacities.
+  double penalise_opacity_entropy(float weight, const Array<std::uint8_t>& in_view);
+  // backward() for the last trace(); returns the rays' gradient, valid until the next call.
   const Rays& trace_backward(const TraceOutputGradient& dL_doutput);
   // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.
   void freeze_geometry();
@@ -68,8 +70,8 @@ class TrainableSet final : public SurfelSet {
   DensifyCounts update(int step);
   // Drops surfels that own a pixel (RasterOutput::owned_pixels) in fewer of the cameras than
   // DensifyConfig::min_observations, or than there are cameras [Chen24, PGSR]; returns how many.
-  // Between update() and the next forward(); methods say when. A set whose geometry is frozen stays
-  // as it is.
+  // Between backward() and the next forward(); methods say when. A set whose geometry is frozen
+  // stays as it is.
   std::size_t trim(std::span<const Camera> cameras, const RasterSettings& settings = {});
   // Whether opacities are reset at most `margin` steps before or after this one.
   bool resets_within(int step, int margin) const;
@@ -82,6 +84,9 @@ class TrainableSet final : public SurfelSet {
   void visit_state(TrainingState& state);
 
  private:
+  template <class Penalty>
+  double penalise(float weight, const Array<std::uint8_t>& in_view);
+
   struct Training {
     SetTraining settings;  // as given
     SurfelCloud gradient;

@@ -87,6 +87,7 @@ std::vector<std::string> TransmissionLosses::set_up(
   guidance_.depth_threshold = config.depth_threshold;
   guidance_.low_albedo = config.low_albedo;
   guidance_.transparent_weight = config.transparent_weight;
+  depth_.gradient_scales = 4;                                       // of plausibility
   direct_geometry_.set_up(direct_geometry(config), scene, method);  // needs no prior
   std::vector<std::string> warnings;
   float& weight = config_.lambda_transparency;
@@ -138,20 +139,27 @@ BorrowedImage TransmissionLosses::needed_depths(const View& view, bool only_labe
   return needed_;
 }
 
-// The release's plausibility: on opaque pixels, the set seen on its own is the interface.
+// The release's plausibility: on pixels labelled opaque, the set seen on its own is the interface.
+// Half of the depth loss with its gradient term, and the mean of the normals' over these pixels.
 void TransmissionLosses::add_plausible(
     const View& view, const RasterOutput& out, const GlassBuffer& buffer, StepStats& stats
 ) {
-  if (masks_.opaque.empty()) return;
+  const bool eroded = guidance_.kind == GuidanceKind::kBce;
+  const Image& mask = eroded ? masks_.labelled_opaque : masks_.opaque;
+  if (mask.empty()) return;
   const float weight = config_.lambda_plausible;
   clear_image(dL_ddepth_, out.alpha.size(), 1);
-  const double loss =
-      depth_.evaluate(direct_depth_, buffer.depth, masks_.opaque, weight, dL_ddepth_) +
-      normal_.evaluate(
-          out.normal, view.priors["normal"], masks_.opaque, weight, dL_ddirect_.normal
-      );
+  const double of_depth =
+      depth_.evaluate(direct_depth_, buffer.depth, mask, 0.5f * weight, dL_ddepth_);
+  const double num_opaque = sum_kernel(mask.size(), SumPixels{mask.on_device()});
+  const double share = num_opaque / static_cast<double>(mask.num_pixels());
+  const float of_mean = share > 0 ? static_cast<float>(1 / share) : 0;  // the loss is over all
+  const double of_normal = normal_.evaluate(
+      out.normal, view.priors["normal"], mask, weight * of_mean, dL_ddirect_.normal
+  );
   expected_depth_map_vjp(out, dL_ddepth_, dL_ddirect_);
-  stats.terms["plausible"] = static_cast<double>(weight) * loss;
+  stats.terms["plausible"] =
+      static_cast<double>(weight) * (0.5 * of_depth + static_cast<double>(of_mean) * of_normal);
 }
 
 // As on the interface, with terms of their own names.

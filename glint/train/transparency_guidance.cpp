@@ -93,6 +93,7 @@ void TransparencyGuidance::label(const TransparencyCues& cues, TransparencyMasks
     for (Image* mask : {&masks.transparent, &masks.opaque}) keep_counted(cues.counted.get(), *mask);
   }
   if (!is_bce) return;
+  masks.labelled_opaque = masks.opaque;
   masks.transparent = eroded_and_weighed(masks.transparent, cues.cosine.get());
   masks.opaque = eroded_and_weighed(masks.opaque, cues.cosine.get());
 }

@@ -26,6 +26,7 @@ struct TransparencyCues {
 // without `opaque`: what is not transparent is opaque.
 struct TransparencyMasks {
   Image transparent, opaque;
+  Image labelled_opaque;  // kBce: before erosion and weights
 };
 
 // kL1: transparent = |z_intr - z_trans| > depth_threshold and mean RGB albedo < low_albedo, and 0

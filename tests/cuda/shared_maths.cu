@@ -29,7 +29,7 @@ __device__ float surfel_formulas(
   low_pass_rho2_vjp(p.center_x, p.center_y, dL_drho, dL_dp.center_x, dL_dp.center_y);
   SurfelGeometry<float> dL_dsurfel{};
   Vec3f dL_dm;
-  project_surfel_vjp(surfel, camera, dL_dp, dL_dsurfel, dL_dm);
+  project_surfel_vjp(surfel, camera, dL_dp, true, dL_dsurfel, dL_dm);
   SurfaceHits hits;
   hits.add(p.plane_distance, step.weight);
   return dL_dopacity + dL_dsurfel.mean.x + dL_dm.z + screen_radius(surfel, camera, kMaxRho) +

@@ -246,10 +246,39 @@ TEST_CASE("project_surfel_vjp matches central differences of zeta at a pixel, ce
         dL.plane_distance = g[10];
         SurfelGeometry<double> out{};
         Vec3d dL_dm;
-        project_surfel_vjp(surfel, camera, dL, out, dL_dm);
+        project_surfel_vjp(surfel, camera, dL, true, out, dL_dm);
         return pack(out);
       }
   );
+}
+
+TEST_CASE("the screen statistic is of hits within the disc, and of the low-pass if asked for") {
+  const CameraOf<double> camera = test_camera();
+  const SurfelGeometry<double> surfel = unpack_surfel(kSurfel);
+  // dL/d(centre in camera space), as the statistic has it and as the parameter has it.
+  const auto of = [&](const ProjectedSurfel<double>& dL, bool low_pass) {
+    SurfelGeometry<double> gradient{};
+    Vec3d dL_dm;
+    project_surfel_vjp(surfel, camera, dL, low_pass, gradient, dL_dm);
+    return std::pair(dL_dm, camera.rotation * gradient.mean);
+  };
+  const auto check_same = [](const std::pair<Vec3d, Vec3d>& found) {
+    CHECK(length(found.second) > 1e-3);
+    CHECK(length(found.first - found.second) < 1e-9 * length(found.second));
+  };
+  ProjectedSurfel<double> disc{}, low_pass{}, plane{};
+  disc.map.g0 = {0.3, -0.2, 0.1};
+  disc.map.det = 0.7;
+  low_pass.center_x = 0.4, low_pass.center_y = -0.6;
+  plane.plane_distance = 1;
+  for (const bool counts : {false, true}) {
+    check_same(of(disc, counts));
+    const auto [statistic, parameter] = of(plane, counts);
+    CHECK(length(statistic) == 0);
+    CHECK(length(parameter) > 0.5);
+  }
+  check_same(of(low_pass, true));
+  CHECK(length(of(low_pass, false).first) == 0);
 }
 
 TEST_CASE("sh_basis_vjp matches central differences at every degree") {

@@ -274,12 +274,15 @@ TEST_CASE("A clamped alpha passes no gradient to opacity and shape, but to featu
   CHECK(total(backward(c).features) > 0.99f);
 }
 
-TEST_CASE("The screen gradient is that of a shift of the projected centre, in NDC") {
+TEST_CASE("The screen gradient with the low-pass is that of a shift of the projected centre, in NDC"
+) {
   const std::uint64_t seed = GENERATE(range(70, 73));
   const double tiny = GENERATE(0.0, 1.0);
   RandomSurfels options = smooth_surfels();
   options.tiny = tiny;
-  const Case c = random_case(options, kAll, seed);
+  Case c = random_case(options, kAll, seed);
+  c.settings.screen_with_low_pass = true;
+  c.dL_doutput.plane_distance = {};  // what it says of the centre is no shift on the screen
   const RasterGradient gradient = backward(c);
   REQUIRE(gradient.screen.size() == 2 * c.surfels.count());
   for (std::size_t i = 0; i < c.surfels.count(); ++i) {
@@ -295,6 +298,20 @@ TEST_CASE("The screen gradient is that of a shift of the projected centre, in ND
     CHECK(static_cast<double>(gradient.screen[2 * i]) == Approx(x).margin(margin));
     CHECK(static_cast<double>(gradient.screen[2 * i + 1]) == Approx(y).margin(margin));
   }
+}
+
+TEST_CASE("Surfels within a pixel have no screen gradient but that of the low-pass") {
+  Case c = random_case({.tiny = 1}, kAll, 75);
+  for (float& scale : c.surfels.scales) scale *= 0.01f;
+  const auto sum = [&](bool low_pass) {
+    c.settings.screen_with_low_pass = low_pass;
+    double total = 0;
+    for (const float g : backward(c).screen) total += std::abs(static_cast<double>(g));
+    return total;
+  };
+  const double with = sum(true);
+  REQUIRE(with > 1e-3);
+  CHECK(sum(false) < 1e-3 * with);
 }
 
 TEST_CASE("The absolute screen gradient sums what each pixel says of a shift of the footprint") {

@@ -33,6 +33,7 @@ SurfelCloud cloud_of(std::size_t count) {
 
 struct Seen {
   float gradient, abs_gradient, radius;
+  float owned_pixels = 1;
 };
 
 // A view of so many rows that saw every surfel; gradients as they are at 540 rows.
@@ -47,6 +48,7 @@ void observe(Densifier& densifier, const std::vector<Seen>& surfels, int rows = 
     for (const float value : {0.6f * scale * s.abs_gradient, 0.8f * scale * s.abs_gradient})
       gradient.screen_abs.push_back(value);
     output.radii.push_back(s.radius / scale);
+    output.owned_pixels.push_back(s.owned_pixels);
   }
   densifier.observe(output, gradient);
 }
@@ -57,6 +59,14 @@ DensifyConfig every_step() {
   config.interval = 1;
   config.clone_scale = 1000;  // clones, no splits
   config.max_scale = 1000;
+  return config;
+}
+
+// All are as large as what is split.
+DensifyConfig splitting_by_abs(int max_splits) {
+  DensifyConfig config = every_step();
+  config.clone_scale = kScale / 2;
+  config.max_abs_splits = max_splits;
   return config;
 }
 
@@ -110,7 +120,7 @@ TEST_CASE("Clones lie on their surfel, or where they are drawn from it: in its p
 }
 
 TEST_CASE("A surfel is split by its absolute gradient only where it is large, too") {
-  DensifyConfig config = every_step();
+  DensifyConfig config = splitting_by_abs(0);
   const std::vector<Seen> seen = {{0, 9e-4f, 21}, {0, 9e-4f, 19}, {0, 7e-4f, 21}, kQuiet};
   const int rows = GENERATE(540, 270, 1080);               // of other images: as at 540
   CHECK(densified(config, seen, rows).counts.split == 0);  // off
@@ -122,31 +132,33 @@ TEST_CASE("A surfel is split by its absolute gradient only where it is large, to
   CHECK(run.cloud.means[0] == 100);
   for (const std::size_t child : {3u, 4u})
     CHECK(run.cloud.log_scales[2 * child] == Approx(std::log(kScale / 1.6f)));
+  config.clone_scale = 2 * kScale;  // in the image, but not in the scene
+  CHECK(densified(config, seen, rows).counts.split == 0);
 }
 
-TEST_CASE("The largest absolute gradients are split first, and not what is cloned already") {
-  DensifyConfig config = every_step();
-  config.max_abs_splits = 2;
+TEST_CASE("A radius counts in views where the surfel is in front") {
+  const std::vector<Seen> seen = {{0, 9e-4f, 21, 0}, {0, 9e-4f, 21, 1}};
+  CHECK(densified(splitting_by_abs(10), seen).counts.split == 1);
+}
+
+TEST_CASE("The largest absolute gradients are split first, and not what is split already") {
+  DensifyConfig config = splitting_by_abs(2);
   const std::vector<Seen> seen = {
       {0, 1e-3f, 30}, {1e-3f, 9e-3f, 30}, {0, 4e-3f, 30}, {0, 2e-3f, 30}};
   const Run run = densified(config, seen);
-  CHECK(run.counts.cloned == 1);
-  CHECK(run.counts.split == 2);
-  REQUIRE(run.cloud.size() == 7);  // 0, 1, the clone of 1, children of 2 and 3
+  CHECK(run.counts.cloned == 0);
+  CHECK(run.counts.split == 3);
+  REQUIRE(run.cloud.size() == 7);  // 0, children of 1, 2 and 3
   CHECK(run.cloud.means[0] == 0);
-  CHECK(run.cloud.means[3] == 100);
-  CHECK(run.cloud.means[6] == 100);
 
-  config.max_surfels = 6;  // the clone, and room for one split
-  CHECK(densified(config, seen).counts.split == 1);
+  config.max_surfels = 6;  // room for two
+  CHECK(densified(config, seen).counts.split == 2);
 }
 
 TEST_CASE("The mean is over views, the radius the largest since the last densification") {
-  DensifyConfig config = every_step();
-  config.max_abs_splits = 10;
   SurfelCloud cloud = cloud_of(2);
   SurfelAdam adam;
-  Densifier densifier(config, 1, 5);
+  Densifier densifier(splitting_by_abs(10), 1, 5);
   observe(densifier, {{0, 1.5e-3f, 25}, {0, 2e-3f, 5}});
   observe(densifier, {{0, 0, 5}, {0, 2e-3f, 5}});
   CHECK(densifier.update(1, cloud, adam).split == 0);  // mean 7.5e-4; never large
@@ -154,13 +166,32 @@ TEST_CASE("The mean is over views, the radius the largest since the last densifi
   CHECK(densifier.update(2, cloud, adam).split == 1);  // the first was large before that only
 }
 
+TEST_CASE("The mean gradient may be over views where the surfel has weight") {
+  DensifyConfig config = every_step();
+  for (const bool only_weighted : {false, true}) {
+    config.only_weighted_views = only_weighted;
+    SurfelCloud cloud = cloud_of(1);
+    SurfelAdam adam;
+    Densifier densifier(config, 1, 5);
+    RasterOutput output;
+    output.in_view.assign(1, 1);
+    output.alpha = Image(16, 540, 1);
+    RasterGradient gradient;
+    gradient.screen = {0, 3e-4f};  // threshold: 2e-4
+    for (const float weight : {1.0f, 0.0f}) {
+      output.visibility.assign(1, weight);
+      densifier.observe(output, gradient);
+      gradient.screen = {0, 0};
+    }
+    CHECK(densifier.update(1, cloud, adam).cloned == (only_weighted ? 1 : 0));
+  }
+}
+
 TEST_CASE("A void step leaves what was observed as it is") {
   test::use_host_kernels();
-  DensifyConfig config = every_step();
-  config.max_abs_splits = 10;
   SurfelCloud cloud = cloud_of(2);
   SurfelAdam adam;
-  Densifier densifier(config, 1, 5);
+  Densifier densifier(splitting_by_abs(10), 1, 5);
   observe(densifier, {{0, 2e-3f, 5}, {0, 0, 25}});
   {
     const SilentStep silent(true);

@@ -40,6 +40,38 @@ TEST_CASE(
   CHECK(normals.at(0, 5, 2) == 0.0f);
 }
 
+TEST_CASE("Of unit normals the loss is that of the normals divided by their lengths") {
+  const Camera camera = test_camera(8, 7);
+  Image depth = plane_depth(camera, normalize(Vec3d{0.1, 0.2, -1}), -4);
+  Image normal(8, 7, 3), unit(8, 7, 3);
+  const Image alpha(8, 7, 1, 0.8f);
+  for (std::size_t i = 0; i < normal.num_pixels(); ++i) {
+    const Vec3d n{0.2 + 0.01 * static_cast<double>(i), -0.3, -0.5};
+    for (int c = 0; c < 3; ++c) {
+      normal.data()[3 * i + c] = static_cast<float>(n[c]);
+      unit.data()[3 * i + c] = static_cast<float>(normalize(n)[c]);
+    }
+  }
+  NormalConsistencyLoss of_sums, of_units;
+  of_units.unit_normals = true;
+  Image dL_dn(8, 7, 3), dL_dz(8, 7, 1), unused_n(8, 7, 3), same_z(8, 7, 1), unused_z(8, 7, 1);
+  const double loss = of_units.evaluate(camera, normal, depth, alpha, 1, dL_dn, dL_dz);
+  CHECK(loss == Approx(of_sums.evaluate(camera, unit, depth, alpha, 1, unused_n, same_z)));
+  for (std::size_t i = 0; i < depth.num_pixels(); ++i) {
+    CHECK(dL_dz.data()[i] == Approx(same_z.data()[i]).margin(1e-7));
+    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
+      const float before = normal.data()[k];
+      const auto at = [&](float value) {
+        normal.data()[k] = value;
+        return of_units.evaluate(camera, normal, depth, alpha, 1, unused_n, unused_z);
+      };
+      const double slope = (at(before + 0.01f) - at(before - 0.01f)) / 0.02;
+      normal.data()[k] = before;
+      CHECK(static_cast<double>(dL_dn.data()[k]) == Approx(slope).margin(2e-5));
+    }
+  }
+}
+
 TEST_CASE("The loss is zero inside for agreeing normals, and borders and holes count as one") {
   const Camera camera = test_camera(12, 10);
   const Vec3d n = normalize(Vec3d{0.1, 0.2, -1});

@@ -269,7 +269,29 @@ TEST_CASE(
       const double slope = i % 3 == 0 ? 3 * opacity(i) * (1 - opacity(i)) / seen : 0;
       CHECK(static_cast<double>(set.gradient().opacity_logits[i]) == Approx(slope));
     }
+    TrainableSet other(cloud, SetTraining{});
+    double entropy = 0;
+    for (std::size_t i = 0; i < count; i += 3) {
+      const double o = opacity(i);
+      entropy -= (o * std::log(o) + (1 - o) * std::log1p(-o)) / seen;
+    }
+    CHECK(other.penalise_opacity_entropy(3, in_view) == Approx(entropy));
+    for (std::size_t i = 0; i < count; ++i) {
+      const double o = opacity(i), x = static_cast<double>(cloud.opacity_logits[i]);
+      const double slope = i % 3 == 0 ? -3 * x * o * (1 - o) / seen : 0;
+      CHECK(static_cast<double>(other.gradient().opacity_logits[i]) == Approx(slope));
+    }
     in_view.fill(0);
     CHECK(set.penalise_opacity(3, in_view) == 0);
+    CHECK(set.penalise_opacity_entropy(3, in_view) == 0);
   }
+}
+
+TEST_CASE("the entropy of opacities that are certain is zero, and finite") {
+  SurfelCloud cloud = cloud_of(2);
+  cloud.opacity_logits[0] = 200, cloud.opacity_logits[1] = -200;
+  TrainableSet set(cloud, SetTraining{});
+  Array<std::uint8_t> in_view(2, 1);
+  CHECK(set.penalise_opacity_entropy(1, in_view) == Approx(0).margin(1e-9));
+  for (const float slope : set.gradient().opacity_logits) CHECK(std::isfinite(slope));
 }
