@@ -26,6 +26,8 @@ struct ReflectionGrid {
   // Deviation: 32^3 cells are meant for images of 480x270; smaller ones start with as many points a
   // pixel, for more could not be told apart by so few rays. Larger images keep `cells`.
   float points_per_pixel = 1.264f;
+  // Deviation: the official codes draw colours up to 1/255, black but for that, and in runs as
+  // short as ours the set stays dark (docs/GLINT_NOTES.md).
   float brightness = 1;
 
   template <class V>

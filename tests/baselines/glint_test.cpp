@@ -105,6 +105,27 @@ TEST_CASE("Transmission starts as a copy of the interface where it is asked to")
   }
 }
 
+TEST_CASE("Secondary sets grow by their own steps, or by those of the run") {
+  // 60,000 planned steps: windows are what they say.
+  for (const bool run_clock : {false, true}) {
+    const auto method = create_method(
+        "glint",
+        {{"transmission_from", 40},
+         {"reflection_from", 1000},
+         {"densify_from", 0},
+         {"secondary_densify_interval", 50},
+         {"transmission_gradient", 0.0},
+         {"secondary_run_clock", run_clock}}
+    );
+    method->initialize(small_room(), {60000, 0});
+    const std::size_t before = cloud_of(*method, "transmission.ply").size();
+    for (int i = 0; i < 60; ++i) method->step(i);
+    CHECK((cloud_of(*method, "transmission.ply").size() > before) == run_clock);
+    for (int i = 60; i < 90; ++i) method->step(i);
+    CHECK(cloud_of(*method, "transmission.ply").size() > before);
+  }
+}
+
 TEST_CASE("The opacity loss makes the transmission behind the interface opaque, however it is seen"
 ) {
   for (const char* transmission : {"raster", "trace"}) {

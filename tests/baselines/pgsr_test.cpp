@@ -49,3 +49,19 @@ TEST_CASE("Splitting by absolute gradients and exposure are options that train")
   CHECK(last < 0.8 * first);
   CHECK_NOTHROW(method->check_finite());
 }
+
+TEST_CASE("What few views see goes before opacities are reset, not by what a reset shows") {
+  // Trimmed every 100 steps, reset at the end of the 300th, without losses of planes.
+  const auto surfels_after = [](bool resets, bool trims) {
+    const auto method = create_method(
+        "pgsr",
+        {{"opacity_resets", resets}, {"trim_until", trims ? 15000 : 0}, {"planes_from", 30000}}
+    );
+    method->initialize(small_room(), {3000, 0});
+    for (int i = 0; i < 300; ++i) method->step(i);
+    return method->num_surfels();
+  };
+  const std::size_t with_reset = surfels_after(true, true);
+  CHECK(with_reset == surfels_after(false, true));
+  CHECK(with_reset < surfels_after(true, false));
+}
