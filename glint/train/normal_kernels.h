@@ -235,8 +235,8 @@ using NormalKernels = KernelList<
     CountNormals,
     NormalPriorAt<float>,
     NormalSmoothnessAt<float>,
-    NormalConsistencyAt,
-    UnitNormalConsistencyAt,
+    ConsistencyAt<false>,
+    ConsistencyAt<true>,
     PlaneConsistencyAt>;
 
 }  // namespace glint
