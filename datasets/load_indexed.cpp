@@ -223,16 +223,6 @@ void sort_naturally(std::vector<ViewSource>& views) {
   });
 }
 
-void shorten_names(std::vector<ViewSource>& views) {
-  std::map<std::string, int> count;
-  for (const ViewSource& view : views) ++count[fs::path(view.name).stem().string()];
-  for (ViewSource& view : views) {
-    const fs::path path(view.name);
-    const std::string stem = path.stem().string();
-    view.name = flat_view_name(count[stem] > 1 ? (path.parent_path() / stem).string() : stem);
-  }
-}
-
 std::string hash_of_files(const std::string& camera_text, const std::vector<ViewSource>& views) {
   std::string text = camera_text;
   for (const ViewSource& view : views) {
