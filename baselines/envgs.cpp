@@ -10,9 +10,9 @@
 // soon after an opacity reset (DensifyConfig::prune_holiday); surfels that a densification adds are
 // not dropped by its cap, having no weights yet; normals get all of the gradient of the mirrored
 // direction, of which the official tracer keeps the last hit's SH part; positions of the
-// environment slow down by its own steps and the extent (there by the run's, and twice the extent);
-// every pixel is traced. The real-scene setting: a synthetic one differs in windows and in the
-// initial s, and weighs all depths alike.
+// environment slow down by its own steps and the extent (there by the run's, and the extent
+// squared); every pixel is traced. The real-scene setting: a synthetic one differs in windows and
+// in the initial s, and weighs all depths alike.
 //
 // "envgs/simple" leaves out what the other baselines have no counterpart of: colour sabotage,
 // normal propagation, resets of the environment and of s, splitting in five, caps by visibility,
@@ -113,8 +113,7 @@ struct EnvGsConfig {
     environment_clock = scaled(environment_clock, 0);
     const double shortening = static_cast<double>(kPublishedIterations) / iterations;
     rates = rates.for_shorter_run(shortening);
-    // Else s is still at its start when sabotage and propagation ask for it, 100 steps after a
-    // reset.
+    // Sabotage and propagation ask for it 100 steps after a reset, not 1000.
     rate_specular *= faster_rates(shortening);
     geometry.scale(scaled);
     densify.scale(scaled);

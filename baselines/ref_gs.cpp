@@ -11,8 +11,7 @@
 // weight of the harmonics' picture and its loss are zero, and the picture is the shaded colour over
 // a background, random in training and black in renders, with a gradient for alpha: the recipe of
 // its synthetic scenes. Times an alpha that is held constant, as the blended weight of the inside
-// is in the real ones (random_background=false), an opacity reset ends it: nothing raises what is
-// left.
+// is in the real ones (random_background=false), our one run ended without a surfel.
 //
 // Deviations: the map has 64 rows and the network 64 hidden values, for CPUs, which notes() say
 // (map_height=512 hidden=256 are the published ones); features start small and random, not at zero,

@@ -72,7 +72,6 @@ struct DensifyConfig {
     v("min_opacity", min_opacity, "surfels below are pruned");
     v("max_scale", max_scale, "of the extent: larger surfels are pruned");
     v("max_surfels", max_surfels, "no growth beyond");
-    v("only_weighted_views", only_weighted_views, "the mean gradient is over views with weight");
     v("sample_clones", sample_clones, "clones are placed at points drawn from the surfel");
     v("max_abs_splits", max_abs_splits, "splits by absolute gradient a densification; 0: none");
     v("abs_gradient", abs_gradient, "mean absolute NDC gradient that splits large surfels");

@@ -27,7 +27,7 @@ struct ReflectionGrid {
   // pixel, for more could not be told apart by so few rays. Larger images keep `cells`.
   float points_per_pixel = 1.264f;
   // Deviation: the official codes draw colours up to 1/255, black but for that, and in runs as
-  // short as ours the set stays dark (docs/GLINT_NOTES.md).
+  // short as ours GLINT's stays dark (docs/GLINT_NOTES.md). EnvGS starts as there.
   float brightness = 1;
 
   template <class V>

@@ -5,6 +5,7 @@
 
 #include "glint/core/kernel.h"
 #include "glint/render/activations.h"
+#include "glint/train/pixel_losses.h"
 
 namespace glint {
 
@@ -26,8 +27,21 @@ struct CountInView {
   GLINT_HD double operator()(int x, int y) const { return surfels.has(x, y) ? 1 : 0; }
 };
 
-// Sum of the opacities in view, and the gradient of weight times their mean.
-struct OpacityPenalty {
+// What of an opacity is summed, and its slope.
+struct OfOpacity {
+  GLINT_HD static float value(float opacity) { return opacity; }
+  GLINT_HD static void vjp(float, float dL_dvalue, float& dL_dopacity) { dL_dopacity += dL_dvalue; }
+};
+struct OfEntropy {
+  GLINT_HD static float value(float opacity) { return binary_entropy(opacity); }
+  GLINT_HD static void vjp(float opacity, float dL_dvalue, float& dL_dopacity) {
+    binary_entropy_vjp(opacity, dL_dvalue, dL_dopacity);
+  }
+};
+
+// Sum of it over the surfels in view, and the gradient of weight times its mean.
+template <class Of>
+struct PenaltyInView {
   SurfelsInView surfels;
   const float* logits;  // [N]
   const double* num_in_view;
@@ -38,32 +52,14 @@ struct OpacityPenalty {
     if (!surfels.has(x, y)) return 0;
     const std::size_t i = surfels.at(x, y);
     const float opacity = sigmoid(logits[i]);
-    dL_dlogits[i] += sigmoid_vjp(opacity, weight / static_cast<float>(*num_in_view));
-    return static_cast<double>(opacity);
+    float dL_dopacity = 0;
+    Of::vjp(opacity, weight / static_cast<float>(*num_in_view), dL_dopacity);
+    dL_dlogits[i] += sigmoid_vjp(opacity, dL_dopacity);
+    return static_cast<double>(Of::value(opacity));
   }
 };
 
-// The same of the binary entropy -o log o - (1 - o) log(1 - o), whose slope in the logit x is
-// -x o (1 - o).
-struct OpacityEntropy {
-  SurfelsInView surfels;
-  const float* logits;  // [N]
-  const double* num_in_view;
-  float weight;
-  float* dL_dlogits;  // added to
-
-  GLINT_HD double operator()(int x, int y) const {
-    if (!surfels.has(x, y)) return 0;
-    const std::size_t i = surfels.at(x, y);
-    const float logit = logits[i], opacity = sigmoid(logit);
-    dL_dlogits[i] -= weight / static_cast<float>(*num_in_view) * logit * opacity * (1 - opacity);
-    // softplus(x) - o x, which is finite where o is 0 or 1.
-    const double l = static_cast<double>(logit);
-    const double softplus = (l > 0 ? l : 0) + log1p(exp(l > 0 ? -l : l));
-    return softplus - static_cast<double>(opacity) * l;
-  }
-};
-
-using OpacityPenaltyKernels = KernelList<CountInView, OpacityPenalty, OpacityEntropy>;
+using OpacityPenaltyKernels =
+    KernelList<CountInView, PenaltyInView<OfOpacity>, PenaltyInView<OfEntropy>>;
 
 }  // namespace glint

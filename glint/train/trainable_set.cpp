@@ -108,14 +108,14 @@ void TrainableSet::observe(
   training().densifier.observe(pass.rasterizer.output(), a, &b);
 }
 
-template <class Penalty>
+template <class Of>
 double TrainableSet::penalise(float weight, const Array<std::uint8_t>& in_view) {
   constexpr int kRow = 256;  // surfels that are summed one after the other
   const SurfelsInView surfels{in_view.on_device(), cloud_.size(), kRow};
   const ImageSize layout{kRow, static_cast<int>((cloud_.size() + kRow - 1) / kRow)};
   Array<double>& count = training().num_in_view;
   sum_kernel_to(layout, CountInView{surfels}, count);
-  const Penalty penalty{
+  const PenaltyInView<Of> penalty{
       surfels,
       cloud_.opacity_logits.on_device(),
       count.on_device(),
@@ -125,11 +125,11 @@ double TrainableSet::penalise(float weight, const Array<std::uint8_t>& in_view) 
 }
 
 double TrainableSet::penalise_opacity(float weight, const Array<std::uint8_t>& in_view) {
-  return penalise<OpacityPenalty>(weight, in_view);
+  return penalise<OfOpacity>(weight, in_view);
 }
 
 double TrainableSet::penalise_opacity_entropy(float weight, const Array<std::uint8_t>& in_view) {
-  return penalise<OpacityEntropy>(weight, in_view);
+  return penalise<OfEntropy>(weight, in_view);
 }
 
 const Rays& TrainableSet::trace_backward(const TraceOutputGradient& dL_doutput) {

@@ -84,7 +84,7 @@ class TrainableSet final : public SurfelSet {
   void visit_state(TrainingState& state);
 
  private:
-  template <class Penalty>
+  template <class Of>
   double penalise(float weight, const Array<std::uint8_t>& in_view);
 
   struct Training {

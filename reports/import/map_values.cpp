@@ -6,15 +6,10 @@
 
 #include "glint/core/error.h"
 #include "glint/core/vec.h"
+#include "metrics/reduce.h"
 
 namespace glint {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 bool is_depth(float z) { return std::isfinite(z) && z > 0; }
 
@@ -43,7 +38,7 @@ std::string odd_depth(const Image& depth, const Image& truth) {
   for (std::size_t i = 0; i < depth.num_pixels(); ++i)
     if (const float z = truth.values()[i]; is_depth(depth.values()[i]) && is_depth(z))
       ratios.push_back(static_cast<double>(depth.values()[i]) / static_cast<double>(z));
-  const double ratio = ratios.empty() ? 1 : median(std::move(ratios));
+  const double ratio = ratios.empty() ? 1 : median(ratios);
   if (ratio < kMostRatio && ratio > 1 / kMostRatio) return {};
   return fmt::format(
       "depth is {:.3g} times the true one (median) and is scored as metres; is it in another unit, "
@@ -59,7 +54,7 @@ std::string odd_normals(const Image& normals, const Image& truth) {
     return lengths_of(truth).empty()
                ? ""
                : "no pixel has a finite normal, so all of them count as missing";
-  const double norm = median(std::move(lengths));
+  const double norm = median(lengths);
   if (std::abs(norm - 1) < kMostOff) return {};
   return fmt::format(
       "normals are {:.3g} long (median), expected 1, and are scored by their directions; are they "
