@@ -14,10 +14,11 @@
 
 namespace glint {
 
-struct CountNormals {
-  ImageView prior;
+struct SumPriorWeights {
+  ImageView prior, pixel_weight;  // pixel_weight may be empty: 1
   GLINT_HD double operator()(int x, int y) const {
-    return length2(load3<float>(prior, x, y)) > 0 ? 1.0 : 0.0;
+    if (!(length2(load3<float>(prior, x, y)) > 0)) return 0.0;
+    return pixel_weight.empty() ? 1.0 : static_cast<double>(pixel_weight.at(x, y));
   }
 };
 
@@ -232,7 +233,7 @@ using NormalKernels = KernelList<
     DepthKeys,
     FindDepthRange,
     WeighByDepth,
-    CountNormals,
+    SumPriorWeights,
     NormalPriorAt<float>,
     NormalSmoothnessAt<float>,
     ConsistencyAt<false>,

@@ -54,10 +54,11 @@ double NormalPriorLoss::evaluate(
   check_fits("normal prior", prior, normal.size(), 3);
   if (!pixel_weight.empty())
     check_fits("weights of the normal prior", pixel_weight, normal.size(), 1);
-  Array<double> num_priors;
+  const ImageView counted = weighted_mean ? pixel_weight.on_device() : ImageView{};
+  Array<double> divisor;
   Array<T> scale;
-  sum_kernel_to(normal.size(), CountNormals{prior.on_device()}, num_priors);
-  share_of(num_priors.on_device(), weight, scale);
+  sum_kernel_to(normal.size(), SumPriorWeights{prior.on_device(), counted}, divisor);
+  share_of(divisor.on_device(), weight, scale);
   const NormalPriorAt<T> loss_at{
       normal.on_device(),
       prior.on_device(),
@@ -66,7 +67,7 @@ double NormalPriorLoss::evaluate(
       static_cast<T>(l1),
       scale.on_device(),
       dL_dnormal.on_device()};
-  const double sum = sum_kernel(normal.size(), loss_at), count = told(num_priors);
+  const double sum = sum_kernel(normal.size(), loss_at), count = told(divisor);
   return count == 0 ? 0 : sum / count;
 }
 

@@ -14,10 +14,13 @@ struct NormalPriorLoss {
   // of the logged value only and is not copied.
   float min_cosine = kNoGate;
   float l1 = 0;  // of |n - prior|_1 beside 1 - <n, prior> [Xie25: 1], behind the same gate
+  // The mean divides by the sum of the weights of the pixels with a prior: masks rather than
+  // doubts.
+  bool weighted_mean = false;
 
   // normal: composited N [H][W][3], camera space; prior: [H][W][3] unit, camera space, zero where
   // missing; pixel_weight: [H][W][1] factors, or empty for 1. The mean divides by the number of
-  // pixels with a prior, not by the sum of the weights. A pixel without N counts as cosine 0 and
+  // pixels with a prior, if not weighted_mean. A pixel without N counts as cosine 0 and
   // has no gradient. Adds weight * gradient to dL_dnormal and returns the unweighted loss; without
   // any prior, 0. Deviation: the paper writes a sum, whose weight would depend on the resolution.
   template <class T>

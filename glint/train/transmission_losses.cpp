@@ -88,6 +88,7 @@ std::vector<std::string> TransmissionLosses::set_up(
   guidance_.low_albedo = config.low_albedo;
   guidance_.transparent_weight = config.transparent_weight;
   depth_.gradient_scales = 4;                                       // of plausibility
+  normal_.weighted_mean = true;                                     // as well
   direct_geometry_.set_up(direct_geometry(config), scene, method);  // needs no prior
   std::vector<std::string> warnings;
   float& weight = config_.lambda_transparency;
@@ -151,15 +152,10 @@ void TransmissionLosses::add_plausible(
   clear_image(dL_ddepth_, out.alpha.size(), 1);
   const double of_depth =
       depth_.evaluate(direct_depth_, buffer.depth, mask, 0.5f * weight, dL_ddepth_);
-  const double num_opaque = sum_kernel(mask.size(), SumPixels{mask.on_device()});
-  const double share = num_opaque / static_cast<double>(mask.num_pixels());
-  const float of_mean = share > 0 ? static_cast<float>(1 / share) : 0;  // the loss is over all
-  const double of_normal = normal_.evaluate(
-      out.normal, view.priors["normal"], mask, weight * of_mean, dL_ddirect_.normal
-  );
+  const double of_normal =
+      normal_.evaluate(out.normal, view.priors["normal"], mask, weight, dL_ddirect_.normal);
   expected_depth_map_vjp(out, dL_ddepth_, dL_ddirect_);
-  stats.terms["plausible"] =
-      static_cast<double>(weight) * (0.5 * of_depth + static_cast<double>(of_mean) * of_normal);
+  stats.terms["plausible"] = static_cast<double>(weight) * (0.5 * of_depth + of_normal);
 }
 
 // As on the interface, with terms of their own names.

@@ -10,10 +10,18 @@ namespace {
 
 constexpr ImageSize kSize{8, 7};
 
-auto loss_with(const Image& prior, float min_cosine, const Image& weights = {}) {
+auto loss_of(const NormalPriorLoss& loss, const Image& prior, const Image& weights = {}) {
   return [=](const auto& normal, auto weight, auto& gradient) {
-    return NormalPriorLoss{min_cosine}.evaluate(normal, prior, weights, weight, gradient);
+    return loss.evaluate(normal, prior, weights, weight, gradient);
   };
+}
+auto loss_with(const Image& prior, float min_cosine, const Image& weights = {}) {
+  return loss_of(NormalPriorLoss{min_cosine}, prior, weights);
+}
+NormalPriorLoss weighted_mean() {
+  NormalPriorLoss loss;
+  loss.weighted_mean = true;
+  return loss;
 }
 constexpr float kNoGate = NormalPriorLoss::kNoGate;
 
@@ -42,6 +50,14 @@ TEST_CASE("The normal prior's loss is the mean of 1 - cosine over the pixels wit
   CHECK(value_of(loss_with(prior, kNoGate, weights), normal) == Approx((0.2 + 0.5) / 3));
 }
 
+TEST_CASE("A weighted mean is over the weights of the pixels with a prior") {
+  const Image prior = map_of<float>(4, 1, 3, kPriors), normal = map_of<float>(4, 1, 3, kNormals);
+  const Image weights = map_of<float>(4, 1, 1, {1, 0.5f, 0.25f, 1});
+  CHECK(value_of(loss_of(weighted_mean(), prior, weights), normal) == Approx((0.2 + 0.5) / 1.75));
+  CHECK(value_of(loss_of(weighted_mean(), prior), normal) == Approx((0 + 0.4 + 2) / 3));
+  check_no_loss(normal, loss_of(weighted_mean(), prior, Image(4, 1, 1)));
+}
+
 TEST_CASE("Pixels below the gate count as zero and have no gradient") {
   const Image prior = map_of<float>(4, 1, 3, kPriors), normal = map_of<float>(4, 1, 3, kNormals);
   CHECK(value_of(loss_with(prior, 0.5f), normal) == Approx(0.4 / 3));
@@ -67,6 +83,7 @@ TEST_CASE("The normal prior has the gradient of its differences, through the nor
   check_loss_gradient(normal, loss_with(test_prior(kSize), kNoGate));
   check_loss_gradient(normal, loss_with(test_prior(kSize), kNoGate, weights));
   check_loss_gradient(normal, loss_with(test_prior(kSize), 0.3f, weights));
+  check_loss_gradient(normal, loss_of(weighted_mean(), test_prior(kSize), weights));
 }
 
 TEST_CASE("Without normal priors there is no loss") {
