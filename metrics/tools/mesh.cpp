@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "datasets/released_truth.h"
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
@@ -112,10 +113,15 @@ void complete(MeshToolOptions& options) {
   check_mesh_protocol(options.protocol);
 }
 
+// Of a dataset folder its true mesh.
+fs::path reference_path(const fs::path& reference) {
+  return surface_path(fs::is_directory(reference) ? true_mesh(reference) : reference, kTrueMesh);
+}
+
 MeshReport load_surfaces(const MeshToolOptions& options) {
   MeshReport report;
   report.protocol = options.protocol;
-  report.reference = read_surface(surface_path(options.reference, fs::path("gt") / "mesh.ply"));
+  report.reference = read_surface(reference_path(options.reference));
   report.prediction = with_exit_code(ExitCode::kBadPrediction, [&] {
     return read_surface(surface_path(options.prediction, "mesh.ply"));
   });

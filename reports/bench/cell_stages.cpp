@@ -146,7 +146,7 @@ CellStages cell_stages(
       Stage::kScore,
       score_document(
           method,
-          {stages[Stage::kRender].key(), stages[Stage::kMesh].key()},
+          {stages[Stage::kRender].key(), stages[Stage::kMesh].key(), scene.truth},
           profile.mesh_protocol(),
           TimingOptions{profile.timing_frames, profile.timing_warmup}
       )

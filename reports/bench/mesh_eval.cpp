@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reports/bench/mesh_eval.h"
 
+#include "datasets/released_truth.h"
 #include "metrics/mesh/mesh_scores.h"
 #include "metrics/tools/mesh_inputs.h"
 #include "reports/bench/mesh_stage.h"
@@ -49,13 +50,13 @@ MeshValues score_run_meshes(
   recipe["protocol"] = config_to_json(protocol);
   for (const MeshLayer& layer : kMeshLayers) {
     const fs::path predicted = mesh_of(spec.folder, layer);
-    const fs::path true_mesh = spec.dataset_folder / layer.truth;
-    if (!fs::exists(predicted) || !fs::exists(true_mesh)) continue;
+    const fs::path true_file = true_mesh(spec.dataset_folder, layer.truth);
+    if (!fs::exists(predicted) || !fs::exists(true_file)) continue;
     Json done = Json::object();
     const Surface mesh =
         prepared(predicted, ExitCode::kBadPrediction, cameras, protocol, done["prediction"]);
     const Surface truth =
-        prepared(true_mesh, ExitCode::kBadReference, cameras, protocol, done["reference"]);
+        prepared(true_file, ExitCode::kBadReference, cameras, protocol, done["reference"]);
     for (const auto distance :
          {SurfaceDistance::kPointToTriangle, SurfaceDistance::kPointToPoint}) {
       MeshProtocol each = protocol;

@@ -4,6 +4,7 @@
 // through glass, mesh_transmission.ply (what lies behind it).
 #pragma once
 
+#include "datasets/released_truth.h"
 #include "glint/core/service.h"
 #include "metrics/fusion/tsdf.h"
 #include "metrics/mesh/mesh_protocol.h"
@@ -19,7 +20,7 @@ struct MeshLayer {
   const char* prefix;  // of its metrics' ids
 };
 inline constexpr MeshLayer kMeshLayers[] = {
-    {"depth", "mesh.ply", "gt/mesh.ply", ""},
+    {"depth", "mesh.ply", kTrueMesh, ""},
     {"behind_depth", "mesh_transmission.ply", "gt/mesh_behind.ply", kBehindMesh}};
 
 // The run's mesh of that layer, or where it would be. A method that does not look behind glass, as

@@ -111,7 +111,7 @@ Json score_document(
 ) {
   Json fields = config_to_json(protocol);
   fields.erase("distance");  // both are scored
-  return {
+  Json document = {
       {"inputs", {{"render", inputs.render_key}, {"mesh", inputs.mesh_key}}},
       {"mesh_metrics", fields},
       {"timing_frames", timing ? Json(timing->frames) : Json()},
@@ -120,6 +120,8 @@ Json score_document(
       {"device", device_kind()},
       {"machine", metric_machine()},
       {"code", code_for(method, "score")}};
+  if (!inputs.truth.empty()) document["truth"] = inputs.truth;
+  return document;
 }
 
 }  // namespace glint

@@ -28,6 +28,7 @@ Json document_without_mesh(Json document, const TsdfOptions& options);
 
 struct ScoreInputs {
   std::string render_key, mesh_key;
+  std::string truth;  // truth_content()
 };
 // Without timing: nothing was timed.
 Json score_document(

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "datasets/released_truth.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"
@@ -120,7 +121,7 @@ void add_rows(
     const MeshKind& kind,
     MeshPainter& painter
 ) {
-  const SeenMesh* truth = painter.see(scene.data / kind.layer.truth, true);
+  const SeenMesh* truth = painter.see(true_mesh(scene.data, kind.layer.truth), true);
   PanelRow shaded, errors;
   const auto add = [&](const SeenMesh* mesh) {
     shaded.push_back(mesh != nullptr ? mesh->shaded : Image());

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "datasets/released_truth.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
@@ -97,7 +98,7 @@ class SceneWriter {
     for (std::size_t run = 0; run < scene_.runs.size(); ++run)
       json["runs"].push_back(run_json(run));
     json["meshes"] = Json::array();
-    add_mesh(truth_folder_ / "gt" / "mesh.ply", "Ground truth", "t0", json["meshes"]);
+    add_mesh(true_mesh(truth_folder_), "Ground truth", "t0", json["meshes"]);
     write_part(fmt::format("scene_{}", index_), json);
   }
 

@@ -50,7 +50,9 @@ std::string input_of(const Json& document, Stage stage) {
              : "";
 }
 
-Json document_now(Stage stage, const RunSpec& spec, const Json& then, const Json& data) {
+Json document_now(
+    Stage stage, const RunSpec& spec, const Json& then, const Json& data, const fs::path& hashes
+) {
   if (stage == Stage::kTrain) return train_document(spec.method, spec.config, spec.options, data);
   const std::string trained = input_of(then, Stage::kTrain);
   if (stage == Stage::kRender) return render_document(spec.method, trained);
@@ -65,7 +67,9 @@ Json document_now(Stage stage, const RunSpec& spec, const Json& then, const Json
     timing = TimingOptions{then["timing_frames"], then.at("timing_warmup")};
   return score_document(
       spec.method,
-      {input_of(then, Stage::kRender), input_of(then, Stage::kMesh)},
+      {input_of(then, Stage::kRender),
+       input_of(then, Stage::kMesh),
+       truth_content(spec.dataset_folder, hashes)},
       options_in<MeshProtocol>(then, "mesh_metrics"),
       timing
   );
@@ -248,7 +252,9 @@ class RunExamination {
     const Json& then = done(stage)->document;
     const std::string name = std::string(stage_name(stage)) + " now";
     try {
-      const Json now = with_machine_of(document_now(stage, spec_, then, data_for(then)), then);
+      const Json now = with_machine_of(
+          document_now(stage, spec_, then, data_for(then), verifier_.hashes_.path()), then
+      );
       const auto changes = stage_differences(then, now);
       if (changes.empty()) return add(name, CheckState::kOk, "made from what there is now");
       add(name, CheckState::kNote, "would now be made anew: " + some_of(changes));

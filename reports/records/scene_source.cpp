@@ -5,6 +5,7 @@
 
 #include "datasets/dataset.h"
 #include "datasets/glassroom/glassroom.h"
+#include "datasets/released_truth.h"
 #include "glint/core/file_lock.h"
 #include "glint/core/progress.h"
 #include "glint/core/sha256.h"
@@ -169,7 +170,24 @@ SceneIdentity identify_source(const SceneSource& source, const fs::path& data_fo
   const std::string prior_folder = placed_priors(priors, data_folder).folder;
   if (!prior_folder.empty() && !fs::exists(prior_folder))
     return {{{"scene", {{"max_pixels", source.max_pixels}}}}, prior_folder + ": no such folder"};
-  return {data_document(folder, options_of(source), data_folder), ""};
+  return {
+      data_document(folder, options_of(source), data_folder),
+      "",
+      truth_content(folder, data_folder)};
+}
+
+std::string truth_content(const fs::path& dataset, const fs::path& data_folder) {
+  const fs::path truth = released_truth(dataset);
+  return truth.empty() ? "" : content_hash(truth, hash_cache(data_folder));
+}
+
+std::optional<SceneSource> find_source(
+    const Profile& profile, const fs::path& dataset, const fs::path& data_folder
+) {
+  std::error_code code;
+  for (SceneSource& source : profile.sources())
+    if (fs::equivalent(folder_of(source, data_folder), dataset, code)) return std::move(source);
+  return std::nullopt;
 }
 
 Json data_document(

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "datasets/dataset.h"
@@ -22,6 +23,7 @@ struct LoadedScene {
 struct SceneIdentity {
   Json document;
   std::string why_not;  // it has to be made (again) first, or is not there at all; empty: it is
+  std::string truth;    // truth_content()
 };
 // Errors (kBadReference): files that cannot be read; kEnvironment: a scene that this build cannot
 // make.
@@ -33,6 +35,15 @@ using SceneIdentifier = std::function<SceneIdentity(const SceneSource&)>;
 // (kBadReference): as identify_source, and nothing there that a loader knows.
 Json data_document(
     const fs::path& dataset, const LoadOptions& options, const fs::path& data_folder
+);
+
+// The content of truth that lies apart from the scene's folder (released_truth()): scores go by it,
+// trainings do not. Empty: there is none.
+std::string truth_content(const fs::path& dataset, const fs::path& data_folder);
+
+// The scene of the profile that lies in that folder or file; nothing: there is none.
+std::optional<SceneSource> find_source(
+    const Profile& profile, const fs::path& dataset, const fs::path& data_folder
 );
 
 // What a training's data are now, to be compared with `then`, its document of them: of a room that

@@ -156,7 +156,7 @@ void check_test_views(const Scene& scene, const fs::path& dataset) {
 
 struct EvalArguments {
   std::string run, predictions, dataset, method, depth = "planar", axes = "opencv", mesh;
-  double max_pixels = 0;
+  double max_pixels = 0, image_ratio = 1;
   bool all = false, force = false;
 };
 
@@ -167,7 +167,9 @@ int eval_run(const CommonOptions& common, const EvalArguments& arguments) {
   const MeshProtocol protocol = mesh_protocol_of(single.spec);
   const Json document = score_document(
       single.spec.method,
-      {key_of(folder, Stage::kRender), key_of(folder, Stage::kMesh)},
+      {key_of(folder, Stage::kRender),
+       key_of(folder, Stage::kMesh),
+       truth_content(single.spec.dataset_folder, common.data)},
       protocol,
       earlier_timing(folder)
   );
@@ -229,24 +231,41 @@ RunSpec spec_of(
   spec.scene = scene.name;
   spec.options.seed = common.seed.value_or(0);
   spec.max_pixels = arguments.max_pixels;
+  spec.image_ratio = arguments.image_ratio;
   spec.dataset_hash = scene.spec_hash;
   spec.folder =
       run_folder(common.own_folder(profile), {spec.scene, spec.method, spec.options.seed});
   return spec;
 }
 
-int eval_predictions(const CommonOptions& common, const EvalArguments& arguments) {
+// A scene of the profile is named as there, and as large if the command does not say otherwise.
+Scene load_imported(const CommonOptions& common, const Profile& profile, EvalArguments& arguments) {
+  const auto source = find_source(profile, arguments.dataset, common.data);
+  if (source && arguments.max_pixels == 0 && arguments.image_ratio == 1) {
+    arguments.max_pixels = source->max_pixels;
+    arguments.image_ratio = source->image_ratio;
+  }
+  LoadOptions load;
+  load.max_pixels = arguments.max_pixels;
+  load.image_ratio = arguments.image_ratio;
+  if (source) load.loader = source->loader;
+  Scene scene = load_scene(arguments.dataset, load);
+  check_test_views(scene, arguments.dataset);
+  if (!source) return scene;
+  scene.name = source->scene;
+  scene.dataset = source->dataset;
+  return scene;
+}
+
+int eval_predictions(const CommonOptions& common, EvalArguments arguments) {
   GLINT_CHECK(
       !arguments.predictions.empty() && !arguments.dataset.empty(),
       kUsage,
       "give --run FOLDER, or --predictions FOLDER --dataset FOLDER --method NAME"
   );
   check_row_name(arguments.method);
-  LoadOptions load;
-  load.max_pixels = arguments.max_pixels;
-  const Scene scene = load_scene(arguments.dataset, load);
-  check_test_views(scene, arguments.dataset);
   const Profile profile = import_profile(common);
+  const Scene scene = load_imported(common, profile, arguments);
   const RunSpec spec = spec_of(common, profile, arguments, scene);
   const ImportOptions options{
       Json(arguments.depth).get<DepthConvention>(),
@@ -262,7 +281,9 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
   for (std::size_t i = 1; i < record.warnings.size(); ++i) log::warn(record.warnings[i]);
   const Json document = score_document(
       spec.method,
-      {content_hash(arguments.predictions, fs::path(common.data) / ".hashes"), ""},
+      {content_hash(arguments.predictions, fs::path(common.data) / ".hashes"),
+       "",
+       truth_content(spec.dataset_folder, common.data)},
       profile.mesh_protocol(),
       std::nullopt
   );
@@ -296,6 +317,10 @@ void add_prediction_options(CLI::App& verb, CLI::Option& predictions, EvalArgume
   add("--mesh", arguments.mesh, "PLY of theirs; otherwise looked for");
   add("--max-pixels", arguments.max_pixels, "shrink images below this area")
       ->check(at_least_zero());
+  add("--image-ratio", arguments.image_ratio, "shrink both sides of images to this share")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 1.0))
+      ->excludes("--max-pixels");
 }
 
 void add_eval_verb(CommandLine& line) {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "glint/core/config.h"
+#include "glint/scene/image_files.h"
 #include "reports/records/records.h"
 #include "tests/reports/run_words.h"
 #include "tests/support/box_room.h"
@@ -23,6 +24,13 @@ struct OfficialData : TempFolder {
     fs::remove_all(scene / "gt");
   }
   std::string data() const { return (path() / "data").string(); }
+  // True geometry of test view 0000, as the release has it.
+  void write_truth() const {
+    const fs::path truth = scene.parent_path() / "geometry_gt/scene_2";
+    const View view = box_room_views(1, {64, 48})[0];
+    write_npy(truth / "depths_gt/val_depthZ_0000.npy", view.truth["depth"]);
+    write_npy(truth / "normals_gt/val_normalCam_0000.npy", view.truth["normal"]);
+  }
   Json info() const {
     return Json::parse(captured(1, [&] {
       CHECK(run({"dataset", "info", "3d-front-t", "--data", data(), "--json", "--quiet"}) == 0);
@@ -77,40 +85,40 @@ TEST_CASE("check of a published dataset compares counts, by name and by folder")
   CHECK_THAT(check("ref-dl3dv"), Contains("missing-scene") && Contains("8 of 8"));
 }
 
-TEST_CASE("a profile runs the scenes of a published dataset that are there, and exits with 5") {
-  const OfficialData official(12);
-  const std::string profile = official.path() / "mine.toml", out = official.path() / "out";
-  write_file(
-      profile,
-      "iterations = 3\nmethods = [\"2dgs\"]\nmanifests = [\"3d-front-t\"]\ntiming_frames = 1\n"
-      "timing_warmup = 0\n"
-  );
-  const auto run_profile = [&](const std::string& only, int code) {
+// A profile of one method of three steps, on what there is of 3D-FRONT-T.
+struct ShortProfile {
+  const OfficialData& official;
+  std::string file = official.path() / "mine.toml", out = official.path() / "out";
+  explicit ShortProfile(const OfficialData& data) : official(data) {
+    write_file(
+        file,
+        "iterations = 3\nmethods = [\"2dgs\"]\nmanifests = [\"3d-front-t\"]\ntiming_frames = 1\n"
+        "timing_warmup = 0\n"
+    );
+  }
+  Json run_cells(const std::string& only, int code) const {
     const std::string summary = captured(1, [&] {
-      CHECK(
-          run(
-              {"run",
-               "--profile",
-               profile,
-               "--data",
-               official.data(),
-               "--out",
-               out,
-               "--executor",
-               "inline",
-               "--only",
-               only,
-               "--json"}
-          ) == code
-      );
+      CHECK(run(with_common({"run", "--executor", "inline", "--only", only, "--json"})) == code);
     });
     return summary.empty() ? Json() : Json::parse(summary);
-  };
-  const Json summary = run_profile("*", 5);
+  }
+  std::vector<std::string> with_common(std::vector<std::string> words) const {
+    words.insert(
+        words.end(), {"--profile", file, "--data", official.data(), "--out", out, "--quiet"}
+    );
+    return words;
+  }
+  std::vector<Record> records() const { return read_records(fs::path(out) / "mine/records.jsonl"); }
+};
+
+TEST_CASE("a profile runs the scenes of a published dataset that are there, and exits with 5") {
+  const OfficialData official(12);
+  const ShortProfile profile(official);
+  const Json summary = profile.run_cells("*", 5);
   CHECK(summary["ran"] == 1);
   CHECK(summary["failed"] == 0);
   CHECK(summary["without_data"] == 4);
-  const auto records = read_records(fs::path(out) / "mine/records.jsonl");
+  const auto records = profile.records();
   REQUIRE(records.size() == 1);
   CHECK(records[0].ok());
   CHECK(records[0].dataset == "3d-front-t");
@@ -122,6 +130,56 @@ TEST_CASE("a profile runs the scenes of a published dataset that are there, and 
   );
   CHECK_THAT(records[0].data_notes.back(), Contains("0.5 of the stored sides"));
   // The scene alone is whole, others alone are an error.
-  CHECK(run_profile("scene_2/*", 0)["reused"] == 1);
-  CHECK(run_profile("scene_3/*", 3).is_null());
+  CHECK(profile.run_cells("scene_2/*", 0)["reused"] == 1);
+  CHECK(profile.run_cells("scene_3/*", 3).is_null());
+}
+
+TEST_CASE("true geometry that comes later is scored, without training again") {
+  const OfficialData official(12);
+  const ShortProfile profile(official);
+  profile.run_cells("scene_2/*", 0);
+  CHECK_FALSE(profile.records().back().metrics.contains("normal-mae"));
+  const std::string model = profile.out + "/mine/runs/scene_2/2dgs/0/keys/train.json";
+  const auto trained = fs::last_write_time(model);
+  official.write_truth();
+  CHECK(profile.run_cells("scene_2/*", 0)["ran"] == 1);
+  CHECK(fs::last_write_time(model) == trained);
+  CHECK(profile.records().back().metrics.at("normal-mae") > 0);
+  CHECK(run(profile.with_common({"verify"})) == 0);
+  CHECK(profile.run_cells("scene_2/*", 0)["reused"] == 1);
+}
+
+// What the release's evaluate_dataset leaves: half-size pictures, depth and normals of test views.
+TEST_CASE("what the official code rendered is scored as the profile's scene, at its size") {
+  const OfficialData official(12);
+  const ShortProfile profile(official);
+  official.write_truth();
+  const fs::path theirs = official.path() / "eval";
+  const auto views = box_room_views(12, {32, 24}, 6.28 / 12);
+  for (const std::size_t view : {0u, 8u}) {
+    const std::string name = fmt::format("{:04}", view);
+    write_png(theirs / fmt::format("pred/{0}_{0}_000000.png", name), views[view].rgb);
+    write_npy(theirs / "geometry/depths_pred" / (name + ".npy"), views[view].truth["depth"]);
+    write_npy(theirs / "geometry/normals_pred" / (name + ".npy"), views[view].truth["normal"]);
+  }
+  CHECK(
+      run(profile.with_common(
+          {"eval",
+           "--predictions",
+           theirs.string(),
+           "--dataset",
+           official.scene.string(),
+           "--method",
+           "official"}
+      )) == 0
+  );
+  const auto records = profile.records();
+  REQUIRE(records.size() == 1);
+  CHECK(records[0].dataset == "3d-front-t");
+  CHECK(records[0].cell.scene == "scene_2");
+  CHECK(records[0].resolution == "32x24");
+  // Taken at centres of pixels here, means of four there.
+  CHECK(records[0].metrics.at("depth-absrel") < 0.02);
+  CHECK(records[0].metrics.at("normal-mae") < 3);
+  CHECK(records[0].metrics.at("psnr-8bit") > 30);
 }
