@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "datasets/dataset.h"
+#include "datasets/released_truth.h"
 #include "glint/core/error.h"
 #include "glint/core/sha256.h"
 #include "glint/scene/image_files.h"
@@ -152,6 +153,17 @@ void compare_extent(const ManifestScene& expected, const Scene& found, ManifestS
     );
 }
 
+std::size_t count_with_depth(const fs::path& folder, const std::vector<View>& views) {
+  const fs::path released = released_truth(folder);
+  return static_cast<std::size_t>(std::count_if(views.begin(), views.end(), [&](const View& view) {
+    MapFiles files;
+    add_released_maps(released, view.name, files);
+    std::error_code code;
+    return files.has("depth") ||
+           fs::exists(folder / "gt" / true_map_file(MapId("depth").row(), view.name), code);
+  }));
+}
+
 ManifestSceneState examine_scene(
     const Manifest& manifest, const ManifestScene& scene, const fs::path& data_folder
 ) {
@@ -170,6 +182,7 @@ ManifestSceneState examine_scene(
         loader.outline ? loader.outline(state.folder, options) : loader.load(state.folder, options);
     state.train = found.train.size();
     state.test = found.test.size();
+    state.with_depth = count_with_depth(state.folder, found.test);
     compare_counts(scene, state);
     compare_extent(scene, found, state);
     if (const ImageSize stored = first_picture_size(state.folder); stored.width > 0) {

@@ -72,6 +72,7 @@ struct ManifestSceneState {
   fs::path folder;
   bool there = false;
   std::size_t train = 0, test = 0;
+  std::size_t with_depth = 0;            // test views with true depth
   std::string stored_size, loaded_size;  // "1920x1080"
   std::string hash;                      // of cameras, points and pictures
   std::string first_hash;                // what it was when it was first seen; empty: just now

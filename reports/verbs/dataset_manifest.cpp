@@ -46,6 +46,12 @@ std::string size_text(const ManifestSceneState& state) {
   return fmt::format("{} stored, {} used", state.stored_size, state.loaded_size);
 }
 
+std::string views_text(const ManifestSceneState& state) {
+  const std::string text = fmt::format("{} train, {} test", state.train, state.test);
+  return state.with_depth == 0 ? text
+                               : fmt::format("{}, {} with true depth", text, state.with_depth);
+}
+
 std::string states_text(
     const PlacedManifest& placed, const std::vector<ManifestSceneState>& states
 ) {
@@ -59,14 +65,11 @@ std::string states_text(
       manifest.image_ratio
   );
   std::vector<std::vector<std::string>> lines;
-  for (const ManifestSceneState& state : states)
-    lines.push_back(
-        state.there
-            ? std::vector<
-                  std::
-                      string>{state.name, fmt::format("{} train, {} test", state.train, state.test), size_text(state), hash_text(state)}
-            : std::vector<std::string>{state.name, "missing", "", ""}
-    );
+  for (const ManifestSceneState& state : states) {
+    std::vector<std::string> line{state.name, "missing", "", ""};
+    if (state.there) line = {state.name, views_text(state), size_text(state), hash_text(state)};
+    lines.push_back(std::move(line));
+  }
   return text + listing(lines);
 }
 
@@ -79,6 +82,7 @@ Json states_json(const PlacedManifest& placed, const std::vector<ManifestSceneSt
          {"there", state.there},
          {"train_views", state.train},
          {"test_views", state.test},
+         {"test_views_with_true_depth", state.with_depth},
          {"stored_size", state.stored_size},
          {"used_size", state.loaded_size},
          {"hash", state.hash},

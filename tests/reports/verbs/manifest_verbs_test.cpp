@@ -49,6 +49,7 @@ TEST_CASE("info of a published dataset says what is there, its counts, sizes and
   CHECK(json["scenes"][0]["there"] == false);
   CHECK(scene["train_views"] == 158);
   CHECK(scene["test_views"] == 23);
+  CHECK(scene["test_views_with_true_depth"] == 0);
   CHECK(scene["stored_size"] == "64x48");
   CHECK(scene["used_size"] == "32x24");
   CHECK(scene["first_hash"] == "");
@@ -59,7 +60,9 @@ TEST_CASE("info of a published dataset says what is there, its counts, sizes and
   CHECK_THAT(findings, Contains("manifest-bounds") && Contains("4 of 5 scenes are missing"));
 
   write_file(official.scene / "diffrens/basecolor/later.txt", "priors are no part of it");
+  official.write_truth();
   json = official.info();
+  CHECK(json["scenes"][1]["test_views_with_true_depth"] == 1);
   CHECK(json["scenes"][1]["first_hash"] == hash);
   CHECK(json["scenes"][1]["hash"] == hash);
   write_file(
