@@ -138,6 +138,7 @@ struct EnvGsConfig {
     config.until = environment_densify_until - environment_clock;
     config.interval = environment_densify_interval;
     config.slow_interval = 0;
+    config.wait_from(environment_from - environment_clock);
     config.gradient_threshold = environment_gradient;
     config.reset_interval = environment_reset_interval;
     config.resets = densify.resets && reset_environment;
@@ -303,8 +304,8 @@ class EnvGs final : public Method {
   ViewSampler views_;
   TrainableSet base_, environment_;
   ReflectionBootstrap bootstrap_;
-  bool with_environment_ = false;
-  int base_degree_ = 0, environment_degree_ = 0;
+  bool with_environment_ = true;  // step() says; when nothing is left to train: all there is
+  int base_degree_ = 3, environment_degree_ = 3;
   GlassTransport transport_;
   const RasterOutput* base_output_ = nullptr;
   GlassLayers layers_;
@@ -345,6 +346,7 @@ MethodSpec envgs_simple_spec() {
       {"environment_max_surfels", 1000000},
       {"densify_slow_interval", 0},
       {"environment_clock", 3000},
+      {"environment_densify_from", 3500},
       {"environment_densify_until", 24000},
       {"environment_reset_interval", 3000},
       {"near_consistency", false}};

@@ -12,7 +12,9 @@
 // and random rotations, since the identity would lay all discs flat; schedules are scaled to the
 // run; distances between neighbours and the near limit are in scene units, here half the scene's
 // extent (scene_unit), where published captures span about two; one image size for training and
-// NCC; images are compared as stored; pruning by screen size is left out, as in 2DGS here.
+// NCC; images are compared as stored; pruning by screen size is left out, as in 2DGS here; a step
+// trims, then densifies (there the other way round, so that trims see what is new); a view's
+// exposure has an Adam of its own, whose moments wait while the view is not drawn.
 #include "glint/method.h"
 #include "glint/train/planar_model.h"
 #include "glint/train/training_state.h"

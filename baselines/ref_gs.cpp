@@ -72,7 +72,8 @@ struct RefGsConfig {
     v("sh_interval", sh_interval, "iterations per SH degree (of 31,000)");
     v("random_background",
       random_background,
-      "over random colours in training, with a gradient for alpha; else on black, without");
+      "what is shaded trains over random colours, with a gradient for alpha; else on black, without"
+    );
     v("random_points", random_points, "initial surfels of scenes without points");
     v("initial_scale", initial_scale, "of initial surfels, of the distance to neighbours");
     v("initial_albedo", initial_albedo, "albedo of the initial surfels, linear");

@@ -252,11 +252,21 @@ PosedMap read_depth(const ViewSource& view, MapId depth) {
   });
 }
 
-// Indices of up to kMostViews views, evenly spaced.
-std::vector<std::size_t> sample_views(const SceneIndex& index) {
-  const std::size_t count = std::min(index.views.size(), kMostViews);
+using Views = std::vector<const ViewSource*>;
+
+template <class Predicate>
+Views views_where(const SceneIndex& index, Predicate&& predicate) {
+  Views views;
+  for (const ViewSource& view : index.views)
+    if (predicate(view)) views.push_back(&view);
+  return views;
+}
+
+// Indices of up to kMostViews of them, evenly spaced.
+std::vector<std::size_t> sample(const Views& views) {
+  const std::size_t count = std::min(views.size(), kMostViews);
   std::vector<std::size_t> ids;
-  for (std::size_t i = 0; i < count; ++i) ids.push_back(i * index.views.size() / count);
+  for (std::size_t i = 0; i < count; ++i) ids.push_back(i * views.size() / count);
   return ids;
 }
 
@@ -301,17 +311,18 @@ void report_depth(
 // One kind of depth of the whole dataset: views against others a little further along the path.
 DepthKind check_depth(const SceneIndex& index, MapId depth, std::vector<Finding>& findings) {
   DepthAgreement agreement;
-  const std::size_t gap = std::max<std::size_t>(1, index.views.size() / 12);
-  for (const std::size_t i : sample_views(index)) {
-    if (i + gap >= index.views.size()) continue;
-    const ViewSource &a = index.views[i], &b = index.views[i + gap];
-    const PosedMap from = read_depth(a, depth), to = read_depth(b, depth);
+  const Views views =
+      views_where(index, [&](const ViewSource& view) { return view.truth.has(depth); });
+  const std::size_t gap = std::max<std::size_t>(1, views.size() / 12);
+  for (const std::size_t i : sample(views)) {
+    if (i + gap >= views.size()) continue;
+    const PosedMap from = read_depth(*views[i], depth), to = read_depth(*views[i + gap], depth);
     if (!from.usable || !to.usable) continue;
     agreement.add_pair(from.camera, from.map, to.camera, to.map);
     agreement.add_pair(to.camera, to.map, from.camera, from.map);
   }
   if (agreement.num_tested(DepthKind::kPlanar) < kEnoughSamples) return DepthKind::kPlanar;
-  report_depth(agreement, index.views.front().truth[depth].parent_path().string(), findings);
+  report_depth(agreement, views.front()->truth[depth].parent_path().string(), findings);
   return agreement.best();
 }
 
@@ -367,6 +378,16 @@ Image read_normal_prior(const ViewSource& view, const MapRow& row) {
   return normal;
 }
 
+// Those that have the map and the depth of its surface, else those that have the map.
+Views views_of_normals(const SceneIndex& index, MapFiles ViewSource::*files, const MapRow& row) {
+  const MapRow* depth = depth_of(row);
+  const auto has = [&](const ViewSource& view) { return (view.*files).has(row); };
+  Views both = views_where(index, [&](const ViewSource& view) {
+    return has(view) && depth != nullptr && view.truth.has(*depth);
+  });
+  return both.empty() ? views_where(index, has) : both;
+}
+
 void check_normals(
     const SceneIndex& index,
     MapFiles ViewSource::*files,
@@ -377,10 +398,11 @@ void check_normals(
   const MapRow* depth_row = depth_of(row);
   NormalAgreement agreement;
   double facing = 0;
-  int views = 0;
+  int num_read = 0;
   std::string where;
-  for (const std::size_t i : sample_views(index)) {
-    const ViewSource& view = index.views[i];
+  const Views views = views_of_normals(index, files, row);
+  for (const std::size_t i : sample(views)) {
+    const ViewSource& view = *views[i];
     const fs::path& path = (view.*files)[row];
     const PosedMap normal = read_posed(view, path, [&](const fs::path& p) {
       return files == &ViewSource::priors ? read_normal_prior(view, row) : read_image(p, 3);
@@ -388,7 +410,7 @@ void check_normals(
     if (!normal.usable) continue;
     where = path.parent_path().string();
     facing += facing_share(normal.camera, normal.map);
-    ++views;
+    ++num_read;
     if (depth_row == nullptr) continue;
     const PosedMap depth = read_depth(view, *depth_row);
     if (depth.usable && depth.map.size() == normal.map.size())
@@ -396,8 +418,8 @@ void check_normals(
   }
   if (agreement.num_samples() >= kEnoughSamples)
     report_normals(agreement, where, findings);
-  else if (views > 0)
-    report_facing(facing / views, where, findings);
+  else if (num_read > 0)
+    report_facing(facing / num_read, where, findings);
 }
 
 }  // namespace

@@ -4,13 +4,11 @@
 //   diffrens/<prior>/<view>/000000.png
 // and, of GlassRoom and of what `dataset export` writes:
 //   gt/<truth>/<view>.exr (masks: .png)   scene.json
-// and true geometry of 3D-FRONT-T as in released_truth.h.
 // Priors and truth are those of the table (glint/scene/maps.h).
 #include <set>
 
 #include "datasets/dataset.h"
 #include "datasets/opencv_yaml.h"
-#include "datasets/released_truth.h"
 #include "datasets/scene_index.h"
 #include "datasets/scene_json.h"
 
@@ -51,7 +49,7 @@ MapFiles find_truth(const fs::path& folder, const std::string& view) {
   return files;
 }
 
-ViewSource make_view(const fs::path& folder, const fs::path& released, const OpencvCamera& camera) {
+ViewSource make_view(const fs::path& folder, const OpencvCamera& camera) {
   ViewSource view;
   view.name = camera.name;
   view.where = fmt::format("{}: camera {}", (folder / "extri.yml").string(), camera.name);
@@ -60,7 +58,6 @@ ViewSource make_view(const fs::path& folder, const fs::path& released, const Ope
   view.distortion = camera.distortion;
   view.priors = find_priors(folder / "diffrens", camera.name);
   view.truth = find_truth(folder / "gt", camera.name);
-  add_released_maps(released, camera.name, view.truth);
   return view;
 }
 
@@ -104,9 +101,8 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   SceneIndex index;
   index.name = folder_name(folder);
   index.dataset = "easyvolcap";
-  const fs::path released = released_truth(folder);
   for (const OpencvCamera& camera : read_opencv_cameras(intri, extri)) {
-    index.views.push_back(make_view(folder, released, camera));
+    index.views.push_back(make_view(folder, camera));
     for (const std::string& problem : camera.problems)
       index.problems.push_back({"camera-field", "camera " + camera.name, problem});
   }

@@ -11,6 +11,7 @@
 #include "datasets/prior_evidence.h"
 #include "datasets/prior_files.h"
 #include "datasets/prior_maps.h"
+#include "datasets/released_truth.h"
 #include "datasets/scene_index.h"
 #include "datasets/undistort.h"
 #include "datasets/view_maps.h"
@@ -403,6 +404,7 @@ LoaderSpec indexed_loader(
     SceneIndex of_folder = index_folder(folder, options);
     of_folder.folder = folder;
     refuse_outside(folder, of_folder);
+    add_released_truth(folder, of_folder);
     return of_folder;
   };
   LoaderSpec loader;

@@ -45,8 +45,9 @@ struct PosedPrior {
 class PriorScale {
  public:
   explicit PriorScale(const SceneIndex& index) : index_(index) {
+    // Of views whose priors are trained on; where test views alone have some, points tell.
     has_truth_ = std::any_of(index.views.begin(), index.views.end(), [](const ViewSource& view) {
-      return view.truth.has("depth");
+      return view.is_train && view.truth.has("depth");
     });
   }
 

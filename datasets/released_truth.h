@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// True geometry of 3D-FRONT-T as the evaluation of GLINT's release expects it, apart from the
-// scenes:
+// True geometry of 3D-FRONT-T as the evaluation of GLINT's release expects it, beside the scenes'
+// folders, of whatever format these are:
 //   geometry_gt/<scene>/depths_gt/val_depthZ_<n>.npy      planar depth, metres
 //   geometry_gt/<scene>/normals_gt/val_normalCam_<n>.npy  unit, camera space, OpenCV axes
 //   geometry_gt/<scene>/gt_mesh.ply
-// n is the number in the camera's name, four digits; only views that are scored have files. Maps
-// are as large as the stored pictures. geometry_gt/ lies beside the scenes' folders or in a
-// scene's.
+// n is the number that the view's name ends in, four digits; only views that are scored have files.
+// Maps are as large as the stored pictures.
 #pragma once
 
 #include <string>
@@ -15,11 +14,15 @@
 
 namespace glint {
 
-// Of the scene in that folder; empty: there is none.
+// Of the scene in that folder, or in that which a link leads to; empty: there is none.
 fs::path released_truth(const fs::path& scene);
 
-// Adds the files of the view that are there, of kinds that it has no file of.
-void add_released_maps(const fs::path& truth, const std::string& view, MapFiles& files);
+// Adds the files that are there to views without a file of the kind. Where several views have one
+// number, none of them gets any, and a remark says so.
+void add_released_truth(const fs::path& scene, SceneIndex& index);
+
+// The view's true depth in `truth`, a released_truth(); empty: there is none.
+fs::path released_depth(const fs::path& truth, const std::string& view);
 
 // The scene's true mesh: kTrueMesh, else the released one; kTrueMesh where neither is there. Of
 // another surface, `mesh` of its folder.

@@ -16,10 +16,10 @@
 // reflection at the transmission set, multi-view consistency, the variance of depth patches, the
 // weights of guidance by explained error; of the third also t's gradients kept from geometry, soft
 // confidence of depth, a gate that rises, late cleanup of t, limits of scale and of growth.
-// Deviations: its loss on the opacity of the transmission set has the gradient that the first
-// release forgot; until reflections begin, the mirrored share is not taken from the rest; positions
-// of secondary sets slow down by their own steps, at the interface's rate (there by the run's, at
-// rates times powers of the extent).
+// Deviations: reflections start in random colours (there black); its loss on the opacity of the
+// transmission set has the gradient that the first release forgot; until reflections begin, the
+// mirrored share is not taken from the rest; positions of secondary sets slow down by their own
+// steps, at the interface's rate (there by the run's, at rates times powers of the extent).
 #include <algorithm>
 #include <cmath>
 

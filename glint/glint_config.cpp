@@ -62,6 +62,7 @@ DensifyConfig GlintConfig::secondary_densify() const {
 DensifyConfig GlintConfig::transmission_densify() const {
   DensifyConfig config = secondary_densify();
   config.gradient_threshold = transmission_gradient;
+  config.wait_from(secondary_run_clock ? transmission_from : 0);
   config.only_weighted_views = transmission_weighted_views;
   if (transmission_min_opacity >= 0) config.min_opacity = transmission_min_opacity;
   return config;
@@ -71,6 +72,7 @@ DensifyConfig GlintConfig::reflection_densify(ImageSize size) const {
   DensifyConfig config = secondary_densify();
   config.max_scale *= grid.coarseness(size);
   config.gradient_threshold = reflection_gradient;
+  config.wait_from(secondary_run_clock ? reflection_from : 0);
   return config;
 }
 

@@ -116,7 +116,8 @@ struct GlintConfig {
   static constexpr int kPublishedIterations = 60000;
   // With the windows of a run of so many iterations.
   GlintConfig scaled_to(int iterations) const;
-  // Of the three sets, in a run's windows; the secondary sets count steps from where they start.
+  // Of the three sets, in a run's windows; the secondary sets count steps from where they start,
+  // if not by secondary_run_clock.
   DensifyConfig interface_densify() const;
   DensifyConfig transmission_densify() const;
   DensifyConfig reflection_densify(ImageSize size) const;  // of training images

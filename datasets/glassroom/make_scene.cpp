@@ -69,13 +69,18 @@ Json stored_description(const SceneRecipe& recipe, const fs::path& folder) {
 
 // "width 96, now 240; spp 4, now 128": of the options of two scenes.
 std::string changed_options(const Json& before, const Json& now) {
+  std::set<std::string> names;
+  for (const Json* options : {&before, &now})
+    if (options->is_object())
+      for (const auto& [name, value] : options->items()) names.insert(name);
   std::string text;
-  for (const auto& [name, value] : now.items()) {
-    const Json earlier = before.is_object() ? before.value(name, Json()) : Json();
-    if (earlier == value) continue;
-    text += fmt::format(
-        "{}{} {}, now {}", text.empty() ? "" : "; ", name, earlier.dump(), value.dump()
-    );
+  for (const std::string& name : names) {
+    const auto value_in = [&](const Json& options) {
+      return options.is_object() && options.contains(name) ? options[name].dump() : "the default";
+    };
+    const std::string earlier = value_in(before), later = value_in(now);
+    if (earlier != later)
+      text += fmt::format("{}{} {}, now {}", text.empty() ? "" : "; ", name, earlier, later);
   }
   return text.empty() ? "another version made it" : text;
 }

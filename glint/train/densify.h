@@ -96,6 +96,9 @@ struct DensifyConfig {
     if (slow_interval > 0) slow_interval = scaled(slow_interval, 50);
     reset_interval = scaled(reset_interval, 300);
   }
+  // Of a set that starts at this step of the same clock: no densification by statistics of less
+  // than an interval, however windows and interval were rounded.
+  void wait_from(int start) { from = std::max(from, start + interval - 1); }
   // With the rule's holiday for so many training views, and resets as far apart that at least a
   // third of the time between two is open to pruning.
   DensifyConfig for_views(std::size_t training_views) const;

@@ -44,15 +44,14 @@ Image read_for(const fs::path& path, int channels, const View& view) {
       image.size() == view.camera.size(),
       kBadPrediction,
       "{}: {}x{} pixels, but view {} has {}x{}{}; render at that size, or load the dataset smaller "
-      "with --image-ratio (here {:.4g}) or --max-pixels",
+      "with --image-ratio or --max-pixels",
       path.string(),
       image.width(),
       image.height(),
       view.name,
       view.camera.width,
       view.camera.height,
-      image.width() == 2 * view.camera.width ? " (truth and render side by side? crop them)" : "",
-      static_cast<double>(image.width()) / view.camera.width
+      image.width() == 2 * view.camera.width ? " (truth and render side by side? crop them)" : ""
   );
   return image;
 }

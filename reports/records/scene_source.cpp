@@ -136,6 +136,7 @@ SceneIdentity made_identity(const SceneSource& source, const fs::path& data_fold
   add_reading(options_of(source), data_folder, identity.document["scene"]);
   if (!identity.why_not.empty()) return identity;
   identity.document["content"] = made_content(folder);
+  identity.truth = truth_content(folder, data_folder);
   identity.document["code"] = load_code(folder, source.loader);
   return identity;
 }
@@ -185,8 +186,10 @@ std::optional<SceneSource> find_source(
     const Profile& profile, const fs::path& dataset, const fs::path& data_folder
 ) {
   std::error_code code;
-  for (SceneSource& source : profile.sources())
+  for (SceneSource& source : profile.sources()) {
+    if (source.made() && !glassroom_hash.here()) continue;  // nor is it made here
     if (fs::equivalent(folder_of(source, data_folder), dataset, code)) return std::move(source);
+  }
   return std::nullopt;
 }
 

@@ -156,7 +156,7 @@ void check_test_views(const Scene& scene, const fs::path& dataset) {
 
 struct EvalArguments {
   std::string run, predictions, dataset, method, depth = "planar", axes = "opencv", mesh;
-  double max_pixels = 0, image_ratio = 1;
+  std::optional<double> max_pixels, image_ratio;
   bool all = false, force = false;
 };
 
@@ -230,8 +230,8 @@ RunSpec spec_of(
   spec.dataset = scene.dataset;
   spec.scene = scene.name;
   spec.options.seed = common.seed.value_or(0);
-  spec.max_pixels = arguments.max_pixels;
-  spec.image_ratio = arguments.image_ratio;
+  spec.max_pixels = arguments.max_pixels.value_or(0);
+  spec.image_ratio = arguments.image_ratio.value_or(1);
   spec.dataset_hash = scene.spec_hash;
   spec.folder =
       run_folder(common.own_folder(profile), {spec.scene, spec.method, spec.options.seed});
@@ -241,17 +241,25 @@ RunSpec spec_of(
 // A scene of the profile is named as there, and as large if the command does not say otherwise.
 Scene load_imported(const CommonOptions& common, const Profile& profile, EvalArguments& arguments) {
   const auto source = find_source(profile, arguments.dataset, common.data);
-  if (source && arguments.max_pixels == 0 && arguments.image_ratio == 1) {
+  if (source && !arguments.max_pixels && !arguments.image_ratio) {
     arguments.max_pixels = source->max_pixels;
     arguments.image_ratio = source->image_ratio;
   }
   LoadOptions load;
-  load.max_pixels = arguments.max_pixels;
-  load.image_ratio = arguments.image_ratio;
+  load.max_pixels = arguments.max_pixels.value_or(0);
+  load.image_ratio = arguments.image_ratio.value_or(1);
   if (source) load.loader = source->loader;
   Scene scene = load_scene(arguments.dataset, load);
   check_test_views(scene, arguments.dataset);
   if (!source) return scene;
+  log::info(fmt::format(
+      "{}: {} of profile {}, at {}x{}",
+      arguments.dataset,
+      source->scene,
+      profile.name,
+      scene.test.front().camera.width,
+      scene.test.front().camera.height
+  ));
   scene.name = source->scene;
   scene.dataset = source->dataset;
   return scene;
@@ -318,7 +326,6 @@ void add_prediction_options(CLI::App& verb, CLI::Option& predictions, EvalArgume
   add("--max-pixels", arguments.max_pixels, "shrink images below this area")
       ->check(at_least_zero());
   add("--image-ratio", arguments.image_ratio, "shrink both sides of images to this share")
-      ->capture_default_str()
       ->check(CLI::Range(1e-3, 1.0))
       ->excludes("--max-pixels");
 }

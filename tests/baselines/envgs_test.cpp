@@ -32,11 +32,13 @@ Run run(Json pieces) {
   return result;
 }
 
-SurfelCloud base_of(const Run& run) {
+SurfelCloud saved_set(const Method& method, const char* file) {
   const TempFolder folder;
-  run.method->save(folder.path().string());
-  return read_surfel_ply(folder.path() / "interface.ply");
+  method.save(folder.path().string());
+  return read_surfel_ply(folder.path() / file);
 }
+SurfelCloud base_of(const Run& run) { return saved_set(*run.method, "interface.ply"); }
+SurfelCloud environment_of(const Method& method) { return saved_set(method, "reflection.ply"); }
 
 float largest(const FloatArray& values) { return *std::max_element(values.begin(), values.end()); }
 
@@ -52,6 +54,25 @@ TEST_CASE("Colour sabotage and normal propagation act after 100 steps and not be
   }
   const FloatArray opacities = base_of(propagated).opacity_logits;
   CHECK(*std::min_element(opacities.begin(), opacities.end()) > 5);
+}
+
+TEST_CASE("The environment grows by statistics of a whole interval") {
+  // 40,000 planned steps: windows are what they say.
+  const Json early = {
+      {"environment_from", 40},
+      {"environment_densify_from", 0},
+      {"environment_densify_interval", 50},
+      {"environment_gradient", 0.0}};
+  const auto method = create_method("envgs", early);
+  method->initialize(small_room(), {40000, 0});
+  const std::size_t before = environment_of(*method).size();
+  int i = 0;
+  const auto grows_until = [&](int end) {
+    while (i < end) method->step(i++);
+    return environment_of(*method).size() > before;
+  };
+  CHECK_FALSE(grows_until(95));  // step 50 has statistics of ten
+  CHECK(grows_until(100));
 }
 
 TEST_CASE("The specularity returns to its initial value with the second reset of opacities") {

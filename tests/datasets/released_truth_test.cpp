@@ -19,15 +19,15 @@ constexpr ImageSize kSize{48, 36};
 
 // scene_1/ as it is released, without any truth; test views are 0000 and 0008.
 struct ReleasedScene : TempFolder {
-  std::vector<View> views = box_room_views(10, kSize);
+  std::vector<View> views;
   fs::path scene = path() / "scene_1";
-  ReleasedScene() {
+  explicit ReleasedScene(int count = 10) : views(box_room_views(count, kSize)) {
     write_easyvolcap(scene, views);
     fs::remove_all(scene / "gt");
   }
   // What the release's evaluation reads, of the test views.
   void write_truth(const fs::path& folder) const {
-    for (const std::size_t view : {0u, 8u}) {
+    for (std::size_t view = 0; view < views.size(); view += 8) {
       write_npy(
           folder / fmt::format("depths_gt/val_depthZ_{:04}.npy", view), views[view].truth["depth"]
       );
@@ -47,55 +47,79 @@ TEST_CASE("The release's true geometry is read from beside the scenes") {
   CHECK(released_truth(data.scene).empty());
   CHECK(load_scene(data.scene, {}).test[1].truth.empty());
   CHECK(true_mesh(data.scene) == data.scene / kTrueMesh);
-  for (const char* place :
-       {"geometry_gt/scene_1", "scene_1/geometry_gt", "scene_1/geometry_gt/scene_1"}) {
-    INFO(place);
-    data.write_truth(data / place);
-    const Scene scene = load_scene(data.scene, {});
-    REQUIRE(scene.test.size() == 2);
-    for (const char* map : {"depth", "normal"}) {
-      const MapRow& row = *find_map(map);
-      CHECK(largest_difference(scene.test[1].truth[row], data.views[8].truth[row]) == 0);
-    }
-    CHECK(scene.train[0].truth.empty());
-    CHECK(fs::equivalent(true_mesh(data.scene), data / place / "gt_mesh.ply"));
-    CHECK(true_mesh(data.scene, "gt/mesh_behind.ply") == data.scene / "gt/mesh_behind.ply");
-    CHECK(fs::equivalent(true_mesh(data.scene / "."), true_mesh(data.scene)));
-    CHECK(check_dataset(data.scene).empty());
-    fs::remove_all(data / place);
+  const fs::path truth = data / "geometry_gt/scene_1";
+  data.write_truth(truth);
+  const Scene scene = load_scene(data.scene, {});
+  REQUIRE(scene.test.size() == 2);
+  for (const char* map : {"depth", "normal"}) {
+    const MapRow& row = *find_map(map);
+    CHECK(largest_difference(scene.test[1].truth[row], data.views[8].truth[row]) == 0);
   }
+  CHECK(scene.train[0].truth.empty());
+  CHECK(fs::equivalent(true_mesh(data.scene), truth / "gt_mesh.ply"));
+  CHECK(true_mesh(data.scene, "gt/mesh_behind.ply") == data.scene / "gt/mesh_behind.ply");
+  CHECK(check_dataset(data.scene).empty());
+  fs::create_directory_symlink(data.scene, data / "linked");
+  for (const char* name : {"scene_1/", "scene_1/.", "geometry_gt/../scene_1", "linked"}) {
+    INFO(name);
+    CHECK(fs::equivalent(released_truth(data / name), truth));
+  }
+}
+
+TEST_CASE("True depth of test views alone is checked, and does not hide what points say of priors"
+) {
+  const ReleasedScene data(60);
+  data.write_truth(data / "geometry_gt/scene_1");
+  CHECK(check_dataset(data.scene).empty());
+  for (std::size_t view = 0; view < data.views.size(); view += 8) {
+    Image depth = data.views[view].truth["depth"];
+    for (float& z : depth.values()) z *= 1000;
+    write_npy(
+        data / fmt::format("geometry_gt/scene_1/depths_gt/val_depthZ_{:04}.npy", view), depth
+    );
+  }
+  const auto findings = check_dataset(data.scene);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].check == "depth-poses");
+  const Scene scene = load_scene(data.scene, {});
+  CHECK_THAT(scene.data_notes.at(0), Catch::Contains("detected"));
 }
 
 TEST_CASE("A scene's own truth counts before the release's") {
   const ReleasedScene data;
   data.write_truth(data / "geometry_gt/scene_1");
-  const Image depth(kSize.width, kSize.height, 1);
-  write_exr(data.scene / "gt/depth/0008.exr", depth);
   write_mesh_ply(data.scene / kTrueMesh, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
   CHECK(true_mesh(data.scene) == data.scene / kTrueMesh);
-  MapFiles files;
-  files["depth"] = data.scene / "gt/depth/0008.exr";
-  add_released_maps(released_truth(data.scene), "0008", files);
-  CHECK(files["depth"] == data.scene / "gt/depth/0008.exr");
-  CHECK(fs::equivalent(
-      files["normal"], data / "geometry_gt/scene_1/normals_gt/val_normalCam_0008.npy"
-  ));
+  SceneIndex index;
+  index.views.resize(1);
+  index.views[0].name = "0008";
+  index.views[0].truth["depth"] = "own.exr";
+  add_released_truth(data.scene, index);
+  CHECK(index.views[0].truth["depth"] == "own.exr");
+  CHECK(index.views[0].truth["normal"].filename() == "val_normalCam_0008.npy");
 }
 
-TEST_CASE("Released maps go by the number that a camera's name ends in") {
+TEST_CASE("Released maps go by the number that a view's name ends in") {
   const ReleasedScene data;
   const fs::path truth = data / "geometry_gt/scene_1";
   data.write_truth(truth);
-  const auto depth_of_view = [&](const std::string& view) {
-    MapFiles files;
-    add_released_maps(truth, view, files);
-    return files["depth"].filename().string();
+  const auto file_of = [&](const std::string& view) {
+    return released_depth(truth, view).filename().string();
   };
-  CHECK(depth_of_view("0008") == "val_depthZ_0008.npy");
-  CHECK(depth_of_view("cam_8") == "val_depthZ_0008.npy");
-  CHECK(depth_of_view("000000") == "val_depthZ_0000.npy");
-  CHECK(depth_of_view("0007").empty());
-  CHECK(depth_of_view("front").empty());
+  CHECK(file_of("0008") == "val_depthZ_0008.npy");
+  CHECK(file_of("cam_8") == "val_depthZ_0008.npy");
+  CHECK(file_of("000000") == "val_depthZ_0000.npy");
+  CHECK(file_of("0007").empty());
+  CHECK(file_of("front").empty());
+  SceneIndex index;
+  index.views.resize(3);
+  index.views[0].name = "left_0008", index.views[1].name = "right_0008", index.views[2].name = "0";
+  add_released_truth(data.scene, index);
+  CHECK(index.views[0].truth.empty());
+  CHECK(index.views[1].truth.empty());
+  CHECK(index.views[2].truth.has("depth"));
+  REQUIRE(index.remarks.size() == 1);
+  CHECK_THAT(index.remarks[0].message, Catch::Contains("2 views have names that end in 0008"));
 }
 
 TEST_CASE("Released depth of another size than the picture is refused by name") {
