@@ -14,11 +14,15 @@ namespace {
 
 enum class FileState { kSame, kMissing, kChanged };
 
-FileState state_of(const fs::path& file, const Json& hash) {
+FileState state_of(const fs::path& file, const Json& hash) try {
   std::error_code code;
   if (!fs::is_regular_file(file, code)) return FileState::kMissing;
   const bool same = hash == fmt::format("{:016x}", hash_name(read_file(file)));
   return same ? FileState::kSame : FileState::kChanged;
+} catch (const OutOfMemory&) {
+  throw;
+} catch (const Error&) {
+  return FileState::kMissing;  // it cannot be read
 }
 
 Json recorded_hashes(const fs::path& folder) {
@@ -76,7 +80,7 @@ RecordedFiles compare_recorded(const fs::path& folder) {
 
 void check_recorded(const fs::path& folder, std::vector<Finding>& findings) {
   const RecordedFiles files = compare_recorded(folder);
-  report(folder, files.missing, files.num_recorded, "is missing", findings);
+  report(folder, files.missing, files.num_recorded, "is missing or cannot be read", findings);
   report(
       folder,
       files.changed,
