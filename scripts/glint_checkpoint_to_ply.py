@@ -90,6 +90,8 @@ def main():
     for name, (fields, rows) in columns.items():
         write_ply(options.out / SETS[name], fields, rows)
         print(f"{options.out / SETS[name]}: {rows} surfels")
+    if "sampler.trans_env._specular" in state:
+        print("note: the specularity of the transmission set is left out: what mirrors there is not rendered by glint-bench")
 
 
 if __name__ == "__main__":

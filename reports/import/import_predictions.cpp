@@ -36,10 +36,19 @@ Image without_truth(Image image, const View& view) {
   return difference / static_cast<double>(3 * right.num_pixels()) < kSame ? right : image;
 }
 
+// EasyVolcap's geo_metric/ has all pixels in one row. Any other map as it is.
+Image in_rows(Image image, ImageSize size) {
+  if (image.height() != 1 || image.num_pixels() != size.num_pixels()) return image;
+  Image rows(size.width, size.height, image.channels());
+  std::copy(image.values().begin(), image.values().end(), rows.values().begin());
+  return rows;
+}
+
 Image read_for(const fs::path& path, int channels, const View& view) {
   Image image = without_truth(
       with_exit_code(ExitCode::kBadPrediction, [&] { return read_image(path, channels); }), view
   );
+  image = in_rows(std::move(image), view.camera.size());
   GLINT_CHECK(
       image.size() == view.camera.size(),
       kBadPrediction,

@@ -18,9 +18,9 @@ struct MapPlaces {
   std::vector<std::string> places;
 };
 // Own run folders, the layouts of 3DGS, 2DGS and PGSR (test/ours_*/renders, vis/depth_*.tiff),
-// 3DGRUT (ours_*/renders), nerfstudio (test/rgb), EasyVolcap, EnvGS and GLINT (RENDER, DEPTH,
-// NORMAL; val_depthZ_*.npy; pred and geometry), nerfbaselines (color), gsplat (renders/val_*), and
-// plain folders rgb, depth, normal. Adding a layout is adding a line. The image comes first.
+// 3DGRUT (ours_*/renders), nerfstudio (test/rgb), EasyVolcap, EnvGS and GLINT (RENDER, geo_metric;
+// pred and geometry), nerfbaselines (color), gsplat (renders/val_*), and plain folders rgb, depth,
+// normal. Adding a layout is adding a line. The image comes first.
 std::vector<MapPlaces> map_places();
 
 // How files were given to views.

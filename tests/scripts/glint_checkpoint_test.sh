@@ -33,6 +33,7 @@ PYTHON
 python3 "$root/scripts/glint_checkpoint_to_ply.py" latest.pt --out model >said
 [ ! -e trapped ] || fail "the checkpoint's own code ran"
 grep -q "interface.ply: 2 surfels" said && grep -q "transmission.ply: 3" said && grep -q "reflection.ply: 4" said || fail "$(cat said)"
+grep -q "specularity of the transmission set is left out" said || fail "$(cat said)"
 cat >look.py <<'PYTHON'
 import array
 header, _, body = open("model/interface.ply", "rb").read().partition(b"end_header\n")

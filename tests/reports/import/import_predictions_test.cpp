@@ -104,6 +104,25 @@ TEST_CASE("Maps that the data have and the renders lack are told, with what lies
   );
 }
 
+TEST_CASE("Maps whose pixels lie in one row, as EasyVolcap's geo_metric has them, come back") {
+  Case c;
+  for (const char* map : {"depth", "normal"}) fs::remove_all(c.folder / "theirs" / map);
+  const auto in_one_row = [](const Image& map) {
+    Image row(static_cast<int>(map.num_pixels()), 1, map.channels());
+    std::copy(map.values().begin(), map.values().end(), row.values().begin());
+    return row;
+  };
+  for (const View& view : test::small_room().test) {
+    const fs::path folder = c.folder / "theirs/geo_metric";
+    write_npy(folder / "depths_pred" / (view.name + ".npy"), in_one_row(view.truth["depth"]));
+    write_npy(folder / "normals_pred" / (view.name + ".npy"), in_one_row(view.truth["normal"]));
+  }
+  c.import({});
+  const auto means = eval_stage(c.spec, test::small_room(), {});
+  CHECK(means.at("depth-absrel") == 0);
+  CHECK(means.at("normal-mae") < 0.01);
+}
+
 TEST_CASE("Normals in the world's axes come back, too") {
   Case c;
   for (const View& view : test::small_room().test)

@@ -41,9 +41,21 @@ const Layout kLayouts[] = {
      "rgb",
      "test/ours_30000/renders/00001.png",
      Matching::kOrder},
-    {{"RENDER/frame0000_camera0000.png", "RENDER/frame0000_camera0008.png"},
+    {{"RENDER/frame0000_camera0000.png",
+      "RENDER/frame0000_camera0000_error.png",
+      "RENDER/frame0000_camera0000_gt.png",
+      "RENDER/frame0000_camera0008.png",
+      "RENDER/frame0000_camera0008_error.png",
+      "RENDER/frame0000_camera0008_gt.png"},
      "rgb",
      "RENDER/frame0000_camera0008.png",
+     Matching::kOrder},
+    {{"RENDER/frame0000_camera0000.png",
+      "RENDER/frame0000_camera0008.png",
+      "geo_metric/normals_pred/0000.npy",
+      "geo_metric/normals_pred/0001.npy"},
+     "normal",
+     "geo_metric/normals_pred/0001.npy",
      Matching::kOrder},
     {{"color/0000.png", "color/0008.png", "gt-color/0000.png"},
      "rgb",
@@ -64,9 +76,9 @@ const Layout kLayouts[] = {
      "rgb",
      "rgb/0008.png",
      Matching::kName},
-    {{"0000.png", "0008.png", "val_depthZ_0000.npy", "val_depthZ_0001.npy"},
+    {{"0000.png", "0008.png", "0000_depth.npy", "0008_depth.npy"},
      "depth",
-     "val_depthZ_0001.npy",
+     "0008_depth.npy",
      Matching::kOrder},
     {{"test/ours_30000/renders/00000.png",
       "test/ours_30000/renders/00001.png",
@@ -129,6 +141,12 @@ TEST_CASE("A map of one kind is not taken for another") {
        "renders/0008/depth.exr"}
   );
   CHECK(found.matching.size() == 2);
+}
+
+TEST_CASE("The release's files of true depth are no prediction") {
+  const PredictionFiles found =
+      find_in({"0000.png", "0008.png", "val_depthZ_0000.npy", "val_depthZ_0008.npy"});
+  CHECK_FALSE(found.matching.contains("depth"));
 }
 
 TEST_CASE("Files that look like a map and are not read are named") {
