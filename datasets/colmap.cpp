@@ -109,9 +109,7 @@ std::set<std::string> read_names(const fs::path& path) {
 std::string split_views(const fs::path& list, int test_every, std::vector<ViewSource>& views) {
   std::error_code code;
   if (!fs::exists(list, code)) {
-    std::sort(views.begin(), views.end(), [](const ViewSource& a, const ViewSource& b) {
-      return a.name < b.name;
-    });
+    sort_by_bytes(views);
     return split_every(views, test_every);
   }
   const std::string unknown = hold_out(read_names(list), views);

@@ -106,9 +106,10 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
     for (const std::string& problem : camera.problems)
       index.problems.push_back({"camera-field", "camera " + camera.name, problem});
   }
-  sort_naturally(index.views);
   remark_passed_over(folder, index);
+  sort_by_bytes(index.views);  // EasyVolcap splits in this order
   index.split_rule = split_every(index.views, options.test_every);
+  sort_naturally(index.views);
   const fs::path points = folder / "sparse" / "0" / "points3D.ply";
   std::error_code code;
   if (fs::exists(points, code)) index.points = points;

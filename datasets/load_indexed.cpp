@@ -19,6 +19,7 @@
 #include "glint/core/parallel.h"
 #include "glint/core/rng.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
 #include "glint/scene/ply.h"
 
 namespace glint {
@@ -100,12 +101,15 @@ View load_view(const ViewSource& source, const LoadOptions& options) {
   return view;
 }
 
+// A view of both lists trains.
+bool is_scored(const ViewSource& view) { return view.is_test && !view.is_train; }
+
 // All views in order. Of several failures the first view's is reported, whatever thread met it.
 std::vector<View> load_views(const std::vector<ViewSource>& sources, const LoadOptions& options) {
   std::vector<View> views(sources.size());
   std::vector<std::exception_ptr> failures(sources.size());
   parallel_for(sources.size(), 1, [&](std::size_t i) {
-    if (options.test_only && !sources[i].is_test) return;
+    if (options.test_only && !is_scored(sources[i])) return;
     try {
       views[i] = load_view(sources[i], options);
     } catch (...) {
@@ -142,12 +146,34 @@ void check_index(const SceneIndex& index) {
   GLINT_CHECK(has_train, kBadReference, "{}: {}", index.folder.string(), no_train_views(index));
 }
 
+// Views whose picture has an alpha channel; empty: none.
+std::string alpha_note(const SceneIndex& index) {
+  const auto count = std::count_if(index.views.begin(), index.views.end(), [](const auto& view) {
+    return has_alpha(view.image);
+  });
+  if (count == 0) return {};
+  return fmt::format(
+      "{} of {} pictures have an alpha channel, which is dropped: what is transparent has the "
+      "colour that the file has there; published scores of such data are mostly over white",
+      count,
+      index.views.size()
+  );
+}
+
 // What was passed over, and how priors are read.
 void note_data(const SceneIndex& index, const LoadOptions& options, Scene& scene) {
   std::vector<std::string>& notes = scene.data_notes;
+  const auto both = std::count_if(index.views.begin(), index.views.end(), [](const auto& view) {
+    return view.is_train && view.is_test;
+  });
+  if (both > 0)
+    notes.push_back(fmt::format(
+        "{} views are listed as train and as test: they train, and are not scored", both
+    ));
   for (const Finding& remark : index.remarks)
     notes.push_back(fmt::format("{}: {}", remark.where, remark.message));
-  if (std::string note = counted_note(scene); !note.empty()) notes.push_back(std::move(note));
+  for (std::string note : {alpha_note(index), counted_note(scene)})
+    if (!note.empty()) notes.push_back(std::move(note));
   if (!options.with_priors || index.simulated_priors || index.prior_notes.empty()) return;
   notes.insert(notes.end(), index.prior_notes.begin(), index.prior_notes.end());
   const std::vector<std::string> coverage = prior_coverage(scene);
@@ -224,6 +250,12 @@ void sort_naturally(std::vector<ViewSource>& views) {
   });
 }
 
+void sort_by_bytes(std::vector<ViewSource>& views) {
+  std::sort(views.begin(), views.end(), [](const ViewSource& a, const ViewSource& b) {
+    return a.name < b.name;
+  });
+}
+
 std::string hash_of_files(const std::string& camera_text, const std::vector<ViewSource>& views) {
   std::string text = camera_text;
   for (const ViewSource& view : views) {
@@ -287,10 +319,8 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options) {
   scene.simulated_priors = index.simulated_priors;
   std::vector<View> views = load_views(index.views, options);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (index.views[i].is_train && !options.test_only)
-      scene.train.push_back(std::move(views[i]));
-    else if (index.views[i].is_test)
-      scene.test.push_back(std::move(views[i]));
+    if (index.views[i].is_train && !options.test_only) scene.train.push_back(std::move(views[i]));
+    if (is_scored(index.views[i])) scene.test.push_back(std::move(views[i]));
   }
   note_data(index, options, scene);
   if (options.test_only) return scene;  // nobody starts a training from it
@@ -309,7 +339,7 @@ Scene outline_indexed(const SceneIndex& index) {
     view.name = source.name;
     view.camera = source.camera;
     if (source.is_train) scene.train.push_back(view);
-    if (source.is_test) scene.test.push_back(view);
+    if (is_scored(source)) scene.test.push_back(view);
   }
   add_points_and_extent(index, scene);
   return scene;

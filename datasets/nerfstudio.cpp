@@ -22,24 +22,43 @@ std::set<std::string> read_list(const Json& json, const char* key, const std::st
   return paths;
 }
 
+// Names that no frame has stop the loading: a view of the list would silently be in another one.
+void look_for_strangers(
+    const std::set<std::string>& list, const char* key, const std::string& where, SceneIndex& index
+) {
+  std::set<std::string> strangers = list;
+  for (const ViewSource& view : index.views) strangers.erase(view.name);
+  if (!strangers.empty())
+    index.problems.push_back(
+        {"split-list",
+         where,
+         fmt::format(
+             "{}: {} of {} names are no frame's file_path, such as '{}'",
+             key,
+             strangers.size(),
+             list.size(),
+             *strangers.begin()
+         )}
+    );
+}
+
 // Without lists every test_every-th view is a test view; without test_filenames, val_filenames
 // serve. Returns the rule in words.
 std::string split_views(
-    const Json& json,
-    const std::string& where,
-    const LoadOptions& options,
-    std::vector<ViewSource>& views
+    const Json& json, const std::string& where, const LoadOptions& options, SceneIndex& index
 ) {
   const std::set<std::string> train = read_list(json, "train_filenames", where);
   std::set<std::string> test = read_list(json, "test_filenames", where);
-  if (test.empty()) test = read_list(json, "val_filenames", where);
-  if (train.empty() && test.empty()) return split_every(views, options.test_every);
-  for (ViewSource& view : views) {
+  const char* key = test.empty() ? "val_filenames" : "test_filenames";
+  if (test.empty()) test = read_list(json, key, where);
+  if (train.empty() && test.empty()) return split_every(index.views, options.test_every);
+  look_for_strangers(train, "train_filenames", where, index);
+  look_for_strangers(test, key, where, index);
+  for (ViewSource& view : index.views) {
     view.is_test = test.contains(view.name);
     view.is_train = train.empty() ? !view.is_test : train.contains(view.name);
   }
-  return json.contains("test_filenames") ? "test_filenames of transforms.json"
-                                         : "val_filenames of transforms.json";
+  return fmt::format("{} of transforms.json", test.empty() ? "train_filenames" : key);
 }
 
 LoaderMatch match(const fs::path& folder) {
@@ -60,7 +79,7 @@ SceneIndex index_nerfstudio(const fs::path& folder, const LoadOptions& options) 
   index.dataset = "nerfstudio";
   read_frames(json, file, index);
   sort_naturally(index.views);
-  index.split_rule = split_views(json, file.string(), options, index.views);
+  index.split_rule = split_views(json, file.string(), options, index);
   shorten_names(index.views);
   if (json.contains("ply_file_path") && json["ply_file_path"].is_string())
     index.points = folder / json["ply_file_path"].get<std::string>();

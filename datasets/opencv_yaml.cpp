@@ -78,7 +78,8 @@ struct CameraReader {
   int extent(const std::string& prefix) const {
     const json& node = file[prefix + camera.name];
     if (node.is_null()) return 0;
-    const double value = node.is_number() ? node.get<double>() : 0;
+    const double value = node.is_number() ? node.get<double>() : kMaxSide + 1.0;
+    if (value == 0 || value == -1) return 0;  // EasyVolcap's words for not known
     if (value >= 1 && value <= kMaxSide) return static_cast<int>(value);
     complain(prefix + camera.name, "not a number of pixels");
     return 0;
@@ -121,11 +122,23 @@ void read_intrinsics(const CameraReader& reader) {
     reader.camera.distortion = distortion;
 }
 
+// EasyVolcap takes R where a file has R and Rot.
+void compare_rotations(const CameraReader& reader, const std::vector<double>& matrix) {
+  constexpr double kSame = 1e-3;
+  const std::vector<double> vector = reader.matrix("R_");
+  if (vector.size() != 3 || matrix.empty()) return;
+  const Mat3d a = rotation_from_vector({vector[0], vector[1], vector[2]}), b = to_matrix(matrix);
+  for (int i = 0; i < 3; ++i)
+    if (!(length(a.rows[i] - b.rows[i]) < kSame))
+      return reader.complain("Rot_" + reader.camera.name, "is another rotation than R_");
+}
+
 void read_pose(const CameraReader& reader) {
   Camera& camera = reader.camera.camera;
   if (!reader.file["Rot_" + reader.camera.name].is_null()) {
     const std::vector<double> rotation = reader.require("Rot_", 9);
     if (!rotation.empty()) camera.rotation_cam_from_world = to_matrix(rotation);
+    compare_rotations(reader, rotation);
   } else {
     const std::vector<double> rotation = reader.require("R_", 3);
     if (!rotation.empty())

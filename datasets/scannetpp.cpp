@@ -3,8 +3,9 @@
 //   dslr/nerfstudio/transforms_undistorted.json   intrinsics, `frames`, `test_frames`; file_path is
 //                                                 the picture's bare name
 //   dslr/resized_undistorted_images/ (of the release) or dslr/undistorted_images/ (of the toolkit)
-//   dslr/resized_undistorted_masks/, ...          masks beside those, of pixels that count (white):
-//                                                 faces and the like are made unrecognisable
+//   dslr/resized_undistorted_masks/ (of the release) or dslr/undistorted_anon_masks/ (of the
+//                                                 toolkit): pixels that count (white); faces and
+//                                                 the like are made unrecognisable
 //   dslr/colmap/{images,points3D}.txt             poses and points in the frame of the laser scan
 // The toolkit lists test frames among `frames`, too: what `test_frames` has is no training view.
 // Poses of the JSON have other world axes than the points, so COLMAP's are taken where they are
@@ -65,10 +66,12 @@ std::set<std::string> test_names(const Json& json) {
 
 // Beside the pictures, "../NAME/"; empty: there is none.
 std::string mask_folder(const fs::path& pictures) {
-  std::error_code code;
-  std::string name = pictures.filename().string();
-  name.replace(name.find("images"), 6, "masks");
-  return fs::is_directory(pictures.parent_path() / name, code) ? "../" + name + "/" : "";
+  for (const char* masks : {"masks", "anon_masks"}) {
+    std::string name = pictures.filename().string();
+    name.replace(name.find("images"), 6, masks);
+    if (is_folder(pictures.parent_path() / name)) return "../" + name + "/";
+  }
+  return {};
 }
 
 // mask_path, a bare name, from the file's folder on; without masks there is none.

@@ -84,6 +84,7 @@ std::string split_every(std::vector<ViewSource>& views, int test_every);
 std::string hold_out(std::set<std::string> names, std::vector<ViewSource>& views);
 
 void sort_naturally(std::vector<ViewSource>& views);
+void sort_by_bytes(std::vector<ViewSource>& views);  // of the names: 10 before 2
 // Names that are paths of pictures become the stem, or the whole path with '_' where stems repeat.
 void shorten_names(std::vector<ViewSource>& views);
 

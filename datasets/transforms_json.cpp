@@ -109,7 +109,23 @@ std::vector<double> distortion_list(const FrameReader& reader) {
   return distortion;
 }
 
+// instant-ngp's words for other lenses than OpenCV's.
+void refuse_other_lenses(const FrameReader& reader) {
+  for (const char* key : {"is_fisheye", "is_latlong", "ftheta_p0", "ftheta_p1"}) {
+    const Json* value = reader.find(key);
+    GLINT_CHECK(
+        value == nullptr || *value == false || *value == 0,
+        kBadReference,
+        "{}: {} is {}; expected OPENCV or PINHOLE: undistort the images first",
+        reader.where,
+        key,
+        value == nullptr ? "" : value->dump()
+    );
+  }
+}
+
 std::vector<double> read_distortion(const FrameReader& reader) {
+  refuse_other_lenses(reader);
   const Json* model = reader.find("camera_model");
   const std::string name =
       model != nullptr && model->is_string() ? model->get<std::string>() : "OPENCV";
@@ -184,7 +200,7 @@ ViewSource make_view(const FrameReader& reader, const fs::path& folder) {
   read_pose(reader, view.camera);
   view.distortion = read_distortion(reader);
   if (reader.frame.contains("mask_path"))
-    view.counted = (folder / reader.text("mask_path")).lexically_normal();
+    view.counted = picture_or_copy((folder / reader.text("mask_path")).lexically_normal());
   return view;
 }
 

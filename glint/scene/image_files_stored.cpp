@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t kBeginning = 10 + 65535;  // bytes: the longest header of NPY's format 1
 
-std::string beginning_of(const fs::path& path) {
-  std::string bytes(kBeginning, '\0');
+std::string beginning_of(const fs::path& path, std::size_t count = kBeginning) {
+  std::string bytes(count, '\0');
   std::ifstream in(path, std::ios::binary);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));
@@ -33,6 +33,14 @@ bool stores_integers(const fs::path& path) {
     return is_integer_type(parse_npy_header(file, path.string()).type);
   if (file.starts_with("II") || file.starts_with("MM")) return tiff_stores_integers(path);
   return file.starts_with("\x89PNG") || file.starts_with("\xff\xd8");  // or JPEG; else EXR
+}
+
+bool has_alpha(const fs::path& path) {
+  constexpr std::size_t kColorType =
+      25;  // after the signature, IHDR's length and name, sizes, depth
+  const std::string file = beginning_of(path, kColorType + 1);
+  const bool is_png = file.starts_with("\x89PNG") && file.size() > kColorType;
+  return is_png && (file[kColorType] == 4 || file[kColorType] == 6);
 }
 
 }  // namespace glint

@@ -13,6 +13,10 @@ namespace glint {
 // kBadReference (a damaged header of NPY or TIFF), kEnvironment (TIFF without library glint_tiff).
 bool stores_integers(const fs::path& path);
 
+// Does the header of a PNG name an alpha channel, which read_image() drops? Of any other file:
+// false.
+bool has_alpha(const fs::path& path);
+
 // Of a TIFF (library glint_tiff).
 inline constinit Service<bool(const fs::path&)> tiff_stores_integers{
     "reading TIFF", "convert the file to EXR or NPY, or build with libtiff-dev installed"};

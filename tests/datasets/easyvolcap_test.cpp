@@ -211,6 +211,24 @@ TEST_CASE("cut-off camera files are errors that name the file") {
   }
 }
 
+TEST_CASE("a size of -1 is one that the file does not know, as EasyVolcap writes it") {
+  const RoomFolder folder;
+  folder.replace("intri.yml", "H_0003: 36", "H_0003: -1");
+  folder.replace("intri.yml", "W_0003: 48", "W_0003: -1");
+  CHECK(load_scene(folder.path(), {}).train[2].camera.size() == kSize);
+}
+
+TEST_CASE("every 8th view is a test view in the order of bytes, as EasyVolcap counts") {
+  TempFolder folder;
+  std::vector<View> views = box_room_views(12, kSize);
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].name = fmt::format("{}", i);
+  write_easyvolcap(folder.path(), views);
+  const Scene scene = load_scene(folder.path(), {});
+  REQUIRE(scene.test.size() == 2);  // of 0, 1, 10, 11, 2, ..., 9 the first and the ninth
+  CHECK(scene.test[0].name == "0");
+  CHECK(scene.test[1].name == "6");
+}
+
 TEST_CASE("bad fields of a camera are named") {
   const RoomFolder good;
   const auto message = [](const char* file, const std::string& from, const std::string& to) {
@@ -228,6 +246,15 @@ TEST_CASE("bad fields of a camera are named") {
   );
   CHECK_THAT(
       message("intri.yml", "W_0004: 48", "W_0004: 96"), Contains("96 x 36") && Contains("48 x 36")
+  );
+  CHECK_THAT(
+      message(
+          "extri.yml",
+          "T_0004: !!",
+          "R_0004: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n   data: [ 1., 2., 3. "
+          "]\nT_0004: !!"
+      ),
+      Contains("Rot_0004: is another rotation than R_")
   );
   CHECK_THAT(
       message(

@@ -6,6 +6,7 @@
 #include "datasets/undistort.h"
 #include "glint/core/config.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
 #include "glint/scene/ply.h"
 #include "tests/support/box_room.h"
 #include "tests/support/temp_folder.h"
@@ -113,6 +114,25 @@ TEST_CASE("file names may lack their extension, and equal stems keep their folde
   CHECK(scene.train.back().name == "more_0001");
 }
 
+TEST_CASE("lenses of instant-ngp that are not OpenCV's are refused by name") {
+  RoomFolder folder;
+  folder.json["is_fisheye"] = false;
+  CHECK(folder.load().train.size() == 8);
+  folder.json["is_fisheye"] = true;
+  CHECK_THAT(folder.load_error(), Contains("is_fisheye is true") && Contains("undistort"));
+}
+
+TEST_CASE("pictures with an alpha channel are told of") {
+  RoomFolder folder;
+  std::string file = read_file(folder / "images/0003.png");
+  CHECK(folder.load().data_notes.empty());
+  file[25] = 6;  // RGBA, says the header; the note needs no more
+  write_file(folder / "images/0003.png", file);
+  CHECK(has_alpha(folder / "images/0003.png"));
+  CHECK_FALSE(has_alpha(folder / "images/0004.png"));
+  CHECK_FALSE(has_alpha(folder / "transforms.json"));
+}
+
 TEST_CASE("split lists rule where there are any") {
   RoomFolder folder;
   folder.json["train_filenames"] = {"images/0001.png", "images/0002.png"};
@@ -125,6 +145,19 @@ TEST_CASE("split lists rule where there are any") {
   scene = folder.load();
   REQUIRE(scene.test.size() == 1);
   CHECK(scene.test[0].name == "0004");
+  folder.json["train_filenames"] = {"images/0001.png", "images/0004.png"};
+  scene = folder.load();
+  CHECK(scene.train.size() == 2);
+  CHECK(scene.test.empty());  // what trains is not scored
+  REQUIRE(scene.data_notes.size() == 1);
+  CHECK_THAT(scene.data_notes[0], Contains("1 views are listed as train and as test"));
+  LoadOptions test_only;
+  test_only.test_only = true;
+  CHECK(folder.load(test_only).test.empty());
+  folder.json["train_filenames"] = {"images/0001.png", "0002.png"};
+  CHECK_THAT(
+      folder.load_error(), Contains("train_filenames: 1 of 2 names") && Contains("'0002.png'")
+  );
   folder.json["train_filenames"] = "images/0001.png";
   CHECK_THAT(folder.load_error(), Contains("train_filenames: expected a list"));
 }

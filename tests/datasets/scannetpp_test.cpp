@@ -128,7 +128,7 @@ TEST_CASE("masks beside the pictures say which pixels count; without their folde
   Image mask(48, 36, 1, 1.0f);
   mask.at(3, 4) = 0;
   for (const View& view : folder.views)
-    write_png(folder / ("dslr/undistorted_masks/" + view.name + ".png"), mask);
+    write_png(folder / ("dslr/undistorted_anon_masks/" + view.name + ".png"), mask);
   const Scene scene = load_scene(folder.path(), {});
   CHECK(scene.train[0].counted.at(3, 4) == 0);
   CHECK(scene.test[1].counted.at(3, 4) == 0);
