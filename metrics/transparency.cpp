@@ -42,6 +42,9 @@ std::optional<double> transparency_iou(
     ImageView transparency, MaskView glass, MaskView mask, const TransparencyProtocol& protocol
 ) {
   check_transparency(transparency, glass, mask);
+  const Sum true_glass =
+      sum_pixels(glass.size(), mask, [&](int x, int y) { return glass.at(x, y) != 0 ? 1.0 : 0.0; });
+  if (!(true_glass.mean().value_or(0) > 0)) return std::nullopt;
   // The mean over the union of "in both".
   const Sum sum = sum_rows<Sum>(glass.height, [&](int y) {
     Sum row;

@@ -19,7 +19,8 @@ struct TransparencyProtocol {
   }
 };
 
-// Intersection over union of called and true glass; empty when the view has neither. Errors:
+// Intersection over union of called and true glass; empty when no glass is true: what
+// is called glass there, transparency_mae() counts. Errors:
 // kBadPrediction (size, channels, value not finite), kBadReference (mask size).
 std::optional<double> transparency_iou(
     ImageView transparency,

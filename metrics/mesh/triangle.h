@@ -24,22 +24,23 @@ inline Vec3d area_vector(const Corners& corners) {
   return cross(corners[1] - corners[0], corners[2] - corners[0]);
 }
 
-// Of a point to a segment that is not a point.
+// Of a point to a segment, which may be a point.
 inline double squared_distance(Vec3d point, Vec3d from, Vec3d to) {
   const Vec3d edge = to - from;
-  const double t = std::clamp(dot(point - from, edge) / dot(edge, edge), 0.0, 1.0);
+  const double length = length2(edge);
+  const double t = length > 0 ? std::clamp(dot(point - from, edge) / length, 0.0, 1.0) : 0.0;
   return length2(point - from - t * edge);
 }
 
-// Of a point to a triangle with an area. With n = ab x ac, the foot of the perpendicular is
-// a + s ab + t ac, s = (ap x ac) . n / n.n, t = (ab x ap) . n / n.n. Inside (s, t >= 0, s + t <= 1)
-// the plane is nearest, outside an edge.
+// Of a point to a triangle; of one without an area, to its edges. With n = ab x ac, the foot of the
+// perpendicular is a + s ab + t ac, s = (ap x ac) . n / n.n, t = (ab x ap) . n / n.n. Inside (s, t
+// >= 0, s + t <= 1) the plane is nearest, outside an edge.
 inline double squared_distance(Vec3d point, const Corners& corners) {
   const Vec3d ab = corners[1] - corners[0], ac = corners[2] - corners[0];
   const Vec3d ap = point - corners[0], n = cross(ab, ac);
   const double nn = length2(n);
   const double s = dot(cross(ap, ac), n), t = dot(cross(ab, ap), n);
-  if (s >= 0 && t >= 0 && s + t <= nn) {
+  if (nn > 0 && s >= 0 && t >= 0 && s + t <= nn) {
     const double height = dot(ap, n);
     return height * height / nn;
   }

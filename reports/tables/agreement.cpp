@@ -21,52 +21,52 @@ constexpr std::size_t kResamples = 2000, kSampledOrders = 20'000;
 constexpr int kEnumerated = 8;  // 8! = 40,320 orders
 constexpr double kLevel = 0.95;
 
-std::vector<ValueKey> common_keys(std::span<const ComparedMethod> methods) {
-  std::vector<ValueKey> keys;
-  for (const auto& [key, value] : methods.front().values)
-    if (std::all_of(methods.begin(), methods.end(), [&key = key](const ComparedMethod& method) {
+// Of the scenes and seeds that all methods have, by scene; keys are sorted by it.
+std::vector<std::vector<ValueKey>> common_keys(std::span<const ComparedMethod> methods) {
+  std::vector<std::vector<ValueKey>> keys;
+  for (const auto& [key, value] : methods.front().values) {
+    const bool common =
+        std::all_of(methods.begin(), methods.end(), [&key = key](const ComparedMethod& method) {
           return method.values.contains(key);
-        }))
-      keys.push_back(key);
+        });
+    if (!common) continue;
+    if (keys.empty() || keys.back().front().first != key.first) keys.emplace_back();
+    keys.back().push_back(key);
+  }
   return keys;
 }
 
-// [keys][methods]: looking keys up in each of thousands of resamples would take seconds.
-std::vector<double> value_matrix(
-    std::span<const ComparedMethod> methods, const std::vector<ValueKey>& keys
+// [scene][seed][method]: looking keys up in each of thousands of resamples would take seconds.
+using ValuesOfScenes = std::vector<std::vector<std::vector<double>>>;
+ValuesOfScenes values_of(
+    std::span<const ComparedMethod> methods, const std::vector<std::vector<ValueKey>>& keys
 ) {
-  std::vector<double> matrix;
-  matrix.reserve(keys.size() * methods.size());
-  for (const ValueKey& key : keys)
-    for (const ComparedMethod& method : methods) matrix.push_back(method.values.at(key));
-  return matrix;
-}
-
-// A resample counts each of the matrix' rows as often as it was drawn.
-std::vector<double> resampled_means(
-    const std::vector<double>& matrix, std::size_t num_methods, Rng& rng
-) {
-  std::vector<double> sums(num_methods);
-  const std::size_t num_keys = matrix.size() / num_methods;
-  for (std::size_t draw = 0; draw < num_keys; ++draw) {
-    const double* values = &matrix[num_methods * rng.below(static_cast<std::uint32_t>(num_keys))];
-    for (std::size_t m = 0; m < num_methods; ++m) sums[m] += values[m];
-  }
-  return sums;
+  ValuesOfScenes values(keys.size());
+  for (std::size_t scene = 0; scene < keys.size(); ++scene)
+    for (const ValueKey& key : keys[scene]) {
+      std::vector<double>& row = values[scene].emplace_back();
+      for (const ComparedMethod& method : methods) row.push_back(method.values.at(key));
+    }
+  return values;
 }
 
 std::optional<Interval> bootstrapped_tau(
     std::span<const ComparedMethod> methods, const std::vector<double>& published
 ) {
-  const std::vector<ValueKey> keys = common_keys(methods);
-  if (keys.size() < kMinBootstrapPairs) return std::nullopt;
-  const std::vector<double> matrix = value_matrix(methods, keys);
+  const ValuesOfScenes values = values_of(methods, common_keys(methods));
+  std::vector<std::size_t> counts;
+  for (const auto& of_scene : values) counts.push_back(of_scene.size());
+  if (std::accumulate(counts.begin(), counts.end(), std::size_t{0}) < kMinBootstrapPairs)
+    return std::nullopt;
   Rng rng(kOrderSeed);
   std::vector<double> taus;
-  for (std::size_t i = 0; i < kResamples; ++i)
-    if (const double tau = kendall_tau(resampled_means(matrix, methods.size(), rng), published);
-        std::isfinite(tau))
-      taus.push_back(tau);
+  for (std::size_t i = 0; i < kResamples; ++i) {
+    std::vector<double> means(methods.size());
+    draw_resample(counts, rng, [&](std::size_t scene, std::size_t seed, double weight) {
+      for (std::size_t m = 0; m < means.size(); ++m) means[m] += weight * values[scene][seed][m];
+    });
+    if (const double tau = kendall_tau(means, published); std::isfinite(tau)) taus.push_back(tau);
+  }
   if (taus.empty()) return std::nullopt;
   std::sort(taus.begin(), taus.end());
   const std::size_t tail = taus.size() / 40;  // 2.5 % to either side

@@ -3,10 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <vector>
-
-#include "glint/core/rng.h"
+#include <numeric>
 
 namespace glint {
 
@@ -14,13 +11,6 @@ namespace {
 
 constexpr std::uint64_t kSeed = 1979;
 constexpr std::size_t kTail = kBootstrapResamples / 40;  // 2.5 % to either side
-
-double resampled_mean(std::span<const double> values, Rng& rng) {
-  double sum = 0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    sum += values[rng.below(static_cast<std::uint32_t>(values.size()))];
-  return sum / static_cast<double>(values.size());
-}
 
 }  // namespace
 
@@ -40,11 +30,17 @@ double spread_of(std::span<const double> values) {
   return std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
-std::optional<Interval> bootstrap_interval(std::span<const double> values) {
-  if (values.size() < kMinBootstrapPairs) return std::nullopt;
+std::optional<Interval> bootstrap_interval(std::span<const std::vector<double>> values) {
+  std::vector<std::size_t> counts;
+  for (const std::vector<double>& of_scene : values) counts.push_back(of_scene.size());
+  if (std::accumulate(counts.begin(), counts.end(), std::size_t{0}) < kMinBootstrapPairs)
+    return std::nullopt;
   Rng rng(kSeed);
   std::vector<double> means(kBootstrapResamples);
-  for (double& mean : means) mean = resampled_mean(values, rng);
+  for (double& mean : means)
+    draw_resample(counts, rng, [&](std::size_t scene, std::size_t seed, double weight) {
+      mean += weight * values[scene][seed];
+    });
   std::sort(means.begin(), means.end());
   return Interval{means[kTail], means[kBootstrapResamples - 1 - kTail]};
 }

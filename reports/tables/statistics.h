@@ -3,8 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
+
+#include "glint/core/rng.h"
 
 namespace glint {
 
@@ -21,9 +25,26 @@ struct Interval {
 
 inline constexpr std::size_t kMinBootstrapPairs = 3, kBootstrapResamples = 10'000;
 
+// One resample of results that belong to scenes: as many scenes as there are, drawn with
+// replacement, and of each drawn one as many of its seeds. Seeds of one scene are more alike than
+// scenes, so drawing all pairs alike would make intervals too narrow. f(scene, seed, weight) for
+// every draw; the weights sum to 1.
+template <class F>
+void draw_resample(std::span<const std::size_t> seeds_of_scene, Rng& rng, F&& f) {
+  const auto below = [&](std::size_t n) {
+    return n == 1 ? std::size_t{0} : std::size_t{rng.below(static_cast<std::uint32_t>(n))};
+  };
+  for (std::size_t i = 0; i < seeds_of_scene.size(); ++i) {
+    const std::size_t scene = below(seeds_of_scene.size()), seeds = seeds_of_scene[scene];
+    const double weight = 1 / static_cast<double>(seeds_of_scene.size() * seeds);
+    for (std::size_t k = 0; k < seeds; ++k) f(scene, below(seeds), weight);
+  }
+}
+
 // The percentile bootstrap interval of a mean, 95 % [Efron79]: of differences between two methods
 // on the same scenes and seeds it is the paired interval. The seed is fixed, so the same values
-// have the same interval. Nothing: fewer than kMinBootstrapPairs values, which say nothing.
-std::optional<Interval> bootstrap_interval(std::span<const double> values);
+// have the same interval. values: of each scene those of its seeds. Nothing: fewer than
+// kMinBootstrapPairs values, which say nothing. Few scenes make it too narrow (docs/REPORT.md).
+std::optional<Interval> bootstrap_interval(std::span<const std::vector<double>> values);
 
 }  // namespace glint

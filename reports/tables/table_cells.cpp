@@ -83,25 +83,31 @@ MeasuredRecords records_with(
   return found.records.empty() ? all : found;
 }
 
-// Means over scenes of each seed, then over seeds.
+// Means over scenes of each seed, then over seeds: of those that have the most scenes, since a seed
+// of a single hard one would weigh as much as a seed of all.
 void fill_means(
     TableCell& cell, const MeasuredRecords& measured, double scale, const std::string& metric
 ) {
-  std::map<std::uint64_t, std::vector<double>> scenes_of_seed;
+  std::map<std::uint64_t, std::map<std::string, double>> scenes_of_seed;
+  std::size_t most = 0;
   for (const Record* record : measured.records) {
-    const double value = record->metrics.at(metric) * scale;
-    scenes_of_seed[record->cell.seed].push_back(value);
-    if (!measured.apart) cell.values[{record->cell.scene, record->cell.seed}] = value;
+    auto& scenes = scenes_of_seed[record->cell.seed];
+    scenes[sized_scene(*record).text()] = record->metrics.at(metric) * scale;
+    most = std::max(most, scenes.size());
   }
+  std::erase_if(scenes_of_seed, [&](const auto& seed) { return seed.second.size() < most; });
   std::vector<double> seed_means;
-  std::size_t fewest = measured.records.size();
-  for (const auto& [seed, values] : scenes_of_seed) {
+  for (const auto& [seed, scenes] : scenes_of_seed) {
+    std::vector<double> values;
+    for (const auto& [scene, value] : scenes) {
+      values.push_back(value);
+      if (!measured.apart) cell.values[{scene, seed}] = value;
+    }
     seed_means.push_back(mean_of(values));
-    fewest = std::min(fewest, values.size());
   }
   cell.value = mean_of(seed_means);
   cell.spread = spread_of(seed_means);
-  cell.num_scenes = static_cast<int>(fewest);
+  cell.num_scenes = static_cast<int>(most);
   cell.num_seeds = static_cast<int>(seed_means.size());
 }
 

@@ -170,11 +170,20 @@ std::string table_markdown(const Table& table) {
   return text;
 }
 
+// Ids of the columns whose value cannot be compared with the others'.
+std::vector<std::string> partial_columns(const TableRow& row, const Table& table) {
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < row.cells.size(); ++i)
+    if (row.cells[i].status == CellStatus::kPartial) ids.push_back(table.columns[i].id);
+  return ids;
+}
+
 std::string table_csv(const Table& table) {
   const Table differences = difference_table(table);
   std::vector<std::string> header{"method"};
   for (const Table* part : {&table, &differences})
     for (const TableColumn& column : part->columns) header.push_back(csv_field(column.id));
+  header.emplace_back("not_ranked");
   std::string text = join(header, ",") + "\n";
   for (const TableRow& row : table.rows) {
     std::vector<std::string> cells{csv_field(row.method)};
@@ -185,6 +194,7 @@ std::string table_csv(const Table& table) {
       cells.push_back(
           difference ? csv_value(difference->cells[i], differences.columns[i]) : "not applicable"
       );
+    cells.push_back(csv_field(join(partial_columns(row, table), "; ")));
     text += join(cells, ",") + "\n";
   }
   return text;

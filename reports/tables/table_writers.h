@@ -22,7 +22,8 @@ std::string table_markdown(const Table& table);  // best in bold, second in ital
 // A tabular to \input, best in bold, second underlined: needs booktabs and xcolor with its option
 // `table`.
 std::string table_latex(const Table& table);
-// Method id first, then column ids; unrounded values, or the status word.
+// Method id first, then column ids; unrounded values, or the status word. Last the ids of columns
+// whose value has an asterisk in the other formats.
 std::string table_csv(const Table& table);
 Json table_json(const Table& table);
 std::string table_html(const Table& table);  // a page of its own, every text escaped

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <set>
 
 #include "reports/records/manifest.h"
@@ -101,6 +103,24 @@ std::vector<TableRowDefinition> rows_of(
   return rows;
 }
 
+// Other methods have no say in which scenes are common.
+std::vector<Record> records_of(
+    const std::vector<TableRowDefinition>& rows, const std::vector<Record>& records
+) {
+  std::vector<Record> found;
+  std::copy_if(
+      records.begin(),
+      records.end(),
+      std::back_inserter(found),
+      [&](const Record& record) {
+        return std::any_of(rows.begin(), rows.end(), [&](const TableRowDefinition& row) {
+          return row.method == record.cell.method;
+        });
+      }
+  );
+  return found;
+}
+
 // The scenes of each column's means: those common to the methods, where any has the metric.
 std::vector<SizedScenes> scenes_of_columns(
     const std::vector<TableColumn>& columns, const std::vector<Record>& records
@@ -180,12 +200,14 @@ const TableCell* first_of(const Table& table, std::size_t column) {
   return nullptr;
 }
 
-// Of the scenes and seeds that both cells have.
-std::vector<double> paired_differences(const TableCell& a, const TableCell& b) {
-  std::vector<double> differences;
+// Of the scenes and seeds that both cells have, by scene.
+std::vector<std::vector<double>> paired_differences(const TableCell& a, const TableCell& b) {
+  std::map<std::string, std::vector<double>> by_scene;
   for (const auto& [key, value] : a.values)
     if (const auto it = b.values.find(key); it != b.values.end())
-      differences.push_back(value - it->second);
+      by_scene[key.first].push_back(value - it->second);
+  std::vector<std::vector<double>> differences;
+  for (auto& [scene, values] : by_scene) differences.push_back(std::move(values));
   return differences;
 }
 
@@ -331,6 +353,22 @@ void add_scenes_note(
     ));
 }
 
+// Rows that have fewer seeds than others in some column.
+void add_seeds_notes(Table& table) {
+  int most = 0;
+  for (const TableRow& row : table.rows)
+    for (const TableCell& cell : row.cells) most = std::max(most, cell.num_seeds);
+  for (const TableRow& row : table.rows) {
+    int fewest = most;
+    for (const TableCell& cell : row.cells)
+      if (cell.num_seeds > 0) fewest = std::min(fewest, cell.num_seeds);
+    if (fewest < most)
+      table.notes.push_back(fmt::format(
+          "{}: {} of {}.", row.title, fewest, counted(static_cast<std::size_t>(most), "seed")
+      ));
+  }
+}
+
 // Where what a machine lacked is to be had.
 void add_weights_note(Table& table) {
   const auto lacks = [](const TableCell& cell) {
@@ -350,6 +388,7 @@ void add_notes(
     Table& table, const TableDefinition& definition, const std::vector<Record>& records
 ) {
   add_scenes_note(table, definition, records);
+  add_seeds_notes(table);
   add_failures(table, records);
   add_method_notes(table, records);
   add_weights_note(table);
@@ -358,11 +397,13 @@ void add_notes(
 
 }  // namespace
 
-Table build_table(const TableDefinition& definition, const std::vector<Record>& records) {
+Table build_table(const TableDefinition& definition, const std::vector<Record>& all_records) {
   Table table{definition.id, definition.title, definition.caption, {}, {}, {}, {}};
+  const std::vector<TableRowDefinition> rows = rows_of(definition, all_records);
+  const std::vector<Record> records = records_of(rows, all_records);
   table.columns = columns_of(definition, records);
   const std::vector<SizedScenes> scenes = scenes_of_columns(table.columns, records);
-  for (const TableRowDefinition& row : rows_of(definition, records))
+  for (const TableRowDefinition& row : rows)
     table.rows.push_back(build_row(definition, row, table, scenes, records));
   std::stable_partition(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
     return !is_apart(row, table);

@@ -40,9 +40,9 @@ TEST_CASE("a constant map has the mean absolute error of its distance to both cl
   CHECK(*transparency_mae(Image(8, 4, 1, 1.5f), MaskImage(8, 4, 1, 1)) == 0);  // clamped
 }
 
-TEST_CASE("a view with neither true nor called glass has no IoU") {
+TEST_CASE("a view without true glass has no IoU, whatever is called glass there") {
   CHECK_FALSE(transparency_iou(Image(4, 4, 1, 0.1f), MaskImage(4, 4, 1)));
-  CHECK(*transparency_iou(Image(4, 4, 1, 0.9f), MaskImage(4, 4, 1)) == 0);
+  CHECK_FALSE(transparency_iou(Image(4, 4, 1, 0.9f), MaskImage(4, 4, 1)));
 }
 
 TEST_CASE("masks choose the pixels of transparency scores") {

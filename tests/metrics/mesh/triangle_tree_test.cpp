@@ -55,6 +55,13 @@ TEST_CASE("distances to triangles equal those of CGAL's AABB tree, near and far"
   }
 }
 
+TEST_CASE("a triangle without an area is its edges, and of one place that place") {
+  const Corners line{{{0, 0, 0}, {4, 0, 0}, {1, 0, 0}}}, place{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
+  CHECK(squared_distance({2, 3, 0}, line) == 9);
+  CHECK(squared_distance({6, 0, 0}, line) == 4);
+  CHECK(squared_distance({1, 1, 3}, place) == 4);
+}
+
 TEST_CASE("a point's nearest place is a corner, an edge or the inside of a triangle") {
   const Corners corners{{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}}};
   const auto distance = [&](Vec3d point) { return std::sqrt(squared_distance(point, corners)); };
