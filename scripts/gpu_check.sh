@@ -64,7 +64,8 @@ skip() { row "$1" "not done: $2" ""; undone=$((undone + 1)); }
 # Always a whole archive: the new one takes the place of the one before.
 pack() {
   cp "$summary" "$log" "$files/"
-  tar -czf "$out/gpu_check.tar.gz.part" -C "$work" gpu_check && mv "$out/gpu_check.tar.gz.part" "$out/gpu_check.tar.gz"
+  tar -czf "$out/gpu_check.tar.gz.part" -C "$work" gpu_check || [ $? = 1 ] || return  # 1: a file grew meanwhile
+  mv "$out/gpu_check.tar.gz.part" "$out/gpu_check.tar.gz"
 }
 
 # check NAME SECONDS COMMAND...: one row of the summary, within SECONDS and this step's share; output to the log
@@ -244,7 +245,8 @@ step_sanitizer() {
   command -v compute-sanitizer >/dev/null || { skip compute-sanitizer "neither here nor in the bundle"; return; }
   local tool
   for tool in memcheck synccheck racecheck initcheck; do
-    check "$tool" 60 compute-sanitizer --require-cuda-init=no --tool $tool --error-exitcode 1 bin/gpu_tests && continue
+    # As long as its share lasts: how slow it makes them is not known.
+    check "$tool" "$seconds" compute-sanitizer --require-cuda-init=no --tool $tool --error-exitcode 1 bin/gpu_tests && continue
     if grep -q "Device not supported" "$log"; then skip compute-sanitizer "it does not support this machine"; return; fi
   done
 }

@@ -28,7 +28,10 @@ MemoryPool& pool() {
   static MemoryPool& pool = *new MemoryPool(
       {[](std::size_t bytes) -> void* {
          void* block = nullptr;
-         if (cudaMalloc(&block, bytes) == cudaSuccess) return block;
+         const cudaError_t status = cudaMalloc(&block, bytes);
+         if (status == cudaSuccess) return block;
+         // Errors of earlier kernels surface here, too: only a full device is the pool's to mend.
+         if (status != cudaErrorMemoryAllocation) check_cuda(status, "allocating memory");
          cudaGetLastError();  // forgotten: the pool knows what to do
          return nullptr;
        },
@@ -41,10 +44,11 @@ MemoryPool& pool() {
 void copy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind, const char* what) {
   check_cuda(cudaMemcpyAsync(to, from, bytes, kind, device_stream()), what);
 }
-// From memory that is not locked to its pages, which CUDA copies away before it returns.
+// `from` may change as soon as it returns, which an asynchronous copy from pages that are not
+// locked does not promise. In order with device_stream(), which waits for the legacy stream.
 void upload(void* to, const void* from, std::size_t bytes) {
   step_graph().end();
-  copy(to, from, bytes, cudaMemcpyHostToDevice, "copying to the device");
+  check_cuda(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "copying to the device");
 }
 void download(void* to, const void* from, std::size_t bytes) {
   step_graph().end();
@@ -109,7 +113,7 @@ void* CudaMemory::allocate(std::size_t bytes) {
   void* block = pool().allocate(bytes);
   if (block != nullptr) return block;
   std::size_t free = 0, total = 0;
-  cudaMemGetInfo(&free, &total);
+  check_cuda(cudaMemGetInfo(&free, &total), "asking for free memory");
   throw_out_of_memory(bytes, free, total);
 }
 void CudaMemory::release(void* block) noexcept { pool().release(block); }

@@ -82,6 +82,7 @@ class DeviceExec {
     sums.resize(count + 1);
     check_cuda(cudaMemsetAsync(sums.data(), 0, sizeof(T), stream_), "clearing memory");
     if (count == 0) return;
+    const TracedKernel traced(typeid(ExclusiveSum), stream_);
     with_scratch([&](void* scratch, std::size_t& bytes) {
       return cub::DeviceScan::InclusiveScan(
           scratch, bytes, counts.data(), sums.data() + 1, add, static_cast<int>(count), stream_

@@ -179,16 +179,16 @@ struct CopyWord {
   std::uint32_t* to;
   GLINT_HD void operator()(std::size_t) const { *to = *from; }
 };
-// Behind the hits that there are, keys that sort last.
+// Behind the hits that there are, keys that sort last, and places that nobody reads.
 struct PadKeys {
   const std::uint32_t* num_hits;
   std::uint32_t last;
-  std::uint32_t* keys;
+  std::uint32_t *keys, *order;
   std::uint32_t* too_many;  // set where hits were dropped
   std::uint32_t capacity;
 
   GLINT_HD void operator()(std::size_t i) const {
-    if (i >= *num_hits) keys[i] = last;
+    if (i >= *num_hits) keys[i] = last, order[i] = 0;
     if (i == 0 && *num_hits > capacity) *too_many = 1;
   }
 };

@@ -173,7 +173,8 @@ class TracePipeline {
     const auto last = static_cast<std::uint32_t>(n);
     exec_.for_each(
         hits.capacity,
-        PadKeys{hits.first + saved_.places, last, hits.keys, overflow_word(), hits.capacity}
+        PadKeys{
+            hits.first + saved_.places, last, hits.keys, hits.order, overflow_word(), hits.capacity}
     );
     exec_.sort_pairs(hits.capacity, static_cast<int>(std::bit_width(n)), keys_, order_);
     runs_.resize(n);
