@@ -60,7 +60,7 @@ std::unique_ptr<GlassRoomScene> build_layout(const LayoutRecipe& recipe, const S
 std::unique_ptr<GlassRoomScene> build_glassroom_scene(const GlassRoomOptions& options);
 
 // Radiance factor that brings the median luminance to `kMiddle`, lowered until at most
-// `kMaxClipped` of the pixels clip.
+// `kMaxClipped` of the pixels of a few small probes clip; of views it may be a little more.
 float fit_exposure(const GlassRoomScene& scene, std::uint64_t seed);
 
 }  // namespace glint

@@ -11,14 +11,15 @@
 //               the threshold that covers `failure_rate` of an infinite pane. In a patch all four
 //               maps describe the surface behind the glass.
 //   normal      n' = normalize(B(n)), then turned by S(0.2) * sigma_normal_deg / sqrt(2) about each
-//               image axis: a root mean square angle of sigma_normal_deg.
+//               image axis: a root mean square angle of sigma_normal_deg where n faces the camera,
+//               of sigma_normal_deg * sqrt((1 + n_z^2) / 2) elsewhere.
 //   depth       z' = a z (1 + c (z / z_max - 1/2)) + b + sigma_depth z S(0.25) on B(z), with
 //               a = exp(N(0, sigma_scale)), b = N(0, sigma_shift) metres, c = U(-bend, bend); then
 //               mapped affinely to [0.05, 0.95] per view, so only its order and shape remain.
 //               Larger is farther; 0 where there is no surface.
 //   albedo      B(albedo) * (1 + sigma_color S(0.15)) + sigma_pixel N per pixel; glass is nearly
-//               black, a value below 0.04.
-//   basecolor   the same on the base colour; glass is bright, 0.8 to 0.95.
+//               black, a value below 0.04 before the noise.
+//   basecolor   the same on the base colour; glass is bright, 0.8 to 0.95 before the noise.
 //   leaks       of the albedo alone, in patches S(0.12): opaque surface is as black as glass
 //               (`dark_leak` of it), glass is as bright as an opaque pane, 0.3 to 0.8
 //               (`bright_leak` of the glass that does not fail).

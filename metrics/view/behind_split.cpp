@@ -8,7 +8,7 @@
 namespace glint::view_metrics {
 namespace {
 
-constexpr float kContentWithin = 1.25f;  // metres of depth behind the pane; GlassRoom's is 1.2 wide
+constexpr float kContentWithin = 1.25f;  // metres of depth behind the pane; docs/METRICS.md
 
 // Glass pixels of which the surface behind lies within that distance, or beyond it.
 MaskImage glass_in_front_of(const ViewPair& pair, bool content) {
