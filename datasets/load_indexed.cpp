@@ -154,7 +154,7 @@ std::string alpha_note(const SceneIndex& index) {
   if (count == 0) return {};
   return fmt::format(
       "{} of {} pictures have an alpha channel, which is dropped: what is transparent has the "
-      "colour that the file has there; published scores of such data are mostly over white",
+      "colour that the file has there",
       count,
       index.views.size()
   );

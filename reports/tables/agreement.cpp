@@ -54,10 +54,8 @@ std::optional<Interval> bootstrapped_tau(
     std::span<const ComparedMethod> methods, const std::vector<double>& published
 ) {
   const ValuesOfScenes values = values_of(methods, common_keys(methods));
-  std::vector<std::size_t> counts;
-  for (const auto& of_scene : values) counts.push_back(of_scene.size());
-  if (std::accumulate(counts.begin(), counts.end(), std::size_t{0}) < kMinBootstrapPairs)
-    return std::nullopt;
+  const std::vector<std::size_t> counts = bootstrap_counts<std::vector<double>>(values);
+  if (counts.empty()) return std::nullopt;
   Rng rng(kOrderSeed);
   std::vector<double> taus;
   for (std::size_t i = 0; i < kResamples; ++i) {
@@ -68,9 +66,7 @@ std::optional<Interval> bootstrapped_tau(
     if (const double tau = kendall_tau(means, published); std::isfinite(tau)) taus.push_back(tau);
   }
   if (taus.empty()) return std::nullopt;
-  std::sort(taus.begin(), taus.end());
-  const std::size_t tail = taus.size() / 40;  // 2.5 % to either side
-  return Interval{taus[tail], taus[taus.size() - 1 - tail]};
+  return middle_95(std::move(taus));
 }
 
 std::vector<double> taus_of_random_orders(int n) {

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace glint {
 
 namespace {
 
 constexpr std::uint64_t kSeed = 1979;
-constexpr std::size_t kTail = kBootstrapResamples / 40;  // 2.5 % to either side
 
 }  // namespace
 
@@ -30,19 +29,22 @@ double spread_of(std::span<const double> values) {
   return std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
+Interval middle_95(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t tail = values.size() / 40;
+  return {values[tail], values[values.size() - 1 - tail]};
+}
+
 std::optional<Interval> bootstrap_interval(std::span<const std::vector<double>> values) {
-  std::vector<std::size_t> counts;
-  for (const std::vector<double>& of_scene : values) counts.push_back(of_scene.size());
-  if (std::accumulate(counts.begin(), counts.end(), std::size_t{0}) < kMinBootstrapPairs)
-    return std::nullopt;
+  const std::vector<std::size_t> counts = bootstrap_counts<double>(values);
+  if (counts.empty()) return std::nullopt;
   Rng rng(kSeed);
   std::vector<double> means(kBootstrapResamples);
   for (double& mean : means)
     draw_resample(counts, rng, [&](std::size_t scene, std::size_t seed, double weight) {
       mean += weight * values[scene][seed];
     });
-  std::sort(means.begin(), means.end());
-  return Interval{means[kTail], means[kBootstrapResamples - 1 - kTail]};
+  return middle_95(std::move(means));
 }
 
 }  // namespace glint

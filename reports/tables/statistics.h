@@ -41,6 +41,21 @@ void draw_resample(std::span<const std::size_t> seeds_of_scene, Rng& rng, F&& f)
   }
 }
 
+// How many values each scene has; empty: fewer than kMinBootstrapPairs in all, which say nothing.
+template <class Values>
+std::vector<std::size_t> bootstrap_counts(std::span<const std::vector<Values>> scenes) {
+  std::vector<std::size_t> counts;
+  std::size_t all = 0;
+  for (const auto& of_scene : scenes) {
+    counts.push_back(of_scene.size());
+    all += of_scene.size();
+  }
+  return all < kMinBootstrapPairs ? std::vector<std::size_t>() : counts;
+}
+
+// What lies between the 2.5 % of the values at either end. values: at least one.
+Interval middle_95(std::vector<double> values);
+
 // The percentile bootstrap interval of a mean, 95 % [Efron79]: of differences between two methods
 // on the same scenes and seeds it is the paired interval. The seed is fixed, so the same values
 // have the same interval. values: of each scene those of its seeds. Nothing: fewer than

@@ -122,15 +122,25 @@ TEST_CASE("lenses of instant-ngp that are not OpenCV's are refused by name") {
   CHECK_THAT(folder.load_error(), Contains("is_fisheye is true") && Contains("undistort"));
 }
 
+// 4 x 3 pixels of one colour, half transparent.
+constexpr unsigned char kRgbaPng[] = {
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
+    0x52, 0x00, 0x00, 0x00, 0x04, 0x00, 0x00, 0x00, 0x03, 0x08, 0x06, 0x00, 0x00, 0x00, 0xb4,
+    0xf4, 0xae, 0xc6, 0x00, 0x00, 0x00, 0x11, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0x68,
+    0x70, 0x50, 0xa8, 0x47, 0xc6, 0x0c, 0x04, 0x05, 0x00, 0xa4, 0xa2, 0x10, 0x75, 0x84, 0x3f,
+    0x55, 0xc8, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
 TEST_CASE("pictures with an alpha channel are told of") {
-  RoomFolder folder;
-  std::string file = read_file(folder / "images/0003.png");
+  const RoomFolder folder;
   CHECK(folder.load().data_notes.empty());
-  file[25] = 6;  // RGBA, says the header; the note needs no more
-  write_file(folder / "images/0003.png", file);
+  write_file(folder / "images/0003.png", std::string(std::begin(kRgbaPng), std::end(kRgbaPng)));
   CHECK(has_alpha(folder / "images/0003.png"));
   CHECK_FALSE(has_alpha(folder / "images/0004.png"));
   CHECK_FALSE(has_alpha(folder / "transforms.json"));
+  const Scene scene = folder.load();
+  CHECK(scene.train[2].rgb.at(1, 1, 0) == 128.0f / 255);  // as the file has it, not less for alpha
+  REQUIRE(scene.data_notes.size() == 1);
+  CHECK_THAT(scene.data_notes[0], Contains("1 of 10 pictures have an alpha channel"));
 }
 
 TEST_CASE("split lists rule where there are any") {
