@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "glint/glint_config.h"
 
+#include <algorithm>
+
 #include "glint/core/error.h"
 #include "glint/train/trainer.h"
 
@@ -36,16 +38,21 @@ GlintConfig GlintConfig::scaled_to(int iterations) const {
   run.densify.scale(scaled);
   run.bootstrap.scale(scaled);
   run.secondary_densify_interval = scaled(secondary_densify_interval, 50);
-  run.secondary_reset_interval = scaled(secondary_reset_interval, 300);
+  // At least 300 steps for each published 3000, as the interface has them.
+  run.secondary_reset_interval = scaled(secondary_reset_interval, secondary_reset_interval / 10);
   if (!with_transmission) run.transmission_losses.lambda_transparency = 0;
   return run;
 }
 
-DensifyConfig GlintConfig::interface_densify() const {
+// s is first reset with the second reset of opacities, as published, and once reflection takes
+// part.
+DensifyConfig GlintConfig::interface_densify(std::size_t training_views) const {
   DensifyConfig config = densify;
+  const int first = densify.for_views(training_views).reset_interval;
   if (reset_channels)
     config.channel_resets = {
-        {kTransparency, initial_transparency}, {kSpecular, initial_specular, reflection_from + 1}};
+        {kTransparency, initial_transparency},
+        {kSpecular, initial_specular, std::max(first, reflection_from) + 1}};
   return config;
 }
 

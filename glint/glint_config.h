@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Settings of GLINT [Na26]. Defaults follow the paper's text; what it leaves open is chosen here,
-// with what the choices did in docs/GLINT_NOTES.md. Iterations are of the published 60,000 and
+// Settings of GLINT [Na26]. Defaults follow the paper's text; what it leaves open is chosen here:
+// docs/GLINT_NOTES.md, "What the paper leaves open". Iterations are of the published 60,000 and
 // scale with the run.
 #pragma once
 
@@ -118,7 +118,7 @@ struct GlintConfig {
   GlintConfig scaled_to(int iterations) const;
   // Of the three sets, in a run's windows; the secondary sets count steps from where they start,
   // if not by secondary_run_clock.
-  DensifyConfig interface_densify() const;
+  DensifyConfig interface_densify(std::size_t training_views) const;
   DensifyConfig transmission_densify() const;
   DensifyConfig reflection_densify(ImageSize size) const;  // of training images
   // Errors (kUsage): a word that is none of the known ones. Numbers: setting_ranges.h.

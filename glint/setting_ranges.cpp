@@ -34,6 +34,8 @@ constexpr SettingRange kRanges[] = {
     {"f0", kShare},
     {"mirror_transmittance", kBelowOne},
     {"mirror_hits", at_least(1)},
+    {"mirror_picture_transmittance", kBelowOne},
+    {"mirror_picture_hits", at_least(1)},
     {"mirror_share_below", at_least(0)},
     {"mirror_share_block", at_least(1)},
     {"mirror_weight_below", at_least(0)},

@@ -53,7 +53,7 @@ struct GeometryLossConfig {
 
 // Depth and normal priors and the smoothness of normals as [Na26 Sec. 3.4, 4.1] uses them, and
 // as prior_control() gives them to others. Weights and starts that the paper does not give:
-// docs/GLINT_NOTES.md.
+// docs/GLINT_NOTES.md, "What the paper leaves open".
 struct PriorLosses {
   static constexpr float kLambdaDepth = 0.1f, kLambdaNormal = 0.1f, kMinCosine = 0.3f;
   static constexpr float kLambdaSmooth = 0.01f;

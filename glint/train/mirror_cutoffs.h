@@ -7,14 +7,15 @@
 
 namespace glint {
 
-// Deviation: mirrored rays stop earlier than rasterised ones (1e-4, 256 hits). A new reflection set
-// is a fog of faint surfels that would take hundreds of hits a ray, and what lies behind 2 % of
-// transmittance changes a pixel by 0.02 k_s, less than a step of 8 bits at the k_s of glass. And in
-// training, 2x2 pixels that mirror little share a ray, and such a ray may end earlier (SharedRays;
-// off, docs/GLINT_NOTES.md says what it costs; as it does of larger blocks).
+// Deviation: in training mirrored rays stop earlier than rasterised ones (1e-4, 256 hits), for a
+// new reflection set is a fog of faint surfels that would take hundreds of hits a ray. The hit that
+// would take a ray below 0.02 is left out with all behind it: at most k_s times the transmittance
+// before it of a pixel's light. Pictures that someone looks at, or that are scored, have rays to
+// the end. And in training, 2x2 pixels that mirror little share a ray, and such a ray may end
+// earlier (SharedRays; off, docs/GLINT_NOTES.md says what it costs; as it does of larger blocks).
 struct MirrorCutoffs {
-  float transmittance = 0.02f;
-  int hits = 64;
+  float transmittance = 0.02f, picture_transmittance = kMinTransmittance;
+  int hits = 64, picture_hits = 256;
   float near = 0;
   float share_below = 0.2f;  // k_s
   int share_block = 2;       // pixels across and down
@@ -22,8 +23,11 @@ struct MirrorCutoffs {
 
   template <class V>
   void visit(V&& v) {
-    v("mirror_transmittance", transmittance, "transmittance at which mirrored rays stop");
-    v("mirror_hits", hits, "most surfels a mirrored ray meets");
+    v("mirror_transmittance", transmittance, "transmittance at which mirrored rays of training stop"
+    );
+    v("mirror_hits", hits, "most surfels that a mirrored ray of training meets");
+    v("mirror_picture_transmittance", picture_transmittance, "the same of pictures to look at");
+    v("mirror_picture_hits", picture_hits, "the same of pictures to look at");
     v("mirror_share_below",
       share_below,
       "k_s below which pixels of a block share a mirrored ray in training; 0: none do");
@@ -36,10 +40,11 @@ struct MirrorCutoffs {
   }
   RaySharing sharing() const { return {.below = share_below, .block = share_block}; }
   RayStops stops() const { return {.weight_below = weight_below, .latest = transmittance}; }
-  TraceSettings settings() const {
+  // Of training, or of a picture for someone.
+  TraceSettings settings(bool training) const {
     TraceSettings settings;
-    settings.min_transmittance = transmittance;
-    settings.max_hits = hits;
+    settings.min_transmittance = training ? transmittance : picture_transmittance;
+    settings.max_hits = training ? hits : picture_hits;
     settings.near = near;
     return settings;
   }

@@ -16,7 +16,7 @@ void MirroredLayer::trace(
   chosen_ = step && (mirror.share_below > 0 || mirror.weight_below > 0);
   const Rays& rays =
       chosen_ ? shared_.choose(buffer, mirror.sharing(), mirror.stops(), *step) : buffer.reflected;
-  const Image& color = set.trace(rays, sh_degree, mirror.settings()).color;
+  const Image& color = set.trace(rays, sh_degree, mirror.settings(step.has_value())).color;
   if (chosen_)
     shared_.spread(color, layer);
   else

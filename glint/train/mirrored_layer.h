@@ -12,8 +12,8 @@ namespace glint {
 
 class MirroredLayer {
  public:
-  // Fills `layer` [H][W][3]. step: of training, in which pixels may share rays; none: each pixel
-  // has its own.
+  // Fills `layer` [H][W][3]. step: of training, in which rays stop early and pixels may share them;
+  // none: a picture for someone.
   void trace(
       const GlassBuffer& buffer,
       TrainableSet& set,

@@ -28,7 +28,11 @@ struct MeshToolOptions {
 };
 
 void add_inputs(CLI::App& app, MeshToolOptions& options) {
-  app.add_option("PREDICTION", options.prediction, "mesh or points (.ply), or run folder: mesh.ply")
+  app.add_option(
+         "PREDICTION",
+         options.prediction,
+         "mesh or points (.ply), or run folder: mesh.ply, by the protocol it was scored with"
+  )
       ->required();
   app.add_option(
          "REFERENCE", options.reference, "mesh or points (.ply), or dataset folder: gt/mesh.ply"
@@ -94,6 +98,32 @@ void check_output(const fs::path& path, const char* option, const char* extensio
 fs::path dataset_of(const MeshToolOptions& options) {
   if (!options.dataset.empty() || !fs::is_directory(options.reference)) return options.dataset;
   return options.reference;
+}
+
+// How a run's meshes were scored, as its metrics.json says; nothing of what is no scored run.
+Json scored_protocol(const fs::path& run) {
+  const fs::path file = run / "metrics.json";
+  std::error_code code;
+  if (!fs::is_regular_file(file, code)) return Json::object();
+  const Json scored = read_json_object(file, ExitCode::kBadPrediction);
+  return scored.value(Json::json_pointer("/meshes/protocol"), Json::object());
+}
+
+// Of a scored run, so that the numbers are those of its tables, as far as options do not say
+// otherwise. Errors (kUsage): fields of metrics.json that are none.
+void take_scored_protocol(const CLI::App& app, MeshToolOptions& options) {
+  Json fields = scored_protocol(options.prediction);
+  if (!fields.is_object() || fields.empty()) return;
+  for (const auto& [option, field] :
+       {std::pair{"--tolerance", "cull_tolerance_m"},
+        {"--max-edge", "cull_max_edge_m"},
+        {"--samples", "num_samples"},
+        {"--seed", "seed"},
+        {"--thresholds", "thresholds_m"},
+        {"--max-distance", "max_distance_m"}})
+    if (app.get_option(option)->count() > 0) fields.erase(field);
+  for (const char* of_options : {"distance", "cull"}) fields.erase(of_options);
+  config_from_json(options.protocol, fields, (options.prediction / "metrics.json").string());
 }
 
 // Sets what follows from several options. Errors: kUsage.
@@ -199,7 +229,10 @@ int run_mesh_tool(const std::vector<std::string>& args, std::ostream& out, std::
   add_inputs(app, options);
   add_protocol(app, options);
   add_outputs(app, options);
-  return run_program(app, args, out, err, [&] { run(options, out); });
+  return run_program(app, args, out, err, [&] {
+    take_scored_protocol(app, options);
+    run(options, out);
+  });
 }
 
 }  // namespace glint

@@ -199,7 +199,7 @@ class CellRun {
     Scores cost = training_cost(spec_);
     cost["fps"] = measure_fps(*method_, scene_, timing);
     cost["num-surfels"] = static_cast<double>(method_->num_surfels());
-    record_.metrics = eval_stage(spec_, scene_, cost, profile_.mesh_protocol());
+    record_.metrics = eval_stage(spec_, scene_, cost, profile_.mesh_protocol(), timing);
     describe_run(record_, spec_, scene_);
   }
 

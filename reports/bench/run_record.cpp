@@ -2,6 +2,7 @@
 #include "reports/bench/run_record.h"
 
 #include "metrics/metric.h"
+#include "reports/bench/mesh_stage.h"
 #include "reports/records/stage_files.h"
 
 namespace glint {
@@ -23,6 +24,22 @@ void add_training(Record& record, const TrainCost& cost) {
   record.data_notes = cost.data_notes;
 }
 
+// What is neither measured nor unmeasured for a reason: views without a truth of the kind, surfaces
+// without a true mesh.
+std::vector<std::string> without_truth(const Record& record, const RunSpec& spec) {
+  std::vector<std::string> ids = not_applicable(record.metrics, record.not_measured);
+  for (const MeshLayer& layer : kMeshLayers) {
+    if (fs::exists(true_mesh(spec.dataset_folder, layer.truth))) continue;
+    for (const Metric& metric : mesh_metric_list()) {
+      const bool behind = metric.id.starts_with(kBehindMesh);
+      if (behind == (std::string_view(layer.prefix) == kBehindMesh) &&
+          !record.metrics.contains(metric.id) && !record.not_measured.contains(metric.id))
+        ids.push_back(metric.id);
+    }
+  }
+  return ids;
+}
+
 }  // namespace
 
 Scores training_cost(const RunSpec& spec) {
@@ -34,7 +51,7 @@ Scores training_cost(const RunSpec& spec) {
 void describe_run(Record& record, const RunSpec& spec, const Scene& scene) {
   const std::optional<TrainCost> cost = trained_cost(spec);
   add_unmeasured(record, spec, cost);
-  record.not_applicable = not_applicable(record.metrics, record.not_measured);
+  record.not_applicable = without_truth(record, spec);
   record.timings.erase("train");  // of a cell whose training was only loaded
   if (cost) add_training(record, *cost);
   if (const auto surfels = record.metrics.find("num-surfels"); surfels != record.metrics.end())

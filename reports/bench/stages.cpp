@@ -21,13 +21,27 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void write_metrics(const RunSpec& spec, const RunScores& scores, const std::vector<View>& views) {
+// What frames a second depend on, beside the machine.
+Json fps_protocol(const TimingOptions& timing) {
+  return {
+      {"frames", timing.frames},
+      {"warmup", timing.warmup},
+      {"clock", "all frames together, each ended by a synchronisation of the device"}};
+}
+
+void write_metrics(
+    const RunSpec& spec,
+    const RunScores& scores,
+    const std::vector<View>& views,
+    const std::optional<TimingOptions>& timing
+) {
   Json json = {{"scene", spec.scene}, {"method", spec.method}, {"seed", spec.options.seed}};
   json["metrics"] = scores.means;
   json["views"] = Json::array();
   for (std::size_t i = 0; i < views.size(); ++i)
     json["views"].push_back({{"name", views[i].name}, {"metrics", scores.views[i]}});
   json["protocol"] = score_protocols();
+  if (timing) json["protocol"]["fps"] = fps_protocol(*timing);
   if (!scores.meshes.empty()) json["meshes"] = scores.meshes;
   write_file(spec.folder / "metrics.json", json.dump(2) + "\n");
 }
@@ -97,14 +111,15 @@ std::map<std::string, double> eval_stage(
     const RunSpec& spec,
     const Scene& scene,
     const std::map<std::string, double>& cost,
-    const MeshProtocol& mesh
+    const MeshProtocol& mesh,
+    const std::optional<TimingOptions>& timing
 ) {
   Progress progress("score", scene.test.size() + 1);  // the meshes last
   RunScores scores =
       score_run(spec, scene, mesh, [&](std::string_view view) { progress.advance(1, view); });
   progress.advance(1, "meshes");
   scores.means.insert(cost.begin(), cost.end());
-  write_metrics(spec, scores, scene.test);
+  write_metrics(spec, scores, scene.test, timing);
   return scores.means;
 }
 

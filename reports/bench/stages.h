@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "metrics/mesh/mesh_protocol.h"
 #include "reports/records/run_folder.h"
@@ -45,13 +46,15 @@ RunScores score_run(
 );
 
 // The same, and writes metrics.json (means, per-view values with names, protocols). `cost` joins
-// the means: "fps", "train-minutes", "peak-memory", "num-surfels". Returns the means by id; regions
-// as "psnr@glass". Errors (kBadPrediction): a render is missing, damaged or of another size.
+// the means: "fps" (`timing`, where it was measured just now), "train-minutes", "peak-memory",
+// "num-surfels". Returns the means by id; regions as "psnr@glass". Errors (kBadPrediction): a
+// render is missing, damaged or of another size.
 std::map<std::string, double> eval_stage(
     const RunSpec& spec,
     const Scene& scene,
     const std::map<std::string, double>& cost,
-    const MeshProtocol& mesh = {}
+    const MeshProtocol& mesh = {},
+    const std::optional<TimingOptions>& timing = {}
 );
 
 }  // namespace glint

@@ -18,6 +18,7 @@ struct ModelFiles {
     std::vector<std::string> channels;  // that it needs beside colour
   };
   std::string method;  // "2dgs": one set; "envgs": interface and reflection; "glint": all three
+  Json config = Json::object();  // of the method: how the official code traces such sets
   std::vector<Set> sets;
 };
 

@@ -384,10 +384,19 @@ void add_weights_note(Table& table) {
     );
 }
 
+// Ours are simulated, whatever is measured on them.
+void add_priors_note(Table& table, const std::vector<Record>& records) {
+  if (std::any_of(records.begin(), records.end(), [](const Record& record) {
+        return record.dataset == "glassroom";
+      }))
+    table.notes.emplace_back("GlassRoom: our own rooms; their priors are simulated.");
+}
+
 void add_notes(
     Table& table, const TableDefinition& definition, const std::vector<Record>& records
 ) {
   add_scenes_note(table, definition, records);
+  add_priors_note(table, records);
   add_seeds_notes(table);
   add_failures(table, records);
   add_method_notes(table, records);

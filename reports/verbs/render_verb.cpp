@@ -226,7 +226,7 @@ void add_render_verb(CommandLine& line) {
       "render",
       "render the test views of a trained run or of a model by another program, or a camera path",
       [&line, arguments] { return run_render(line.common, *arguments); },
-      kWorkOptions | kOutOption | kDataOption | kSeedOption
+      kWorkOptions | kOutOption | kDataOption | kSeedOption | kSetOption
   );
   verb->add_option("--run", arguments->run, "run folder; of --model: else OUT/single/runs/...");
   add_moved_dataset_option(*verb, arguments->dataset);

@@ -107,6 +107,8 @@ SingleRun new_model_run(const CommonOptions& common, const ModelRunOptions& opti
   RunSpec& spec = single.spec;
   spec.method = files.method;
   spec.row = options.row;
+  spec.config = files.config;
+  spec.config.update(method_overrides(Profile{}, files.method, common.set));
   spec.options = {.iterations = 0, .seed = common.seed.value_or(0)};
   open_data(common, options.dataset, {.max_pixels = options.max_pixels}, single);
   spec.train_document["model"] = {

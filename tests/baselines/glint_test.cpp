@@ -156,14 +156,15 @@ TEST_CASE("The opacity loss makes the transmission behind the interface opaque, 
 
 TEST_CASE("The three sets have the density control that the config gives them") {
   constexpr ImageSize kSmall{160, 90}, kPublished{480, 270};
+  constexpr std::size_t kViews = 50;
   GlintConfig config;
   CHECK(config.reflection_densify(kPublished).max_scale == config.densify.max_scale);
   CHECK(config.reflection_densify(kSmall).max_scale == Approx(config.densify.max_scale * 32 / 15));
-  CHECK(config.interface_densify().channel_resets.empty());
+  CHECK(config.interface_densify(kViews).channel_resets.empty());
   CHECK(config.transmission_densify().min_opacity == config.densify.min_opacity);
   CHECK(config.reflection_densify(kSmall).max_surfels == config.densify.max_surfels);
   config_from_json(config, glint_release_overrides(), "test");
-  const DensifyConfig interface = config.interface_densify();
+  const DensifyConfig interface = config.interface_densify(kViews);
   REQUIRE(interface.channel_resets.size() == 2);
   CHECK(interface.channel_resets[0].ceiling == 0.01f);
   CHECK(interface.channel_resets[1].from == 3001);
@@ -177,6 +178,19 @@ TEST_CASE("The three sets have the density control that the config gives them") 
     CHECK(set.interval_at(10000) == 500);
     CHECK(set.channel_resets.empty());
   }
+}
+
+TEST_CASE("In short runs of the release, too, s waits a reset and secondary sets have half of them"
+) {
+  constexpr std::size_t kViews = 50;
+  GlintConfig published;
+  config_from_json(published, glint_release_overrides(), "test");
+  const GlintConfig config = published.scaled_to(3000);
+  const DensifyConfig interface = config.interface_densify(kViews).for_views(kViews);
+  CHECK(interface.reset_interval == 300);
+  CHECK(interface.channel_resets.at(1).from == 301);
+  CHECK(config.transmission_densify().reset_interval == 600);
+  CHECK(GlintConfig().scaled_to(3000).transmission_densify().reset_interval == 300);
 }
 
 TEST_CASE("Without glass GLINT trains as 2DGS does") {

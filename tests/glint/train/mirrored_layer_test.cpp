@@ -54,6 +54,8 @@ TEST_CASE("A mirrored ray that ends early changes its pixel by less than mirror_
   const GlassBuffer buffer = wall(rng);
   MirrorCutoffs mirror;
   mirror.share_below = 0;
+  mirror.picture_transmittance = mirror.transmittance;
+  mirror.picture_hits = mirror.hits;
   MirroredLayer layer;
   Image all, cut, picture;
   layer.trace(buffer, set, 0, mirror, 3, all);
@@ -72,6 +74,23 @@ TEST_CASE("A mirrored ray that ends early changes its pixel by less than mirror_
   CHECK(differ > static_cast<int>(all.values().size()) / 4);
   CHECK(worst < mirror.weight_below);
   CHECK(worst > 0.2f * mirror.weight_below);  // it is used
+}
+
+TEST_CASE("Pictures have mirrored rays to the end, where training stops before") {
+  Rng rng(4);
+  TrainableSet set = fog(rng);
+  const GlassBuffer buffer = wall(rng);
+  MirrorCutoffs mirror;
+  mirror.share_below = 0;
+  MirroredLayer layer;
+  Image training, picture, whole;
+  layer.trace(buffer, set, 0, mirror, 3, training);
+  layer.trace(buffer, set, 0, mirror, {}, picture);
+  CHECK_FALSE(same_bytes(training, picture));
+  mirror.transmittance = kMinTransmittance;
+  mirror.hits = 256;
+  layer.trace(buffer, set, 0, mirror, 3, whole);
+  CHECK(same_bytes(whole, picture));
 }
 
 TEST_CASE("Mirrored rays without mirror_weight_below, and with one that is too small, are the same"

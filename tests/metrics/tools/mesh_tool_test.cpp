@@ -128,6 +128,27 @@ TEST_CASE("glint-mesh takes a run folder's and a dataset folder's meshes and cul
   CHECK(by_option.json()["metrics"] == json["metrics"]);
 }
 
+TEST_CASE("glint-mesh measures a scored run by the protocol of its scores, options go before it") {
+  const Pair pair;
+  fs::create_directories(pair / "run");
+  fs::copy_file(pair.pred, pair / "run/mesh.ply");
+  const Json fields = {{"seed", 7}, {"thresholds_m", {0.04}}, {"distance", "point-to-point"}};
+  write_file(pair / "run/metrics.json", Json{{"meshes", {{"protocol", fields}}}}.dump());
+  const Json scored = mesh_tool({pair / "run", pair.ref, "--json"}).json();
+  CHECK(scored["protocol"]["seed"] == 7);
+  CHECK(scored["protocol"]["distance"] == "point-to-triangle");
+  CHECK(scored["metrics"].contains("mesh-f1@4cm"));
+  const Json asked = mesh_tool({pair / "run", pair.ref, "--json", "--seed", "9"}).json();
+  CHECK(asked["protocol"]["seed"] == 9);
+  CHECK(asked["metrics"].contains("mesh-f1@4cm"));
+  for (const char* text : {"[]", "{\"meshes\": 3}", "{}"}) {
+    write_file(pair / "run/metrics.json", text);
+    const Result result = mesh_tool({pair / "run", pair.ref, "--json"});
+    INFO(text << result.err);
+    CHECK(result.code == (std::string(text) == "[]" ? 2 : 0));
+  }
+}
+
 TEST_CASE("glint-mesh writes coloured surfaces and the curve") {
   const Pair pair;
   const Result result = pair.run(

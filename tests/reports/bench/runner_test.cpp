@@ -42,6 +42,8 @@ TEST_CASE("every cell of a profile is trained, rendered, scored and recorded") {
   const auto& absent = records[0].not_applicable;
   CHECK(std::count(absent.begin(), absent.end(), "transparency-iou") == 1);
   CHECK(std::count(absent.begin(), absent.end(), "psnr") == 0);
+  for (const char* mesh : {"mesh-cd", "mesh-f1@5cm-p2p", "behind-mesh-cd"})  // no true mesh
+    CHECK(std::count(absent.begin(), absent.end(), mesh) == 1);
   CHECK(records[0].environment.at("device") == "cpu");
 }
 
@@ -83,7 +85,8 @@ TEST_CASE("what another process finished meanwhile is reused") {
 
 TEST_CASE("a run folder holds the files of the contract") {
   const test::TempFolder folder;
-  run_profile(fake_run(folder.path()));
+  const RunnerOptions options = fake_run(folder.path());
+  run_profile(options);
   const fs::path run = folder.path() / "runs/room_1/fake/0";
   for (const char* file :
        {"config.json",
@@ -109,6 +112,8 @@ TEST_CASE("a run folder holds the files of the contract") {
   CHECK(metrics["views"][0]["name"] == "0002");
   CHECK(metrics["views"][0]["metrics"].contains("psnr"));
   CHECK(metrics["protocol"].contains("psnr"));
+  CHECK(metrics["protocol"]["fps"]["frames"] == options.profile.timing_frames);
+  CHECK(metrics["protocol"]["fps"]["warmup"] == options.profile.timing_warmup);
 }
 
 TEST_CASE("scores come from the files of the run folder") {

@@ -76,7 +76,9 @@ TEST_CASE("sets are found under the names of several programs") {
   CHECK(last.sets.at(0).path.parent_path().filename() == "iteration_30000");
   put(folder / "official/pcd.ply");
   put(folder / "official/env.ply");
-  CHECK(find_model(folder / "official").method == "envgs");
+  const ModelFiles envgs = find_model(folder / "official");
+  CHECK(envgs.method == "envgs");
+  CHECK(envgs.config.empty());
   put(folder / "official/trans_env.ply");
   const ModelFiles glint = find_model(folder / "official");
   CHECK(glint.method == "glint");
@@ -84,6 +86,8 @@ TEST_CASE("sets are found under the names of several programs") {
   CHECK(glint.sets[1].name == "transmission.ply");
   CHECK(glint.sets[0].channels == std::vector<std::string>{"transparency", "specular"});
   CHECK(glint.sets[1].channels.empty());
+  CHECK(glint.config.at("mirror_near") == 0.06);
+  CHECK(glint.config.at("secondary_near") == 0.06);
 }
 
 TEST_CASE("folders without a whole model are refused") {
@@ -101,9 +105,26 @@ TEST_CASE("our own models, taken for another program's, give the same pictures")
   for (const std::string method : {"2dgs", "envgs", "glint"}) {
     INFO(method);
     const fs::path ours = trained(folder, method), theirs = folder / (method + "-again");
-    REQUIRE(run(render(ours, theirs)) == 0);
+    auto words = render(ours, theirs);
+    if (method == "glint")
+      words.insert(words.end(), {"--set", "mirror_near=0", "--set", "secondary_near=0"});
+    REQUIRE(run(words) == 0);
     CHECK(first_picture(theirs) == first_picture(ours));
   }
+}
+
+TEST_CASE("secondary rays of another program's GLINT start as in the official code, and it is noted"
+) {
+  const TempFolder folder;
+  const fs::path ours = trained(folder, "glint"), theirs = folder / "theirs";
+  REQUIRE(run(render(ours, theirs)) == 0);
+  CHECK(first_picture(theirs) != first_picture(ours));
+  const Json config = parse_json(read_file(theirs / "config.json")).at("config");
+  CHECK(config.at("mirror_near").get<float>() == 0.06f);
+  CHECK_THAT(read_file(theirs / "env.json"), Contains("mirror_near"));
+  auto words = render(ours, folder / "other");
+  words.insert(words.end(), {"--set", "no_such_field=1"});
+  CHECK(run(words) == 1);
 }
 
 TEST_CASE("a model is scored, recorded under its own name, and verified") {

@@ -58,8 +58,7 @@ TEST_CASE("table definitions agree with the paper on rows, columns and which way
             CHECK((value->direction == "higher") == (column.order == RankOrder::kHigherFirst));
             const std::string unit = value->unit == "1" ? "" : value->unit;
             INFO(column.metric << ": " << column.unit << ", published " << value->unit);
-            // The paper states no unit of CD, its code has decimetres.
-            CHECK((unit == column.unit || (unit.empty() && column.unit == "dm")));
+            CHECK(unit == column.unit);
           }
         INFO(definition.id << " " << dataset << " " << column.paper_column);
         CHECK(found >= (dataset == "DL3DV-10K" ? 6 : 3));
