@@ -56,7 +56,7 @@ struct GlintConfig {
   int secondary_max_surfels = 0;
   BootstrapConfig bootstrap;
   SurfelRates rates;
-  float rate_transparency = 0.05f;  // as the official code has them
+  float rate_transparency = 0.05f;  // as the official code has them, in runs of any length
   float rate_specular = 0.01f;
 
   GlintConfig();
