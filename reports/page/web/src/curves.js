@@ -212,6 +212,28 @@ function stop() {
   stopCharts();
 }
 
+const curveKeys = (again) => [
+  {
+    keys: ["t"],
+    help: "by iteration or by time",
+    run: () => again({ by: state.by === "iteration" ? "seconds" : "iteration", range: null }),
+  },
+];
+
+const hint = () =>
+  h(
+    "p",
+    { class: "note" },
+    "Drag across a chart to enlarge a stretch, double-click for all. Loss and PSNR are of single training views, so they scatter.",
+  );
+
+const chartsOf = (cards) =>
+  h(
+    "div",
+    { class: "charts" },
+    cards.map((card) => card.element),
+  );
+
 export async function showCurves(container, from) {
   stop();
   setViewKeys([]);
@@ -259,31 +281,12 @@ export async function showCurves(container, from) {
       head,
       controls(again, redraw, open),
       methodChoice(scene, state.hidden, fill),
-      h(
-        "p",
-        { class: "note" },
-        "Drag across a chart to enlarge a stretch, double-click for all. Loss and PSNR are of single training views, so they scatter.",
-      ),
+      hint(),
     );
     redraw();
   };
-  setViewKeys([
-    {
-      keys: ["t"],
-      help: "by iteration or by time",
-      run: () => again({ by: state.by === "iteration" ? "seconds" : "iteration", range: null }),
-    },
-  ]);
-  replace(
-    container,
-    head,
-    h(
-      "div",
-      { class: "charts" },
-      cards.map((card) => card.element),
-    ),
-    below,
-  );
+  setViewKeys(curveKeys(again));
+  replace(container, head, chartsOf(cards), below);
   fill();
   return stop;
 }

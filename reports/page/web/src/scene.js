@@ -206,15 +206,11 @@ class SceneView {
   }
 }
 
-function sceneKeys() {
+// What is shown.
+function choiceKeys() {
   const views = () => sortedViews(state.scene, state);
   const layers = () => layersThere(state.scene).map(({ id }) => id);
   const owners = () => ownerChoices(state.scene).map(([owner]) => owner);
-  const probe = (key, dx, dy) => ({
-    keys: [key],
-    help: "move the probed pixel (Shift: 10)",
-    run: (event) => state.moveProbe(dx * (event.shiftKey ? 10 : 1), dy * (event.shiftKey ? 10 : 1)),
-  });
   return [
     {
       keys: ["j"],
@@ -242,6 +238,17 @@ function sceneKeys() {
       help: "layer before",
       run: () => state.set({ layerId: step(layers(), state.layerId, -1) }),
     },
+  ];
+}
+
+// How it is shown.
+function pictureKeys() {
+  const probe = (key, dx, dy) => ({
+    keys: [key],
+    help: "move the probed pixel (Shift: 10)",
+    run: (event) => state.moveProbe(dx * (event.shiftKey ? 10 : 1), dy * (event.shiftKey ? 10 : 1)),
+  });
+  return [
     { keys: ["s"], help: "slider", run: () => state.set({ mode: "slider" }) },
     { keys: ["f"], help: "flicker", run: () => state.set({ mode: "flicker" }) },
     { keys: ["g"], help: "grid", run: () => state.set({ mode: "grid" }) },
@@ -287,7 +294,7 @@ export async function showScene(container, from) {
   if (from?.params) state.read(from.params, index, scene);
   else state.open(index, scene);
   const view = new SceneView(container);
-  setViewKeys(state.scene.views.length > 0 ? sceneKeys() : []);
+  setViewKeys(state.scene.views.length > 0 ? [...choiceKeys(), ...pictureKeys()] : []);
   view.show();
   return () => view.viewer.stop();
 }
