@@ -14,32 +14,7 @@
 namespace glint {
 namespace {
 
-constexpr double kMostTruncation = 100;  // voxels
-constexpr int kBlockVoxels = 16;         // edge of Open3D's unit of allocation, in voxels
-
-void check_options(const TsdfOptions& options) {
-  const auto check = [](bool good, const char* field, double value, const char* expected) {
-    GLINT_CHECK(good, kUsage, "{} is {}; expected {}", field, value, expected);
-  };
-  check(options.voxel > 0, "voxel", options.voxel, "metres above 0");
-  // A point opens the blocks within the truncation distance, and their number goes with its cube.
-  check(
-      options.truncation_voxels >= 1 && options.truncation_voxels <= kMostTruncation,
-      "truncation_voxels",
-      options.truncation_voxels,
-      "1 to 100"
-  );
-  check(options.max_memory_mb >= 0, "max_memory_mb", options.max_memory_mb, "MB, or 0");
-  check(options.max_depth >= 0, "max_depth", options.max_depth, "metres, or 0");
-  check(options.min_cluster >= 0, "min_cluster", options.min_cluster, "a number of triangles");
-  for (std::size_t i = 0; i < 3; ++i)
-    check(
-        options.bounds_min[i] <= options.bounds_max[i],
-        "bounds_max",
-        options.bounds_max[i],
-        "at least bounds_min"
-    );
-}
+constexpr int kBlockVoxels = 16;  // edge of Open3D's unit of allocation, in voxels
 
 double depth_limit(const TsdfOptions& options) {
   if (options.max_depth > 0) return options.max_depth;
@@ -242,7 +217,7 @@ std::unique_ptr<TsdfVolume> make_volume(const TsdfOptions& options) {
 TriangleMesh fuse_depth(
     const FusionSource& view, std::size_t num_views, const TsdfOptions& options, TsdfReport* report
 ) {
-  check_options(options);
+  check_tsdf_options(options);
   TsdfReport local;
   GLINT_CHECK(num_views > 0, kBadPrediction, "no view to fuse");
   auto volume = make_volume(options);

@@ -37,6 +37,9 @@ struct TsdfOptions {
   }
 };
 
+// Errors (kUsage): a number that no fusion can have; the message names the field.
+void check_tsdf_options(const TsdfOptions& options);
+
 // How meshes of those voxels are compared: two voxels in front of a face do not hide it.
 inline MeshProtocol mesh_protocol_for(const TsdfOptions& options) {
   MeshProtocol protocol;

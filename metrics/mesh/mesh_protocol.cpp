@@ -66,6 +66,11 @@ void append_metrics(
 
 void check_mesh_protocol(const MeshProtocol& protocol) {
   GLINT_CHECK(protocol.num_samples > 0, kUsage, "num_samples is 0; expected at least 1");
+  GLINT_CHECK(!protocol.thresholds_m.empty(), kUsage, "thresholds_m is empty; expected metres");
+  for (const auto& [field, metres] :
+       {std::pair{"cull_tolerance_m", protocol.cull_tolerance_m},
+        {"cull_max_edge_m", protocol.cull_max_edge_m}})
+    GLINT_CHECK(metres >= 0, kUsage, "{} is {}; expected metres, or 0", field, metres);
   check_thresholds(protocol.thresholds_m);
   check_max_distance(protocol.max_distance_m, protocol.thresholds_m);
 }

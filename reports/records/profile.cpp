@@ -84,6 +84,74 @@ void check_lists(const Profile& profile, const std::string& where) {
   check_once(profile.seeds, "seeds", where);
 }
 
+void check_least(const std::string& where, const char* field, double value, double least) {
+  GLINT_CHECK(
+      value >= least, kUsage, "{}: {} is {}; expected {} or more", where, field, value, least
+  );
+}
+
+void check_numbers(const Profile& profile, const std::string& where) {
+  check_least(where, "iterations", profile.iterations, 1);
+  check_least(where, "timing_frames", profile.timing_frames, 1);
+  check_least(where, "timing_warmup", profile.timing_warmup, 0);
+}
+
+// What no room can be made with, and pictures cannot be shrunk to.
+void check_sizes(const SceneSource& source, const std::string& where) {
+  constexpr int kMostSide = 65535;  // pixels, as of image files
+  constexpr double kLeastRatio = 0.001;
+  for (const auto& [field, pixels] : {std::pair{"width", source.width}, {"height", source.height}})
+    GLINT_CHECK(
+        pixels >= 1 && pixels <= kMostSide,
+        kUsage,
+        "{}: {} is {}; expected 1 to {} pixels",
+        where,
+        field,
+        pixels,
+        kMostSide
+    );
+  check_least(where, "views", source.views, 1);
+  check_least(where, "spp", source.spp, 1);
+  check_least(where, "max_pixels", source.max_pixels, 0);
+  GLINT_CHECK(
+      source.image_ratio >= kLeastRatio && source.image_ratio <= 1,
+      kUsage,
+      "{}: image_ratio is {}; expected {} to 1",
+      where,
+      source.image_ratio,
+      kLeastRatio
+  );
+}
+
+// Opens the message of an error with where it was found.
+template <class F>
+void with_place(const std::string& where, F&& check) {
+  try {
+    check();
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("{}: {}", where, error.what()));
+  }
+}
+
+// Words that an enumeration does not know are read as its first.
+void check_word(
+    const Json& given,
+    const char* field,
+    const Json& read,
+    const std::string& where,
+    const char* expected
+) {
+  GLINT_CHECK(
+      !given.contains(field) || given.at(field) == read.at(field),
+      kUsage,
+      "{}: {} is {}; expected {}",
+      where,
+      field,
+      given.at(field).dump(),
+      expected
+  );
+}
+
 // A value as it is typed: JSON, numbers that JSON does not know (.5, 5., -.5), or text.
 Json assigned_value(const std::string& text) {
   if (Json value = parse_json(text); !value.is_discarded()) return value;
@@ -101,15 +169,10 @@ Profile load_profile(const std::string& name) {
   Profile profile;
   config_from_json(profile, json_from_toml(profile_text(name), where), where);
   profile.name = fs::path(name).stem().string();
-  GLINT_CHECK(
-      profile.iterations > 0 && profile.timing_frames > 0 && profile.timing_warmup >= 0,
-      kUsage,
-      "{}: iterations and timing_frames must be positive",
-      where
-  );
+  check_numbers(profile, where);
   check_lists(profile, where);
   profile.sources();
-  check_mesh_protocol(profile.mesh_protocol());
+  profile.mesh_protocol();
   return profile;
 }
 
@@ -117,15 +180,23 @@ TsdfOptions Profile::tsdf_options() const {
   TsdfOptions options;
   const std::string where = fmt::format("profile {} [mesh]", name);
   config_from_json(options, mesh, where);
-  GLINT_CHECK(
-      options.voxel > 0, kUsage, "{}: voxel is {}; expected metres above 0", where, options.voxel
-  );
+  with_place(where, [&] { check_tsdf_options(options); });
   return options;
 }
 
 MeshProtocol Profile::mesh_protocol() const {
   MeshProtocol protocol = mesh_protocol_for(tsdf_options());
-  config_from_json(protocol, mesh_metrics, fmt::format("profile {} [mesh_metrics]", name));
+  const std::string where = fmt::format("profile {} [mesh_metrics]", name);
+  config_from_json(protocol, mesh_metrics, where);
+  check_word(
+      mesh_metrics,
+      "distance",
+      config_to_json(protocol),
+      where,
+      "point-to-triangle or point-to-point"
+  );
+  check_word(mesh_metrics, "cull", config_to_json(protocol), where, "cameras or none");
+  with_place(where, [&] { check_mesh_protocol(protocol); });
   return protocol;
 }
 
@@ -148,6 +219,7 @@ std::vector<SceneSource> Profile::sources() const {
     GLINT_CHECK(why.empty(), kUsage, "{}: scene '{}' {}", where, source.scene, why);
     check_prior_options(source.foreign_priors, fmt::format("{}: scene '{}'", where, source.scene));
     check_prior_level(source.priors, fmt::format("{}: scene '{}'", where, source.scene));
+    check_sizes(source, fmt::format("{}: scene '{}'", where, source.scene));
     sources.push_back(source);
   }
   for (const std::string& id : manifests)

@@ -242,18 +242,30 @@ std::string notes_text(const std::vector<std::string>& notes, std::size_t width)
   return text;
 }
 
-// What was measured; methods that were not run are named in a note.
+// Titles of the rows in which each cell has that status.
+std::vector<std::string> rows_with(const Table& table, CellStatus status) {
+  std::vector<std::string> titles;
+  for (const TableRow& row : table.rows)
+    if (std::all_of(row.cells.begin(), row.cells.end(), [&](const TableCell& cell) {
+          return cell.status == status;
+        }))
+      titles.push_back(row.title);
+  return titles;
+}
+
+// What was measured; methods that were not run are named in a note, and those that failed where no
+// column is left to say so.
 Table brief_table(const Table& table) {
-  Table brief = without_empty_columns(without_published(table));
-  std::vector<std::string> absent;
+  const Table measured = without_published(table);
+  Table brief = without_empty_columns(measured);
+  const std::vector<std::string> absent = rows_with(measured, CellStatus::kMissing),
+                                 failed = rows_with(measured, CellStatus::kFailed);
   std::erase_if(brief.rows, [&](const TableRow& row) {
-    const bool missing = std::all_of(row.cells.begin(), row.cells.end(), [](const TableCell& cell) {
-      return cell.status == CellStatus::kMissing;
-    });
-    if (missing) absent.push_back(row.title);
-    return missing;
+    return std::find(absent.begin(), absent.end(), row.title) != absent.end();
   });
   if (!absent.empty()) brief.notes.push_back(fmt::format("Not run: {}.", fmt::join(absent, ", ")));
+  if (!failed.empty() && brief.columns.empty())
+    brief.notes.push_back(fmt::format("Failed: {}.", fmt::join(failed, ", ")));
   return brief;
 }
 
@@ -263,7 +275,7 @@ std::vector<std::string> brief_notes(const Table& table) {
   std::erase_if(notes, [](const std::string& note) {
     return !note.starts_with("Mean over") && !note.starts_with("GlassRoom: ") &&
            !note.starts_with("Not in these") && !note.starts_with("Not run") &&
-           !note.starts_with("* ") && !note.starts_with("≈");
+           !note.starts_with("Failed: ") && !note.starts_with("* ") && !note.starts_with("≈");
   });
   return notes;
 }

@@ -160,9 +160,25 @@ struct EvalArguments {
   bool all = false, force = false;
 };
 
+// Other data than a run was trained on may be the scene, made or moved anew; not a scene of another
+// name, against which its renders say nothing.
+void check_same_scene(const SingleRun& single, const std::string& run) {
+  GLINT_CHECK(
+      single.data_warning.empty() || single.scene.name == single.spec.scene,
+      kUsage,
+      "--dataset is scene '{}', but {} was trained on '{}' and rendered its views; give that "
+      "scene's "
+      "data",
+      single.scene.name,
+      run,
+      single.spec.scene
+  );
+}
+
 int eval_run(const CommonOptions& common, const EvalArguments& arguments) {
   const std::string& folder = arguments.run;
   const SingleRun single = open_single_run(folder, arguments.dataset);
+  check_same_scene(single, folder);
   check_test_views(single.scene, single.spec.dataset_folder);
   const MeshProtocol protocol = mesh_protocol_of(single.spec);
   const Json document = score_document(

@@ -131,7 +131,29 @@ TEST_CASE("a profile file of the user's is read, and its mistakes are named") {
   };
   check_refused("methods = ['2dgs', '2dgs']\n", "methods has 2dgs twice");
   check_refused("seeds = [0, 1, 0]\n", "seeds has 0 twice");
-  check_refused("[mesh]\nvoxel = -1\n", "voxel is -1");
+  check_refused("[mesh]\nvoxel = -1\n", "[mesh]: voxel is -1");
+  check_refused("[mesh]\nmax_depth = -1\n", "[mesh]: max_depth is -1");
+  check_refused("[mesh]\ntruncation_voxels = 1e9\n", "truncation_voxels is");
+  check_refused("[mesh]\nbounds_min = [1, 1, 1]\nbounds_max = [0, 2, 2]\n", "bounds_max is 0");
+  check_refused("[mesh_metrics]\ncull = 'camera'\n", "cull is \"camera\"; expected cameras");
+  check_refused("[mesh_metrics]\ndistance = 'foo'\n", "distance is \"foo\"");
+  check_refused(
+      "[mesh_metrics]\ncull_tolerance_m = -1\n", "[mesh_metrics]: cull_tolerance_m is -1"
+  );
+  check_refused("[mesh_metrics]\nthresholds_m = []\n", "thresholds_m is empty");
+  check_refused("iterations = -5\n", "iterations is -5; expected 1 or more");
+  check_refused("timing_warmup = -5\n", "timing_warmup is -5");
+  for (const char* wrong :
+       {"image_ratio = -2",
+        "image_ratio = 1e9",
+        "max_pixels = -5",
+        "width = -64",
+        "height = 100000",
+        "views = -3",
+        "spp = 0"}) {
+    const std::string field = std::string(wrong).substr(0, std::string(wrong).find(' '));
+    check_refused(fmt::format("scenes = [{{scene = 'a', {}}}]\n", wrong), "scene 'a': " + field);
+  }
   check_refused("[mesh_metrics]\nnum_samples = 0\n", "num_samples");
   check_refused("[mesh_metrics]\nthresholds_m = [-0.1]\n", "thresholds_m");
   write_file(file, "scenes = [\n");

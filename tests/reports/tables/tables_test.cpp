@@ -492,6 +492,18 @@ TEST_CASE("a brief table has measured columns with values and the notes on means
     CHECK(text.find(there) != std::string::npos);
 }
 
+TEST_CASE("a brief table without any value says which methods failed, not that they were not run") {
+  auto records = read_records(kGolden / "records.jsonl");
+  std::erase_if(records, [](const Record& record) { return record.ok(); });
+  std::erase_if(records, [](const Record& record) { return record.cell.method != "tsgs"; });
+  REQUIRE_FALSE(records.empty());
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  const std::string text = table_terminal(table, {false, 0, true});
+  CHECK(text.find("Failed: TSGS.") != std::string::npos);
+  CHECK(text.find("Not run: 2DGS") != std::string::npos);
+  CHECK(text.find("Ref-GS, EnvGS, GLINT") != std::string::npos);
+}
+
 TEST_CASE("LaTeX gets no character that it cannot print") {
   Table table = golden_table("table1_photometric");
   table.rows[0].title = "a\\b_{c}^2 ≈ 漢\t|";

@@ -17,6 +17,13 @@ int run(std::vector<std::string> words) {
   return run_command_line(static_cast<int>(arguments.size()), arguments.data());
 }
 
+void make_room(const std::string& scene, const std::string& to) {
+  std::vector<std::string> words{"dataset", "make", "glassroom", "--scene", scene, "--out", to};
+  words.insert(words.end(), {"--width", "32", "--height", "18", "--views", "4", "--spp", "2"});
+  words.emplace_back("--quiet");
+  REQUIRE(run(words) == 0);
+}
+
 }  // namespace
 
 TEST_CASE("data that have moved are named with --dataset") {
@@ -26,24 +33,7 @@ TEST_CASE("data that have moved are named with --dataset") {
     more.insert(more.begin(), {"render", "--run", trained, "--quiet"});
     return run(more);
   };
-  REQUIRE(
-      run(
-          {"dataset",
-           "make",
-           "glassroom",
-           "--width",
-           "32",
-           "--height",
-           "18",
-           "--views",
-           "4",
-           "--spp",
-           "2",
-           "--out",
-           room,
-           "--quiet"}
-      ) == 0
-  );
+  make_room("room_1", room);
   REQUIRE(
       run(
           {"train",
@@ -73,4 +63,18 @@ TEST_CASE("data that have moved are named with --dataset") {
   CHECK(render({"--dataset", moved, "--path", "orbit", "--size", "20"}) == 1);
   CHECK(render({"--dataset", moved, "--frames", "9"}) == 1);
   CHECK(render({"--dataset", moved, "--path", "orbitt"}) == 1);
+}
+
+TEST_CASE("a run is not scored against a scene of another name") {
+  const test::TempFolder folder;
+  const std::string room = folder / "room", other = folder / "other", trained = folder / "run";
+  make_room("room_1", room);
+  make_room("room_2", other);
+  const std::string data = folder / "data";
+  REQUIRE(
+      run({"train", "--dataset", room, "--run", trained, "--iterations", "2", "--data", data}) == 0
+  );
+  REQUIRE(run({"render", "--run", trained, "--quiet"}) == 0);
+  CHECK(run({"eval", "--run", trained, "--dataset", other, "--quiet"}) == 1);
+  CHECK_FALSE(fs::exists(fs::path(trained) / "metrics.json"));
 }
