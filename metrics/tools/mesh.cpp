@@ -222,7 +222,7 @@ int run_mesh_tool(const std::vector<std::string>& args, std::ostream& out, std::
   );
   app.footer(
       "Examples:\n"
-      "  glint-mesh out/ci/runs/room_1/2dgs/0 data/room_1\n"
+      "  glint-mesh out/ci/runs/room_1/2dgs/0 data/glassroom/room_1-*\n"
       "  glint-mesh predicted.ply scan.ply --thresholds 0.01 0.05 --curve f1.png --json\n"
   );
   MeshToolOptions options;

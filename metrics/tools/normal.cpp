@@ -56,7 +56,7 @@ class NormalTool final : public MetricTool {
            "as (n + 1) / 2.";
   }
   std::string example() const override {
-    return "glint-normal predicted/ data/room_1/gt/normal --axes opengl --csv";
+    return "glint-normal predicted/ rooms/room_3/gt/normal --axes opengl --csv";
   }
   FolderLayout prediction_layout() const override { return {{"renders"}, {"normal.exr"}}; }
   std::string reference_map() const override { return "normal"; }

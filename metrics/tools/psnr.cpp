@@ -16,7 +16,7 @@ class PsnrTool final : public MetricTool {
            "(PNG, JPEG, NPY of uint8) psnr-8bit.";
   }
   std::string example() const override {
-    return "glint-psnr out/ci/runs/room_1/2dgs/0 data/room_1 --json";
+    return "glint-psnr out/ci/runs/room_1/2dgs/0 data/glassroom/room_1-* --json";
   }
   FolderLayout prediction_layout() const override { return {{"renders"}, {"rgb.exr", "rgb.png"}}; }
   std::string reference_map() const override { return "rgb"; }

@@ -52,7 +52,7 @@ void add_options(CLI::App& app, TsdfArguments& a) {
   app.add_flag("--csv", a.csv, "one row")->excludes(json);
   app.add_option("--threads", a.threads, "0: all cores")->check(at_least_zero());
   app.add_flag("--quiet", a.quiet, "no progress on standard error");
-  app.footer("Example:\n  glint-tsdf renders/ data/room_1 --voxel 0.02 --out mesh.ply\n");
+  app.footer("Example:\n  glint-tsdf renders/ rooms/room_3 --voxel 0.02 --out mesh.ply\n");
 }
 
 // A depth map, the camera of its name, and the picture beside it where there is one.

@@ -25,7 +25,8 @@ std::vector<PlanCell> make_plan(
     const Profile& profile, const CellFilter& filter, const std::vector<std::string>& assignments
 ) {
   const auto methods = planned_methods(profile.methods, filter.methods);
-  for (const auto& entry : profile.overrides.items()) find_method(entry.key());  // or none has it
+  for (const auto& entry : profile.overrides.items())
+    create_method(entry.key(), entry.value());  // also of those that are not run
   const CellFilter of_profile{.skip = profile.leave_out};
   std::vector<PlanCell> plan;
   for (const SceneSource& source : profile.sources())

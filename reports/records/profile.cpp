@@ -243,12 +243,12 @@ Json method_overrides(
   Json config = profile.overrides.value(method, Json::object());
   for (const std::string& text : assignments) {
     const auto [target, assignment] = split_assignment(text);
-    if (!target.empty() && target != method) {
-      find_method(target);  // a misspelt one is no method's
-      continue;
-    }
     const std::size_t equals = assignment.find('=');
-    config[assignment.substr(0, equals)] = assigned_value(assignment.substr(equals + 1));
+    const Json field{{assignment.substr(0, equals), assigned_value(assignment.substr(equals + 1))}};
+    if (target.empty() || target == method)
+      config.update(field);
+    else
+      create_method(target, field);  // a misspelt one is no method's, or no field of it
   }
   return config;
 }

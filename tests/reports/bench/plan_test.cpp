@@ -90,6 +90,17 @@ TEST_CASE("a profile may do without some of its cells, also when they are asked 
   );
 }
 
+TEST_CASE("fields of methods that are not run are checked, too") {
+  Profile profile = load_profile("smoke");
+  profile.overrides["glint"] = {{"lambda_depht", 0.2}};
+  CHECK_THROWS_WITH(make_plan(profile, {}, {}), Catch::Contains("no field 'lambda_depht'"));
+  profile.overrides["glint"] = {{"lambda_depth", 0.2}};
+  CHECK_FALSE(make_plan(profile, {}, {"glint.lambda_depth=0.3"}).empty());
+  CHECK_THROWS_WITH(
+      make_plan(profile, {}, {"glint.nofield=3"}), Catch::Contains("no field 'nofield'")
+  );
+}
+
 TEST_CASE("every built-in profile is valid") {
   for (const std::string& name : embedded_names("profiles")) {
     const Profile profile = load_profile(name);
