@@ -21,7 +21,8 @@ class DepthTool final : public MetricTool {
            "depth.";
   }
   std::string example() const override {
-    return "glint-depth out/ci/runs/room_1/2dgs/0 data/glassroom/room_1-* --glass data/glassroom/room_1-*";
+    return "glint-depth out/ci/runs/room_1/2dgs/0 data/glassroom/room_1-* --glass "
+           "data/glassroom/room_1-*";
   }
   FolderLayout prediction_layout() const override { return {{"renders"}, {"depth.exr"}}; }
   std::string reference_map() const override { return "depth"; }

@@ -46,7 +46,7 @@ RunScores score_run(
 );
 
 // The same, and writes metrics.json (means, per-view values with names, protocols). `cost` joins
-// the means: "fps" (`timing`, where it was measured just now), "train-minutes", "peak-memory",
+// the means: "fps" (measured by `timing`, where that is known), "train-minutes", "peak-memory",
 // "num-surfels". Returns the means by id; regions as "psnr@glass". Errors (kBadPrediction): a
 // render is missing, damaged or of another size.
 std::map<std::string, double> eval_stage(

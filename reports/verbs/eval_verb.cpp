@@ -181,17 +181,19 @@ int eval_run(const CommonOptions& common, const EvalArguments& arguments) {
   check_same_scene(single, folder);
   check_test_views(single.scene, single.spec.dataset_folder);
   const MeshProtocol protocol = mesh_protocol_of(single.spec);
+  const std::optional<TimingOptions> timing = earlier_timing(folder);
   const Json document = score_document(
       single.spec.method,
       {key_of(folder, Stage::kRender),
        key_of(folder, Stage::kMesh),
        truth_content(single.spec.dataset_folder, common.data)},
       protocol,
-      earlier_timing(folder)
+      timing
   );
   Scores means;
   run_stage(folder, Stage::kScore, document, [&] {
-    means = eval_stage(single.spec, single.scene, known_cost(single.spec), protocol);
+    const Scores cost = known_cost(single.spec);
+    means = eval_stage(single.spec, single.scene, cost, protocol, timing);
     return std::string();
   });
   record_single(common, single.spec, single_record(single, document, means));
