@@ -9,6 +9,7 @@
 #include "datasets/check_geometry.h"
 #include "datasets/counted_pixels.h"
 #include "datasets/prior_maps.h"
+#include "datasets/undistort.h"
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
 
@@ -201,10 +202,7 @@ void check_camera(const ViewSource& view, ImageSize image, std::vector<Finding>&
     findings.push_back(make_finding("intrinsics-size", view.where, error.what()));
     return;
   }
-  constexpr double kOffCenter = 0.25;  // of the side
-  const double dx = std::abs(camera.cx / camera.width - 0.5);
-  const double dy = std::abs(camera.cy / camera.height - 0.5);
-  if (std::max(dx, dy) > kOffCenter)
+  if (is_off_center(camera))
     findings.push_back(
         {"intrinsics-size",
          view.where,
@@ -218,6 +216,11 @@ void check_camera(const ViewSource& view, ImageSize image, std::vector<Finding>&
              camera.height
          )}
     );
+  try {
+    if (!view.distortion.empty()) Undistortion(camera, view.distortion);
+  } catch (const Error& error) {
+    findings.push_back(make_finding("distortion", view.where, error.what()));
+  }
 }
 
 // ---------------------------------------------------------------- maps against cameras

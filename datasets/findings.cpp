@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/findings.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "glint/core/error.h"
@@ -21,6 +22,14 @@ double rotation_error(const Mat3d& r) {
 Finding make_finding(const std::string& check, const std::string& where, std::string message) {
   if (message.starts_with(where + ": ")) message.erase(0, where.size() + 2);
   return {check, where, message};
+}
+
+bool is_off_center(const Camera& camera) {
+  if (camera.width <= 0 || camera.height <= 0) return false;
+  constexpr double kOffCenter = 0.25;  // of the side
+  const double dx = std::abs(camera.cx / camera.width - 0.5);
+  const double dy = std::abs(camera.cy / camera.height - 0.5);
+  return std::max(dx, dy) > kOffCenter;
 }
 
 std::optional<Finding> camera_problem(const Camera& camera, const std::string& where) {

@@ -19,6 +19,10 @@ struct Finding {        // of `dataset check`
 // A problem whose message does not repeat `where`.
 Finding make_finding(const std::string& check, const std::string& where, std::string message);
 
+// Does the principal point lie more than a quarter of a side from the middle? Then the intrinsics
+// mostly belong to another size. False for a camera without a size.
+bool is_off_center(const Camera& camera);
+
 // What is wrong with a camera, as a finding of the checks "non-finite", "intrinsics" or "pose".
 std::optional<Finding> camera_problem(const Camera& camera, const std::string& where);
 

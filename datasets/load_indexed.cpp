@@ -160,6 +160,23 @@ std::string alpha_note(const SceneIndex& index) {
   );
 }
 
+// Views whose intrinsics look like those of another size; empty: none. A crop's may be so rightly.
+std::string off_center_note(const Scene& scene) {
+  std::size_t count = 0, all = 0;
+  for (const std::vector<View>* views : {&scene.train, &scene.test})
+    for (const View& view : *views) {
+      if (!view.rgb.empty()) ++all;
+      if (is_off_center(view.camera)) ++count;
+    }
+  if (count == 0) return {};
+  return fmt::format(
+      "the principal points of {} of {} views lie more than a quarter of a side from the middle: "
+      "if they are no crops, their intrinsics belong to another size",
+      count,
+      all
+  );
+}
+
 // What was passed over, and how priors are read.
 void note_data(const SceneIndex& index, const LoadOptions& options, Scene& scene) {
   std::vector<std::string>& notes = scene.data_notes;
@@ -172,7 +189,7 @@ void note_data(const SceneIndex& index, const LoadOptions& options, Scene& scene
     ));
   for (const Finding& remark : index.remarks)
     notes.push_back(fmt::format("{}: {}", remark.where, remark.message));
-  for (std::string note : {alpha_note(index), counted_note(scene)})
+  for (std::string note : {alpha_note(index), counted_note(scene), off_center_note(scene)})
     if (!note.empty()) notes.push_back(std::move(note));
   if (!options.with_priors || index.simulated_priors || index.prior_notes.empty()) return;
   notes.insert(notes.end(), index.prior_notes.begin(), index.prior_notes.end());

@@ -96,13 +96,17 @@ bool holds_integers(const Json& value, const std::vector<T>&) {
   });
 }
 
-// False, and the field as it was, where the value is of another type or no number the field can
-// hold (get() would cut off an integer's fraction and wrap what is too large).
+// False, and the field as it was, where the value is of another type, no number the field can hold
+// (get() would cut off an integer's fraction and wrap what is too large), or no word of an
+// enumeration (get() would take its first).
 template <class Field>
 bool set_field(Field& field, const Json& value) {
   try {
     if (!holds_integers(value, field)) return false;
-    field = value.get<Field>();
+    const Field read = value.get<Field>();
+    if constexpr (std::is_enum_v<Field>)
+      if (Json(read) != value) return false;
+    field = read;
     return true;
   } catch (const nlohmann::json::exception&) {
     return false;
@@ -119,7 +123,8 @@ void read_field(const Json& value, Field& field) {
 }
 
 // Sets every field named in `json`. Errors (kUsage): unknown name (the nearest is named, the known
-// ones are listed), wrong type. `where` opens the message.
+// ones are listed), wrong type, a word that an enumeration does not have (the field's meaning names
+// those it has). `where` opens the message.
 template <class Config>
 void config_from_json(Config& config, const Json& json, std::string_view where) {
   for (const auto& entry : json.items()) {
@@ -127,13 +132,22 @@ void config_from_json(Config& config, const Json& json, std::string_view where) 
     const Json& value = entry.value();
     bool found = false;
     std::vector<std::string> known;
-    config.visit([&](const char* name, auto& field, const char*) {
+    config.visit([&](const char* name, auto& field, const char* meaning) {
       known.emplace_back(name);
       if (key != name) return;
       found = true;
-      const bool fits = detail::set_field(field, value);
-      const std::string type = fits ? "" : ConfigField{key, field, ""}.type();
-      GLINT_CHECK(fits, kUsage, "{}: {} cannot be {}; expected {}", where, key, value.dump(), type);
+      if (detail::set_field(field, value)) return;
+      const bool is_word = std::is_enum_v<std::remove_reference_t<decltype(field)>>;
+      throw Error(
+          ExitCode::kUsage,
+          fmt::format(
+              "{}: {} cannot be {}; expected {}",
+              where,
+              key,
+              value.dump(),
+              is_word ? meaning : ConfigField{key, field, ""}.type()
+          )
+      );
     });
     GLINT_CHECK(
         found,

@@ -49,6 +49,13 @@ bool is_full(const fs::path& folder) {
   return !code && space.available < kLeast;
 }
 
+// What to do about a file that was not written.
+const char* mend_of_write(int why) {
+  const bool denied = why == EACCES || why == EPERM || why == EROFS;
+  return denied ? "give write permission to its folder, or choose another --out"
+                : "free some disk space or choose another --out";
+}
+
 bool lacks_permission(const std::error_code& code) {
   return code == std::errc::permission_denied || code == std::errc::operation_not_permitted;
 }
@@ -157,9 +164,10 @@ void write_file(const fs::path& path, std::string_view content) {
     GLINT_CHECK(
         out.good(),
         kEnvironment,
-        "{}: writing failed ({}); free some disk space or choose another --out",
+        "{}: writing failed ({}); {}",
         path.string(),
-        std::strerror(errno)
+        std::strerror(errno),
+        mend_of_write(errno)
     );
   });
 }

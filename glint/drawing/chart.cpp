@@ -126,6 +126,11 @@ class ChartDrawing {
     return widest;
   }
 
+  // Of a number below the axis: beneath its tick, but not beyond the box.
+  double label_middle(std::size_t i) const {
+    const double half = measure_text(x_.labels[i], kNumber).width / 2;
+    return std::min(column(x_.ticks[i]), box_.right() - half);
+  }
   double column(double x) const { return field_.left + x_.share(x) * field_.width; }
   double row(double y) const { return field_.bottom() - y_.share(y) * field_.height; }
 
@@ -171,7 +176,7 @@ class ChartDrawing {
     TextStyle style = kNumber;
     style.align = Align::kCenter;
     for (std::size_t i = 0; i < x_.ticks.size(); ++i)
-      canvas_.text(x_.labels[i], {column(x_.ticks[i]), field_.bottom() + kTickGap}, style);
+      canvas_.text(x_.labels[i], {label_middle(i), field_.bottom() + kTickGap}, style);
     style.align = Align::kRight;
     const double middle = measure_text("0", kNumber).height / 2;
     for (std::size_t i = 0; i < y_.ticks.size(); ++i)

@@ -73,6 +73,7 @@ Json mesh_stage(
     bool keep_renders
 ) {
   fuse_stage.require();
+  check_tsdf_options(options);  // before views are rendered
   const fs::path renders = spec.folder / "renders_train";
   const auto drop_renders = [&] {
     if (!keep_renders) remove_renders(renders);

@@ -19,6 +19,50 @@ std::string hint_for(const Profile& profile, const CellFilter& filter) {
          "; a method that the profile does not name is run by --methods";
 }
 
+// A pattern of cells without its seed, if it ends in one.
+std::string without_seed(const std::string& pattern) {
+  const std::size_t slash = pattern.rfind('/');
+  const bool has_seed =
+      slash != std::string::npos &&
+      pattern.find_first_not_of("0123456789-*?[]", slash + 1) == std::string::npos;
+  return has_seed ? pattern.substr(0, slash) : pattern;
+}
+
+// Does a pattern fit a scene, a method or a cell of these, of whatever seed?
+bool fits_any(
+    const std::string& pattern,
+    const std::vector<SceneSource>& sources,
+    const std::vector<std::string>& methods
+) {
+  const CellFilter filter{.only = {pattern, without_seed(pattern)}};
+  for (const SceneSource& source : sources)
+    for (const std::string& method : methods)
+      if (filter_accepts(filter, {source.scene, method, 0})) return true;
+  return false;
+}
+
+// A misspelt pattern would leave nothing out without a word. `methods`: those that are run; the
+// profile's others may be named, too.
+void check_left_out(
+    const Profile& profile, const CellFilter& filter, std::vector<std::string> methods
+) {
+  methods.insert(methods.end(), profile.methods.begin(), profile.methods.end());
+  const auto sources = profile.sources();
+  const auto check = [&](const std::vector<std::string>& patterns, const std::string& where) {
+    for (const std::string& pattern : patterns)
+      GLINT_CHECK(
+          fits_any(pattern, sources, methods),
+          kUsage,
+          "{} '{}' fits no scene, method or cell of profile {}",
+          where,
+          pattern,
+          profile.name
+      );
+  };
+  check(filter.skip, "--skip");
+  check(profile.leave_out, "leave_out");
+}
+
 }  // namespace
 
 std::vector<PlanCell> make_plan(
@@ -27,6 +71,7 @@ std::vector<PlanCell> make_plan(
   const auto methods = planned_methods(profile.methods, filter.methods);
   for (const auto& entry : profile.overrides.items())
     create_method(entry.key(), entry.value());  // also of those that are not run
+  check_left_out(profile, filter, methods);
   const CellFilter of_profile{.skip = profile.leave_out};
   std::vector<PlanCell> plan;
   for (const SceneSource& source : profile.sources())

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "datasets/scene_index.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/image_files_stored.h"
 #include "metrics/depth.h"
@@ -82,6 +83,8 @@ MapSet read_view(
     const auto file = files.find(std::string(row.id));
     if (file == files.end()) continue;
     Image& map = rendered[row] = read_for(file->second, row.channels(), view);
+    if (row.kind == MapKind::kColor)
+      with_exit_code(ExitCode::kBadPrediction, [&] { check_finite(file->second, map); });
     if (row.kind == MapKind::kNormal) to_our_normals(map, view.camera, options.normals);
     if (row.kind == MapKind::kDepth) to_our_depth(map, view.camera, options.depth);
     odd.look(row, file->second.string(), map, view.truth[row]);
@@ -177,10 +180,10 @@ void note_absent(
   }
 }
 
-// Do they come as integers?
+// Are they rounded to n / 255?
 bool has_eight_bit_images(const PredictionFiles& found) {
   return std::any_of(found.views.begin(), found.views.end(), [](const auto& files) {
-    return stores_integers(files.at("rgb"));
+    return stores_bytes(files.at("rgb"));
   });
 }
 

@@ -106,6 +106,13 @@ std::vector<PerfCase> make_perf_cases(const PerfOptions& options) {
   for (const auto& [id, registered] : Registry<PerfCases>::all())
     for (PerfCase& c : registered.make(options))
       if (options.wants(c.name)) cases.push_back(std::move(c));
+  GLINT_CHECK(
+      !cases.empty(),
+      kUsage,
+      "--op {}: fits no op that this device is timed with; globs fit whole names, as "
+      "'*rasterize*' (`perf` without --op has all)",
+      options.only
+  );
   return cases;
 }
 

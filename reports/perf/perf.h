@@ -55,7 +55,7 @@ struct PerfCases {
   std::vector<PerfCase> (*make)(const PerfOptions& options);
 };
 
-// Those that are wanted.
+// Those that are wanted. Errors (kUsage): none is.
 std::vector<PerfCase> make_perf_cases(const PerfOptions& options);
 
 // Every case at 1 and 2 threads (1 only where the machine has one), or on the GPU in use. Runs of

@@ -253,7 +253,27 @@ void check_run_folder(const fs::path& folder) {
   );
 }
 
-EarlierRun::EarlierRun(const fs::path& folder, bool goes_on) : folder_(folder) {
+namespace {
+
+// The outermost of a folder and those around it that is not there; empty: all are.
+fs::path outermost_missing(fs::path folder) {
+  fs::path missing;
+  std::error_code code;
+  for (; !folder.empty() && !fs::exists(folder, code); folder = folder.parent_path())
+    missing = folder;
+  return missing;
+}
+
+// A folder and those around it up to `outermost`, as far as they are empty.
+void remove_if_empty(fs::path folder, const fs::path& outermost) {
+  std::error_code code;
+  while (fs::remove(folder, code) && folder != outermost) folder = folder.parent_path();
+}
+
+}  // namespace
+
+EarlierRun::EarlierRun(const fs::path& folder, bool goes_on)
+    : folder_(folder), outermost_made_(outermost_missing(folder)) {
   check_run_folder(folder);
   remove_left_behind(folder);
   if (goes_on) return;
@@ -283,7 +303,10 @@ EarlierRun::~EarlierRun() {
 
 void EarlierRun::put_back() const {
   const fs::path previous = folder_ / kPreviousRun;
-  if (!is_our_run(previous)) return;
+  if (!is_our_run(previous)) {
+    if (!outermost_made_.empty()) remove_if_empty(folder_, outermost_made_);
+    return;
+  }
   for (const char* sign : {"log.jsonl", kCheckpoint, "env.json", "metrics.json"})
     if (fs::exists(folder_ / sign)) {
       log::warn(fmt::format("the run that was there before is kept in {}", previous.string()));

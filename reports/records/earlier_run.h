@@ -42,7 +42,8 @@ class EarlierRun {
   // check_run_folder()'s; kEnvironment: files cannot be moved.
   explicit EarlierRun(const fs::path& folder, bool goes_on = false);
   // Without drop(): puts the finished run back if the new one has got nowhere (no log, no
-  // checkpoint, no scores), else says where it lies. What cannot be put back is a warning.
+  // checkpoint, no scores), else says where it lies. What cannot be put back is a warning. Folders
+  // that were made for the new run and are empty are removed.
   ~EarlierRun();
   EarlierRun(const EarlierRun&) = delete;
   EarlierRun& operator=(const EarlierRun&) = delete;
@@ -52,7 +53,7 @@ class EarlierRun {
  private:
   void put_back() const;  // errors: kEnvironment, files cannot be moved
 
-  fs::path folder_;
+  fs::path folder_, outermost_made_;  // outermost_made_ empty: the folder was there
   bool dropped_ = false;
 };
 

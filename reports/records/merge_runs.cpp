@@ -13,12 +13,28 @@
 namespace glint {
 namespace {
 
-std::string machine_of(const Record& record) {
+std::string environment_text(const Record& record, const char* field) {
   const Json& environment = record.environment;
-  for (const char* field : {"host", "device", "cpu"})
-    if (environment.is_object() && environment.contains(field) && environment[field].is_string())
-      return environment[field];
-  return "an unknown machine";
+  const bool has = environment.is_object() && environment.contains(field);
+  return has && environment[field].is_string() ? environment[field].get<std::string>() : "";
+}
+
+// "node7 (AMD EPYC)".
+std::string machine_of(const Record& record) {
+  const std::string name = environment_text(record, "machine");
+  const std::string cpu = environment_text(record, "cpu");
+  if (name.empty() && cpu.empty()) return "an unknown machine";
+  return name.empty() || cpu.empty() ? name + cpu : fmt::format("{} ({})", name, cpu);
+}
+
+// Why two trainings have other keys, as far as records tell.
+std::string training_differences(const Record& a, const Record& b) {
+  if (a.dataset_hash != b.dataset_hash) return "trained on other data";
+  const std::string of_a = environment_text(a, "git_revision"),
+                    of_b = environment_text(b, "git_revision");
+  if (of_a != of_b && !of_a.empty() && !of_b.empty())
+    return fmt::format("trained by other settings or code (revisions {} and {})", of_a, of_b);
+  return "trained by other settings or code";
 }
 
 // Whole, or not at all: a copy that is cut off leaves a hidden folder.
@@ -93,7 +109,7 @@ std::string_view merge_verdict_name(MergeVerdict verdict) {
 }
 
 std::string score_differences(const Record& a, const Record& b) {
-  if (a.train_key != b.train_key) return "other settings, data or code of the training";
+  if (a.train_key != b.train_key) return training_differences(a, b);
   if (a.score_key != b.score_key) return "scored by other settings or code";
   std::set<std::string> ids;
   for (const Record* record : {&a, &b})

@@ -133,25 +133,6 @@ void with_place(const std::string& where, F&& check) {
   }
 }
 
-// Words that an enumeration does not know are read as its first.
-void check_word(
-    const Json& given,
-    const char* field,
-    const Json& read,
-    const std::string& where,
-    const char* expected
-) {
-  GLINT_CHECK(
-      !given.contains(field) || given.at(field) == read.at(field),
-      kUsage,
-      "{}: {} is {}; expected {}",
-      where,
-      field,
-      given.at(field).dump(),
-      expected
-  );
-}
-
 // A value as it is typed: JSON, numbers that JSON does not know (.5, 5., -.5), or text.
 Json assigned_value(const std::string& text) {
   if (Json value = parse_json(text); !value.is_discarded()) return value;
@@ -188,14 +169,6 @@ MeshProtocol Profile::mesh_protocol() const {
   MeshProtocol protocol = mesh_protocol_for(tsdf_options());
   const std::string where = fmt::format("profile {} [mesh_metrics]", name);
   config_from_json(protocol, mesh_metrics, where);
-  check_word(
-      mesh_metrics,
-      "distance",
-      config_to_json(protocol),
-      where,
-      "point-to-triangle or point-to-point"
-  );
-  check_word(mesh_metrics, "cull", config_to_json(protocol), where, "cameras or none");
   with_place(where, [&] { check_mesh_protocol(protocol); });
   return protocol;
 }

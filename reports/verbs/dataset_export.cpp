@@ -77,6 +77,7 @@ void add_dataset_export(CommandLine& line, CLI::App& dataset) {
       kOutOption | kThreadsOption | kJsonOption | kQuietOption
   );
   CLI::App& app = **verb;
+  describe_out(app, "folder of the export");
   app.add_option("folder", arguments->folder, "dataset folder or packed scene")->required();
   app.add_option("--format", arguments->format, "one of " + list_formats())->required();
   app.add_option("--split", arguments->split, "views that are written")

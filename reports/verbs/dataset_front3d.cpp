@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "reports/verbs/dataset_front3d.h"
 
+#include <utility>
+
+#include "glint/core/error.h"
+
 namespace glint {
 
 void add_front3d_options(CLI::App& make, Front3dOptions& options) {
@@ -10,6 +14,17 @@ void add_front3d_options(CLI::App& make, Front3dOptions& options) {
   make.add_option(
       "--textures", options.textures, "front3d: folder of pictures for surfaces; none: patterns"
   );
+}
+
+void check_no_front3d_options(const Front3dOptions& options) {
+  for (const auto& [name, value] :
+       {std::pair{"--house", &options.house},
+        {"--room", &options.room},
+        {"--models", &options.models},
+        {"--textures", &options.textures}})
+    GLINT_CHECK(
+        value->empty(), kUsage, "dataset make glassroom: {} {} is of front3d alone", name, *value
+    );
 }
 
 Front3dOptions front3d_shots(Front3dOptions options, const GlassRoomOptions& room) {

@@ -10,6 +10,9 @@ namespace glint {
 
 void add_front3d_options(CLI::App& make, Front3dOptions& options);
 
+// Errors (kUsage): one of them is given, which GlassRoom would not look at.
+void check_no_front3d_options(const Front3dOptions& options);
+
 // The options with the sizes, views, samples, seed and priors of `room`.
 Front3dOptions front3d_shots(Front3dOptions options, const GlassRoomOptions& room);
 

@@ -83,6 +83,7 @@ void add_dataset_import(CommandLine& line, CLI::App& dataset) {
       kOutOption | kThreadsOption | kJsonOption | kQuietOption
   );
   CLI::App& app = **verb;
+  describe_out(app, "folder of the dataset");
   PhotoOptions& options = arguments->options;
   app.add_option("photos", arguments->photos, "folder with photos")->required();
   app.add_option("--lens", options.lens, "camera model, of one lens where all sizes are the same")

@@ -79,6 +79,7 @@ int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
       "dataset make {}: no such generator; expected glassroom or front3d",
       options.dataset
   );
+  if (options.dataset == "glassroom") check_no_front3d_options(options.front3d);
   install_interrupt_handler();
   options.room.seed = common.seed.value_or(0);
   if (options.dataset == "front3d") options.scenes.resize(1);
@@ -241,6 +242,7 @@ void add_make(CommandLine& line, CLI::App& dataset) {
       kDatasetOptions | kOutOption | kDataOption | kSeedOption
   );
   CLI::App& make = **verb;
+  describe_out(make, "folder of the scene, or of several; else DATA/glassroom or DATA/front3d");
   GlassRoomOptions& room = options->room;
   make.add_option("dataset", options->dataset, "glassroom or front3d")->required();
   make.add_option("--scene", options->scenes, "room_1 ... room_5; several make several")

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "reports/verbs/print_findings.h"
 
+#include <map>
+#include <utility>
+
 namespace glint {
 
 Json findings_json(const std::vector<Finding>& findings) {
@@ -13,9 +16,16 @@ Json findings_json(const std::vector<Finding>& findings) {
 }
 
 std::string findings_text(const std::vector<Finding>& findings) {
+  const auto key = [](const Finding& finding) { return std::pair(finding.check, finding.message); };
+  std::map<std::pair<std::string, std::string>, std::size_t> counts;
+  for (const Finding& finding : findings) ++counts[key(finding)];
   std::string text;
-  for (const Finding& finding : findings)
-    text += fmt::format("{}: {}: {}\n", finding.check, finding.where, finding.message);
+  for (const Finding& finding : findings) {
+    const std::size_t count = std::exchange(counts[key(finding)], 0);
+    if (count == 0) continue;  // told with the first
+    text += fmt::format("{}: {}: {}", finding.check, finding.where, finding.message);
+    text += count > 1 ? fmt::format(" (and {} more)\n", count - 1) : "\n";
+  }
   return text;
 }
 

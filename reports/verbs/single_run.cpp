@@ -45,8 +45,11 @@ void check_new_run(const fs::path& folder, bool force, const std::string& identi
   GLINT_CHECK(
       force || goes_on || !holds_work(folder),
       kUsage,
-      "{}: holds a run already; --force replaces it, --run names another folder",
-      folder.string()
+      "{}: holds {}; --force replaces it, --run names another folder",
+      folder.string(),
+      fs::exists(folder / "env.json") ? "a run already"
+                                      : "a training that was cut off and has other settings, data "
+                                        "or code, so that it cannot go on"
   );
   check_run_folder(folder);
 }

@@ -91,6 +91,9 @@ struct CommandLine {
   );
 };
 
+// Help of --out for a verb whose results lie in no profile's folder.
+void describe_out(CLI::App& verb, const std::string& meaning);
+
 // Registered with GLINT_REGISTER(Verb, {"plan", add_plan_verb}); help lists them by id.
 struct Verb {
   std::string id;

@@ -263,6 +263,25 @@ TEST_CASE("p1 and p2 reach the lens model unswapped, and a hopeless lens is an e
   CHECK(std::equal(image.values().begin(), image.values().end(), loaded.values().begin()));
   folder.json["k1"] = 50;
   CHECK_THAT(folder.load_error(), Contains("distortion coefficients") && Contains("frame"));
+  const auto findings = check_dataset(folder.path());
+  CHECK(std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
+    return finding.check == "distortion";
+  }));
+}
+
+TEST_CASE("a principal point far from the middle is loaded with a note, and found by the check") {
+  RoomFolder folder;
+  CHECK(folder.load().data_notes.empty());
+  folder.json["cx"] = 0.9 * folder.json["w"].get<double>();
+  const Scene scene = folder.load();
+  REQUIRE(scene.data_notes.size() == 1);
+  CHECK_THAT(
+      scene.data_notes[0],
+      Contains(fmt::format("of {0} of {0} views", scene.train.size() + scene.test.size()))
+  );
+  const auto findings = check_dataset(folder.path());
+  REQUIRE_FALSE(findings.empty());
+  CHECK(findings[0].check == "intrinsics-size");
 }
 
 TEST_CASE("real captures are loaded") {

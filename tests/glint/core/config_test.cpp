@@ -9,17 +9,22 @@ using namespace glint;
 
 namespace {
 
+enum class Shade { kLight, kDark };
+NLOHMANN_JSON_SERIALIZE_ENUM(Shade, {{Shade::kLight, "light"}, {Shade::kDark, "dark"}})
+
 struct ExampleConfig {
   float rate = 0.05f;
   int steps = 100;
   bool verbose = false;
   std::string name = "plain";
+  Shade shade = Shade::kDark;
   template <class V>
   void visit(V&& v) {
     v("rate", rate, "learning rate");
     v("steps", steps, "iterations");
     v("verbose", verbose, "more output");
     v("name", name, "title");
+    v("shade", shade, "light or dark");
   }
 };
 
@@ -82,6 +87,20 @@ TEST_CASE("A value of the wrong type is an error") {
       Catch::Contains("rate") && Catch::Contains("fast")
   );
   CHECK(config.rate == 0.05f);
+}
+
+TEST_CASE("A word that an enumeration does not have is an error that names those it has") {
+  ExampleConfig config;
+  for (const Json& word : {Json("drak"), Json(1), Json()})
+    CHECK_THAT(
+        usage_error([&] {
+          config_from_json(config, Json{{"shade", word}}, "test");
+        }),
+        Catch::Contains("test: shade cannot be " + word.dump()) && Catch::Contains("light or dark")
+    );
+  CHECK(config.shade == Shade::kDark);
+  config_from_json(config, Json{{"shade", "light"}}, "test");
+  CHECK(config.shade == Shade::kLight);
 }
 
 TEST_CASE("A number that does not fit an integer field is an error") {

@@ -90,6 +90,17 @@ TEST_CASE("a profile may do without some of its cells, also when they are asked 
   );
 }
 
+TEST_CASE("patterns that leave nothing out are refused") {
+  Profile profile = fake_profile();
+  for (const char* good :
+       {"room_1", "fake", "room_1/fake", "*/fake/7", "room_[12]/fa*", "room_2/*"})
+    CHECK_NOTHROW(make_plan(profile, {.skip = {good}, .methods = {"2dgs"}}, {}));
+  for (const char* bad : {"rom_1", "room_1/fakee", "fake/room_1"})
+    CHECK_THROWS_WITH(make_plan(profile, {.skip = {bad}}, {}), Catch::Contains("--skip"));
+  profile.leave_out = {"rom_1/*"};
+  CHECK_THROWS_WITH(make_plan(profile, {}, {}), Catch::Contains("leave_out 'rom_1/*' fits no"));
+}
+
 TEST_CASE("fields of methods that are not run are checked, too") {
   Profile profile = load_profile("smoke");
   profile.overrides["glint"] = {{"lambda_depht", 0.2}};
@@ -146,8 +157,10 @@ TEST_CASE("a profile file of the user's is read, and its mistakes are named") {
   check_refused("[mesh]\nmax_depth = -1\n", "[mesh]: max_depth is -1");
   check_refused("[mesh]\ntruncation_voxels = 1e9\n", "truncation_voxels is");
   check_refused("[mesh]\nbounds_min = [1, 1, 1]\nbounds_max = [0, 2, 2]\n", "bounds_max is 0");
-  check_refused("[mesh_metrics]\ncull = 'camera'\n", "cull is \"camera\"; expected cameras");
-  check_refused("[mesh_metrics]\ndistance = 'foo'\n", "distance is \"foo\"");
+  check_refused(
+      "[mesh_metrics]\ncull = 'camera'\n", "cull cannot be \"camera\"; expected none, or cameras"
+  );
+  check_refused("[mesh_metrics]\ndistance = 'foo'\n", "distance cannot be \"foo\"");
   check_refused(
       "[mesh_metrics]\ncull_tolerance_m = -1\n", "[mesh_metrics]: cull_tolerance_m is -1"
   );

@@ -91,6 +91,26 @@ TEST_CASE("A PNG's PSNR is psnr-8bit only, a float image has both") {
   CHECK(means.at("psnr") == 100);
 }
 
+TEST_CASE("A 16-bit PNG is not called an 8-bit picture; colours that are not finite are refused") {
+  Case c;
+  const ImageSize size = test::small_room().test.front().rgb.size();
+  for (const View& view : test::small_room().test)
+    write_png16(
+        c.folder.path() / "theirs/rgb" / (view.name + ".png"), Image(size.width, size.height, 1)
+    );
+  c.import({});
+  const auto means = eval_stage(c.spec, test::small_room(), {});
+  CHECK(means.contains("psnr"));
+  fs::remove_all(c.folder / "theirs/rgb");
+  for (const View& view : test::small_room().test) {
+    Image rgb = view.rgb;
+    rgb.at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
+    write_exr(c.folder.path() / "theirs/rgb" / (view.name + ".exr"), rgb);
+  }
+  const std::string name = test::small_room().test.front().name + ".exr";
+  CHECK_THROWS_WITH(c.import({}), Catch::Contains(name) && Catch::Contains("pixel (3, 2) is nan"));
+}
+
 TEST_CASE("Maps that the data have and the renders lack are told, with what lies there instead") {
   Case c;
   fs::rename(c.folder / "theirs/depth", c.folder / "theirs/depth_colored");

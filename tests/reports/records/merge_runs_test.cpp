@@ -77,9 +77,31 @@ TEST_CASE("equal scores are replicates, whatever they cost; others are conflicts
   const auto merged = merge_runs(ours.folder.path(), theirs.folder.path(), true);
   REQUIRE(verdicts(merged) == std::vector{V::kReplicate, V::kConflict, V::kConflict});
   CHECK_THAT(merged[1].why, Catch::StartsWith("psnr 20 and 22; kept: that of"));
-  CHECK_THAT(merged[2].why, Catch::StartsWith("other settings, data or code"));
+  CHECK_THAT(
+      merged[2].why,
+      Catch::StartsWith("trained by other settings or code; kept: that of an unknown machine")
+  );
   CHECK(read_records(ours.file())[1].metrics.at("psnr") == 20);
   CHECK(ours.from(other) == "ours");
+}
+
+TEST_CASE("a conflict names the data or the revisions that differ, and both machines") {
+  const auto made = [](const char* revision, const char* machine) {
+    Record record = record_of("a", 20);
+    record.train_key = revision;
+    record.environment = {{"git_revision", revision}, {"machine", machine}, {"cpu", "EPYC"}};
+    return record;
+  };
+  const Record ours = made("1a", "left");
+  Record theirs = made("2b", "right");
+  CHECK_THAT(score_differences(ours, theirs), Catch::Contains("(revisions 1a and 2b)"));
+  const Store here("ours", {ours}), there("theirs", {theirs});
+  CHECK_THAT(
+      merge_runs(here.folder.path(), there.folder.path(), false)[0].why,
+      Catch::Contains("kept: that of left (EPYC), not of right (EPYC)")
+  );
+  theirs.dataset_hash = "other";
+  CHECK(score_differences(ours, theirs) == "trained on other data");
 }
 
 TEST_CASE("a finished cell takes the place of a failed one, not the other way round") {

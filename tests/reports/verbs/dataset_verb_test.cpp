@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "glint/core/config.h"
+#include "reports/verbs/print_findings.h"
 #include "tests/reports/run_words.h"
 #include "tests/support/small_room.h"
 
@@ -91,6 +92,23 @@ TEST_CASE("dataset make takes a level of priors, and no other word") {
   CHECK_FALSE(fs::exists(folder / "awful"));
   REQUIRE(run(make_tiny(folder / "poor", "poor")) == 0);
   CHECK(Json::parse(read_file(folder / "poor/scene.json"))["prior_level"] == "poor");
+}
+
+TEST_CASE("dataset make glassroom refuses what only 3D-FRONT looks at") {
+  const TempFolder folder;
+  const std::string text = captured(2, [&] {
+    CHECK(
+        run({"dataset", "make", "glassroom", "--out", folder / "room", "--house", "a.json"}) == 1
+    );
+  });
+  CHECK_THAT(text, Contains("--house a.json is of front3d alone"));
+  CHECK_FALSE(fs::exists(folder / "room"));
+}
+
+TEST_CASE("what is found in each frame is told once, with its number") {
+  const std::vector<Finding> findings = {
+      {"pose", "frame 0", "damaged"}, {"pose", "frame 1", "damaged"}, {"pose", "frame 2", "far"}};
+  CHECK(findings_text(findings) == "pose: frame 0: damaged (and 1 more)\npose: frame 2: far\n");
 }
 
 TEST_CASE("a scene of other options is replaced, and what they were is said") {

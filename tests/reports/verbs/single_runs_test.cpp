@@ -118,6 +118,28 @@ TEST_CASE("a training that was cut off before its first checkpoint needs no --fo
   CHECK(fs::exists(fs::path(mine) / "env.json"));
 }
 
+TEST_CASE("an import that fails leaves no empty folders") {
+  const test::TempFolder folder;
+  fs::create_directories(folder / "theirs");
+  const std::string out = folder / "out";
+  CHECK(
+      run(
+          {"eval",
+           "--predictions",
+           folder / "theirs",
+           "--dataset",
+           room(),
+           "--method",
+           "theirs",
+           "--out",
+           out,
+           "--data",
+           folder / "data"}
+      ) == 2
+  );
+  CHECK_FALSE(fs::exists(out));
+}
+
 TEST_CASE("a run of a profile is scored without touching the profile's records") {
   const test::TempFolder folder;
   const fs::path profile = folder / "out/ci";
