@@ -53,6 +53,7 @@ void describe_run(Record& record, const RunSpec& spec, const Scene& scene) {
   add_unmeasured(record, spec, cost);
   record.not_applicable = without_truth(record, spec);
   record.timings.erase("train");  // of a cell whose training was only loaded
+  record.iterations = spec.options.iterations;
   if (cost) add_training(record, *cost);
   if (const auto surfels = record.metrics.find("num-surfels"); surfels != record.metrics.end())
     record.num_surfels = static_cast<std::size_t>(surfels->second);

@@ -48,6 +48,7 @@ struct Record {
   // What trained it and what scored it (stage_files.h); records of schema 1 have none.
   std::string train_key, score_key;
   std::string dataset_hash;  // as the loader knows the data
+  int iterations = 0;        // of its training; 0: unknown, or trained elsewhere
   std::size_t num_surfels = 0;
   double estimated_memory_mb = 0;     // before its training
   double process_memory_mb = 0;       // the most that its process took; metrics have the training's

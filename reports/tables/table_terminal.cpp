@@ -274,8 +274,9 @@ std::vector<std::string> brief_notes(const Table& table) {
   std::vector<std::string> notes = table_notes(table);
   std::erase_if(notes, [](const std::string& note) {
     return !note.starts_with("Mean over") && !note.starts_with("GlassRoom: ") &&
-           !note.starts_with("Not in these") && !note.starts_with("Not run") &&
-           !note.starts_with("Failed: ") && !note.starts_with("* ") && !note.starts_with("≈");
+           !note.starts_with("Not in these") && !note.starts_with("Trained for") &&
+           !note.starts_with("Not run") && !note.starts_with("Failed: ") &&
+           !note.starts_with("* ") && !note.starts_with("≈");
   });
   return notes;
 }

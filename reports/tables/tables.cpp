@@ -369,6 +369,25 @@ void add_seeds_notes(Table& table) {
   }
 }
 
+// Rows are compared as if they were trained alike.
+void add_steps_note(Table& table, const std::vector<Record>& records) {
+  std::map<int, std::vector<std::string>> titles;  // by steps
+  for (const TableRow& row : table.rows) {
+    std::set<int> steps;
+    for (const Record& record : records)
+      if (record.cell.method == row.method && record.ok() && record.iterations > 0)
+        steps.insert(record.iterations);
+    for (const int count : steps) titles[count].push_back(row.title);
+  }
+  if (titles.size() < 2) return;
+  std::vector<std::string> groups;
+  for (const auto& [steps, rows] : titles)
+    groups.push_back(fmt::format("{}: {}", steps, fmt::join(rows, ", ")));
+  table.notes.push_back(
+      fmt::format("Trained for different numbers of steps ({}).", fmt::join(groups, "; "))
+  );
+}
+
 // Where what a machine lacked is to be had.
 void add_weights_note(Table& table) {
   const auto lacks = [](const TableCell& cell) {
@@ -398,6 +417,7 @@ void add_notes(
   add_scenes_note(table, definition, records);
   add_priors_note(table, records);
   add_seeds_notes(table);
+  add_steps_note(table, records);
   add_failures(table, records);
   add_method_notes(table, records);
   add_weights_note(table);

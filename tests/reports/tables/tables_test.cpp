@@ -77,6 +77,29 @@ TEST_CASE("what methods have to say of their runs stands once below tables with 
   CHECK(std::count(table.notes.begin(), table.notes.end(), "2DGS: seen without masks.") == 1);
 }
 
+TEST_CASE("rows that were trained for different numbers of steps are told") {
+  std::vector<Record> records;
+  for (const char* method : {"2dgs", "pgsr", "glint"}) {
+    Record record;
+    record.dataset = "glassroom";
+    record.cell = {"room_1", method, 0};
+    record.metrics["psnr"] = 30;
+    record.iterations = 3000;
+    records.push_back(record);
+  }
+  const auto notes = [&] {
+    const Table table = build_table(definition_of("table1_photometric"), records);
+    return fmt::format("{}", fmt::join(table.notes, " "));
+  };
+  CHECK_THAT(notes(), !Catch::Contains("numbers of steps"));
+  records[1].iterations = 0;  // unknown
+  CHECK_THAT(notes(), !Catch::Contains("numbers of steps"));
+  records[2].iterations = 6000;
+  CHECK_THAT(
+      notes(), Catch::Contains("Trained for different numbers of steps (3000: 2DGS; 6000: GLINT).")
+  );
+}
+
 TEST_CASE("methods that were not run are missing, in every format a word") {
   const Table table = golden_table("table1_photometric");
   CHECK(cell_of(table, "pgsr", "psnr").status == CellStatus::kMissing);
