@@ -10,8 +10,6 @@
 namespace glint {
 namespace {
 
-// Of a PNG: after the signature, IHDR's length and name, and the sizes.
-constexpr std::size_t kBitDepth = 24, kColorType = 25;
 constexpr std::size_t kBeginning = 10 + 65535;  // bytes: the longest header of NPY's format 1
 
 std::string beginning_of(const fs::path& path, std::size_t count = kBeginning) {
@@ -37,15 +35,9 @@ bool stores_integers(const fs::path& path) {
   return file.starts_with("\x89PNG") || file.starts_with("\xff\xd8");  // or JPEG; else EXR
 }
 
-bool stores_bytes(const fs::path& path) {
-  if (!stores_integers(path)) return false;
-  const std::string file = beginning_of(path);
-  if (file.starts_with(kNpyMagic))
-    return parse_npy_header(file, path.string()).type.find_first_of("248") == std::string::npos;
-  return !(file.starts_with("\x89PNG") && file.size() > kBitDepth && file[kBitDepth] == 16);
-}
-
 bool has_alpha(const fs::path& path) {
+  constexpr std::size_t kColorType =
+      25;  // after the signature, IHDR's length and name, sizes, depth
   const std::string file = beginning_of(path, kColorType + 1);
   const bool is_png = file.starts_with("\x89PNG") && file.size() > kColorType;
   return is_png && (file[kColorType] == 4 || file[kColorType] == 6);

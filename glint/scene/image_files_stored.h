@@ -13,10 +13,6 @@ namespace glint {
 // kBadReference (a damaged header of NPY or TIFF), kEnvironment (TIFF without library glint_tiff).
 bool stores_integers(const fs::path& path);
 
-// Are they integers of 8 bits, so that a picture's PSNR depends on their rounding? As above; of an
-// integer TIFF: true.
-bool stores_bytes(const fs::path& path);
-
 // Does the header of a PNG name an alpha channel, which read_image() drops? Of any other file:
 // false.
 bool has_alpha(const fs::path& path);

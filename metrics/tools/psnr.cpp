@@ -12,8 +12,8 @@ class PsnrTool final : public MetricTool {
  public:
   std::string name() const override { return "glint-psnr"; }
   std::string description() const override {
-    return "Peak signal-to-noise ratio in dB. Float predictions (EXR, NPY) and those of 16 "
-           "bits give psnr, 8-bit ones (PNG, JPEG, NPY of uint8) psnr-8bit.";
+    return "Peak signal-to-noise ratio in dB. Float predictions (EXR, NPY) give psnr, integer ones "
+           "(PNG, JPEG, NPY of uint8) psnr-8bit.";
   }
   std::string example() const override {
     return "glint-psnr out/ci/runs/room_1/2dgs/0 data/glassroom/room_1-* --json";
@@ -27,13 +27,12 @@ class PsnrTool final : public MetricTool {
   Image load_prediction(const fs::path& path) const override { return read_image(path, 3); }
   Image load_reference(const fs::path& path) const override { return read_image(path, 3); }
 
-  // A float file holds what was rendered, an 8-bit one what was saved; 16 bits round to less than
-  // any digit that is printed.
+  // A float file holds what was rendered, an integer file what was saved.
   std::vector<PairMetrics> families() const override {
     return {psnr_metrics({}), psnr_metrics(psnr_8bit_protocol())};
   }
   std::size_t family_for(const FilePair& files) const override {
-    return stores_bytes(files.prediction) ? 1 : 0;
+    return stores_integers(files.prediction) ? 1 : 0;
   }
 
   // Identical images count with the cap, so their number is told.

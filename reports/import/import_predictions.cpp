@@ -180,10 +180,10 @@ void note_absent(
   }
 }
 
-// Are they rounded to n / 255?
+// Do they come as integers?
 bool has_eight_bit_images(const PredictionFiles& found) {
   return std::any_of(found.views.begin(), found.views.end(), [](const auto& files) {
-    return stores_bytes(files.at("rgb"));
+    return stores_integers(files.at("rgb"));
   });
 }
 
@@ -225,7 +225,11 @@ std::vector<std::string> import_predictions(
   note_halves(found.views.front().at("rgb"), scene.test.front(), notes);
   const bool eight_bit = has_eight_bit_images(found);
   if (eight_bit)
-    notes.emplace_back("8-bit images: their PSNR is psnr-8bit, which is not ranked beside psnr");
+    notes.emplace_back(
+        "pictures of integers: their PSNR is psnr-8bit, of values rounded to n / 255, which is not "
+        "ranked "
+        "beside psnr"
+    );
   note_absent(folder, found, scene.test.front(), notes);
   note_conventions(found.views.front(), scene.test.front(), options, notes);
   remove_renders(spec.folder / "renders");
