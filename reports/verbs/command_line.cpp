@@ -53,7 +53,8 @@ void add_profile_options(const CommonOptionAdder& add, CommonOptions& common) {
       ->capture_default_str();
   const std::string profiles = comma_list(embedded_names("profiles")) + ", or a TOML file";
   add.option(kProfileOption, "--profile", common.profile, profiles)->capture_default_str();
-  const char* methods = "globs of whole ids, a,b*,c (* also runs over /); also beyond the profile's";
+  const char* methods =
+      "globs of whole ids, a,b*,c (* also runs over /); also beyond the profile's";
   add.option(kCellOptions, "--methods", common.methods, methods)->delimiter(',');
   const char* only = "only cells whose scene/method/seed matches a glob";
   add.option(kCellOptions, "--only", common.only, only);

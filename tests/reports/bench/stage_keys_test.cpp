@@ -131,7 +131,7 @@ TEST_CASE("every field of a profile changes the keys that go by it and no other"
       {"description", {[](Profile& p) { p.description = "other"; }, kNone, ""}},
       {"iterations", {[](Profile& p) { p.iterations += 1; }, kTrain, "iterations"}},
       {"methods", {[](Profile& p) { p.methods.push_back("fake/other"); }, kNone, ""}},
-      {"leave_out", {[](Profile& p) { p.leave_out = {"room_9"}; }, kNone, ""}},
+      {"leave_out", {[](Profile& p) { p.leave_out = {"*/9"}; }, kNone, ""}},
       {"seeds", {[](Profile& p) { p.seeds = {1}; }, kTrain, "seed"}},
       {"timing_frames", {[](Profile& p) { p.timing_frames += 1; }, kScore, "timing_frames"}},
       {"timing_warmup", {[](Profile& p) { p.timing_warmup += 1; }, kScore, "timing_warmup"}},
