@@ -227,8 +227,7 @@ std::vector<std::string> import_predictions(
   if (eight_bit)
     notes.emplace_back(
         "pictures of integers: their PSNR is psnr-8bit, of values rounded to n / 255, which is not "
-        "ranked "
-        "beside psnr"
+        "ranked beside psnr"
     );
   note_absent(folder, found, scene.test.front(), notes);
   note_conventions(found.views.front(), scene.test.front(), options, notes);

@@ -16,15 +16,18 @@ Json findings_json(const std::vector<Finding>& findings) {
 }
 
 std::string findings_text(const std::vector<Finding>& findings) {
+  constexpr std::size_t kMostAlike = 3;
   const auto key = [](const Finding& finding) { return std::pair(finding.check, finding.message); };
-  std::map<std::pair<std::string, std::string>, std::size_t> counts;
+  std::map<std::pair<std::string, std::string>, std::size_t> counts, told;
   for (const Finding& finding : findings) ++counts[key(finding)];
   std::string text;
   for (const Finding& finding : findings) {
-    const std::size_t count = std::exchange(counts[key(finding)], 0);
-    if (count == 0) continue;  // told with the first
+    const std::size_t number = ++told[key(finding)], count = counts[key(finding)];
+    if (number > kMostAlike) continue;
     text += fmt::format("{}: {}: {}", finding.check, finding.where, finding.message);
-    text += count > 1 ? fmt::format(" (and {} more)\n", count - 1) : "\n";
+    if (number == kMostAlike && count > kMostAlike)
+      text += fmt::format(" (and {} more; --json names all)", count - kMostAlike);
+    text += "\n";
   }
   return text;
 }

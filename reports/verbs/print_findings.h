@@ -18,8 +18,8 @@ int print_findings(
     const std::string& when_none
 );
 Json findings_json(const std::vector<Finding>& findings);
-// A line each; what is found in several places in the same words, as one field of a file that all
-// its frames have, is told once with their number.
+// A line each; of what is found in many places in the same words, as one field of a file that all
+// its frames have, the first three and the number of the others.
 std::string findings_text(const std::vector<Finding>& findings);
 
 }  // namespace glint

@@ -105,10 +105,17 @@ TEST_CASE("dataset make glassroom refuses what only 3D-FRONT looks at") {
   CHECK_FALSE(fs::exists(folder / "room"));
 }
 
-TEST_CASE("what is found in each frame is told once, with its number") {
-  const std::vector<Finding> findings = {
-      {"pose", "frame 0", "damaged"}, {"pose", "frame 1", "damaged"}, {"pose", "frame 2", "far"}};
-  CHECK(findings_text(findings) == "pose: frame 0: damaged (and 1 more)\npose: frame 2: far\n");
+TEST_CASE("of what is found in each frame the first three are told, and how many more") {
+  std::vector<Finding> findings = {{"pose", "frame x", "far"}};
+  for (const char* frame : {"frame 0", "frame 1", "frame 2"})
+    findings.push_back({"pose", frame, "damaged"});
+  const std::string few = findings_text(findings);
+  CHECK(std::count(few.begin(), few.end(), '\n') == 4);
+  CHECK_THAT(few, !Contains("more"));
+  for (const char* frame : {"frame 3", "frame 4"}) findings.push_back({"pose", frame, "damaged"});
+  const std::string many = findings_text(findings);
+  CHECK(std::count(many.begin(), many.end(), '\n') == 4);
+  CHECK_THAT(many, Contains("pose: frame 2: damaged (and 2 more; --json names all)\n"));
 }
 
 TEST_CASE("a scene of other options is replaced, and what they were is said") {
