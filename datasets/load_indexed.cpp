@@ -385,22 +385,6 @@ Image read_true_map(const fs::path& path, MapKind kind, double depth_scale) {
   return map;
 }
 
-void check_finite(const fs::path& path, const Image& map) {
-  const auto channels = static_cast<std::size_t>(map.channels());
-  for (std::size_t i = 0; i < map.values().size(); ++i) {
-    const std::size_t pixel = i / channels;
-    GLINT_CHECK(
-        std::isfinite(map.values()[i]),
-        kBadReference,
-        "{}: pixel ({}, {}) is {}; store 0 where nothing is known",
-        path.string(),
-        pixel % static_cast<std::size_t>(map.width()),
-        pixel / static_cast<std::size_t>(map.width()),
-        map.values()[i]
-    );
-  }
-}
-
 namespace {
 
 // Names in files that lead out of the folder become problems: a dataset of strangers reads nothing

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glint/core/error.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {
@@ -49,6 +50,22 @@ std::size_t write_depth_millimetres(const fs::path& path, ImageView depth) {
   }
   write_png16(path, steps);
   return num_beyond;
+}
+
+void check_finite(const fs::path& path, const Image& map) {
+  const auto channels = static_cast<std::size_t>(map.channels());
+  for (std::size_t i = 0; i < map.values().size(); ++i) {
+    const std::size_t pixel = i / channels;
+    GLINT_CHECK(
+        std::isfinite(map.values()[i]),
+        kBadReference,
+        "{}: pixel ({}, {}) is {}; store 0 where nothing is known",
+        path.string(),
+        pixel % static_cast<std::size_t>(map.width()),
+        pixel / static_cast<std::size_t>(map.width()),
+        map.values()[i]
+    );
+  }
 }
 
 }  // namespace glint

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Maps as files of datasets, written so that read_prior() and read_true_map() give them back.
+// Maps as files of datasets: written so that read_prior() and read_true_map() give them back, and
+// the check of what was read.
 #pragma once
 
 #include "glint/core/files.h"
@@ -11,6 +12,9 @@ namespace glint {
 Image encode_depth(ImageView depth);
 // Unit or zero normals as (n + 1) / 2.
 Image encode_normal(ImageView normal);
+
+// Errors (kBadReference): a value that is not finite; its pixel is named.
+void check_finite(const fs::path& path, const Image& map);
 
 // diffrens/: 8-bit PNG; depth by encode_depth(), normals by encode_normal().
 void write_prior(const fs::path& path, MapKind kind, const Image& map);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/map_files.h"
 #include "datasets/map_resize.h"
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"

@@ -130,7 +130,5 @@ PointCloud read_points(const fs::path& path);
 Image read_true_map(const fs::path& path, MapKind kind, double depth_scale = 1e-3);
 // The same without a look at the values; masks in [0, 1].
 Image read_true_values(const fs::path& path, MapKind kind, double depth_scale = 1e-3);
-// Errors (kBadReference): a value that is not finite; its pixel is named.
-void check_finite(const fs::path& path, const Image& map);
 
 }  // namespace glint

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "datasets/map_files.h"
 #include "datasets/scene_index.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/image_files_stored.h"
