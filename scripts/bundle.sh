@@ -78,7 +78,9 @@ glibc=$(objdump -T $bundle/bin/g* $bundle/lib/*.so* | grep -o 'GLIBC_2\.[0-9]*' 
 cat >$bundle/environment.sh <<'ENVIRONMENT'
 # To be sourced: the bundle's libraries, with its C++ runtime where that runs here.
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-[ -d "$here/bin" ] || tar -xzf "$here/programs.tar.gz" -C "$here"
+unxz_to_output() { if command -v xz >/dev/null; then xz -dc "$1"; else python3 -c 'import lzma, shutil, sys
+shutil.copyfileobj(lzma.open(sys.argv[1]), sys.stdout.buffer)' "$1"; fi; }
+[ -d "$here/bin" ] || unxz_to_output "$here/programs.tar.xz" | tar -x -C "$here"
 export LD_LIBRARY_PATH=$here/lib:$here/lib/cxx${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 "$here/bin/glint-bench" --version >/dev/null 2>&1 || LD_LIBRARY_PATH=${LD_LIBRARY_PATH/":$here/lib/cxx"/}
 ENVIRONMENT
@@ -109,9 +111,9 @@ else
   build/release/bin/glint-bench dataset pack "$scene" $bundle/scene.safetensors --test-truth-only >&2
 fi
 $bundle/glint-bench dataset info $bundle/scene.safetensors >&2
-gzip $bundle/scene.safetensors  # floats of normals and depth: half of it
+xz -T0 $bundle/scene.safetensors  # floats of normals and depth: a third of it
 
-tar -czf $bundle/programs.tar.gz -C $bundle bin lib  # less than half; environment.sh unpacks them
+tar -cf - -C $bundle bin lib | xz -T0 >$bundle/programs.tar.xz  # a third; environment.sh unpacks them
 rm -r $bundle/bin $bundle/lib
 
 cat >$bundle/BUNDLE.md <<ABOUT

@@ -1,18 +1,21 @@
 #!/usr/bin/env bash
 # Builds gsplat's 2DGS and times it beside ours on the same card, surfels and camera, from the folder that
 # `scripts/bundle.sh --gsplat ARCHIVE` makes:
-#   ./gsplat_check.sh [--seconds N] [--dry-run]
+#   ./gsplat_check.sh [--seconds N] [--dry-run] [--folder FOLDER [--build]]
 # Needs what a bundle cannot carry: PyTorch with CUDA, rich, ninja, and nvcc of the same major version. Done
 # within N seconds (570), the compiler gets 420 of them. To $OUT (default ./gpu_out): gsplat.md, gsplat.log and
-# gsplat.tar.gz. --dry-run stops before the compiler. Exit 6: something needed is not here, and which.
+# gsplat.tar.gz. --dry-run stops before the compiler. --folder keeps what is compiled, so that the next call finds
+# it; with --build nothing else is done. Exit 6: something needed is not here, and which.
 set -uo pipefail
 
-seconds=570 dry=
+seconds=570 dry='' folder='' build=''
 while [ $# -gt 0 ]; do
   case $1 in
     --seconds) seconds=$2; shift 2 ;;
     --dry-run) dry=1; shift ;;
-    *) echo "gsplat_check: unknown argument $1; expected --seconds or --dry-run" >&2; exit 1 ;;
+    --folder) folder=$2; shift 2 ;;
+    --build) build=1; shift ;;
+    *) echo "gsplat_check: unknown argument $1; expected --seconds, --dry-run, --folder or --build" >&2; exit 1 ;;
   esac
 done
 out=${OUT:-$PWD/gpu_out}
@@ -35,16 +38,27 @@ python3 -c 'import numpy, rich, torch' 2>>"$log" || missing "python3 lacks numpy
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir "$work/source"
-tar -xf "$archive" -C "$work/source" --strip-components=1 || missing "cannot unpack $archive"
-tar -xf gsplat/glm.tar.xz -C "$work/source/gsplat/cuda/csrc/third_party" || missing "cannot unpack glm"
-# What it calls glm is a checkout of glm, with the headers in a folder of the same name.
-(cd "$work/source/gsplat/cuda/csrc/third_party" && mv glm headers && mkdir glm && mv headers glm/glm)
-[ -f "$work/source/gsplat/cuda/csrc/third_party/glm/glm/glm.hpp" ] || missing "glm.tar.xz has no glm/glm.hpp"
+folder=${folder:-$work/gsplat}
+mkdir -p "$folder"
+folder=$(cd "$folder" && pwd)
+source=$folder/source
+glm=$source/gsplat/cuda/csrc/third_party/glm
+unpack() {
+  rm -rf "$source"
+  mkdir "$source"
+  tar -xf "$archive" -C "$source" --strip-components=1 || missing "cannot unpack $archive"
+  # What gsplat calls glm is a checkout of it, with the headers in a folder of the same name.
+  mkdir -p "$glm.part"
+  tar -xf gsplat/glm.tar.xz -C "$glm.part" || missing "cannot unpack glm"
+  [ -f "$glm.part/glm/glm.hpp" ] || missing "glm.tar.xz has no glm/glm.hpp"
+  rm -rf "$glm"
+  mv "$glm.part" "$glm"
+}
+[ -f "$glm/glm/glm.hpp" ] || unpack
 
 # Only 2DGS, of three colours and with depth as a fourth.
 export BUILD_2DGS=1 BUILD_3DGS=0 BUILD_3DGUT=0 BUILD_ADAM=0 BUILD_RELOC=0 BUILD_LOSSES=0 NUM_CHANNELS=3,4
-export PYTHONPATH=$work/source TORCH_EXTENSIONS_DIR=$work/extensions MAX_JOBS=${MAX_JOBS:-$(nproc)} PYTHONUNBUFFERED=1
+export PYTHONPATH=$source TORCH_EXTENSIONS_DIR=$folder/extensions MAX_JOBS=${MAX_JOBS:-$(nproc)} PYTHONUNBUFFERED=1
 [ -n "$dry" ] && { echo "gsplat_check: all that is needed is here" >&2; exit 0; }
 TORCH_CUDA_ARCH_LIST=$(python3 -c 'import torch; print("%d.%d" % torch.cuda.get_device_capability())')
 export TORCH_CUDA_ARCH_LIST
@@ -60,6 +74,7 @@ timeout --kill-after=5 "$build_limit" python3 -c 'from gsplat.cuda._backend impo
   missing "gsplat could not be built within $build_limit s: $(grep . "$log" | tail -n 1)"
 }
 echo "Built in $SECONDS s." >>"$table"
+[ -z "$build" ] || exit 0
 # shellcheck source=/dev/null
 source ./environment.sh
 

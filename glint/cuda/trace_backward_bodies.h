@@ -4,6 +4,7 @@
 // (trace_gather_bodies.h). No sum is shared among threads.
 #pragma once
 
+#include "glint/core/unrolled.h"
 #include "glint/cuda/trace_bodies.h"
 
 namespace glint::gpu {

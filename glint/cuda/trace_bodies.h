@@ -4,6 +4,7 @@
 // glint/render/trace.h.
 #pragma once
 
+#include "glint/core/unrolled.h"
 #include "glint/cuda/trace_walk.h"
 #include "glint/render/spherical_harmonics.h"
 

@@ -3,6 +3,7 @@
 // leaves are runs of up to kLeafDiscs discs.
 #pragma once
 
+#include "glint/core/unrolled.h"
 #include "glint/cuda/bvh_bodies.h"
 
 namespace glint::gpu {
@@ -37,15 +38,6 @@ struct alignas(32 * kWidth) WideNode {
   ChildRef children[kWidth];
 };
 static_assert(sizeof(WideNode) == 128);
-
-// f(0), ..., f(kCount - 1) with constants, so that arrays indexed by them stay in registers.
-template <int kCount, class F, int kFirst = 0>
-GLINT_HD void unrolled(F&& f) {
-  if constexpr (kFirst < kCount) {
-    f(kFirst);
-    unrolled<kCount, F, kFirst + 1>(static_cast<F&&>(f));
-  }
-}
 
 // Every inner node of the binary tree makes the wide node that it would be: of its children, the
 // one with the largest surface is replaced by its own two until kWidth are there. Those that

@@ -121,22 +121,23 @@ void activate_vjp(
     const RasterGradient& g,
     SurfelCloud& dL_dcloud
 ) {
-  run_lanes(
-      cloud.size(),
-      ActivateVjp{
-          pointers(cloud, a.options),
-          eye,
-          sh_degree,
-          a.scales.on_device(),
-          a.opacities.on_device(),
-          a.features.on_device(),
-          {g.means.on_device(),
-           g.scales.on_device(),
-           g.rotations.on_device(),
-           g.opacities.on_device(),
-           g.features.on_device()},
-          pointers(dL_dcloud)}
-  );
+  const bool apart = on_gpu() && sh_degree > 0;
+  const ActivateVjp vjp{
+      pointers(cloud, a.options),
+      eye,
+      sh_degree,
+      a.scales.on_device(),
+      a.opacities.on_device(),
+      a.features.on_device(),
+      {g.means.on_device(),
+       g.scales.on_device(),
+       g.rotations.on_device(),
+       g.opacities.on_device(),
+       g.features.on_device()},
+      pointers(dL_dcloud),
+      !apart};
+  run_lanes(cloud.size(), vjp);
+  if (apart) run_kernel(45 * cloud.size(), kGrain, ShRestVjp{vjp});
 }
 
 void color_gradient(const RasterGradient& gradient, int channels, FloatArray& dL_dcolors) {
@@ -163,10 +164,12 @@ TraceInput trace_input(const SurfelCloud& cloud, const ActivatedSurfels& activat
 void trace_activate_vjp(
     const ActivatedSurfels& activated, const TraceGradient& g, SurfelCloud& dL_dcloud
 ) {
+  const std::size_t count = activated.opacities.size();
   run_kernel(
-      activated.opacities.size(),
-      kGrain,
+      45 * count,
+      45 * kGrain,
       TraceActivateVjp{
+          count,
           activated.scales.on_device(),
           activated.opacities.on_device(),
           {g.means.on_device(),

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "glint/core/kernel.h"
+#include "glint/core/unrolled.h"
 #include "glint/render/activations.h"
 #include "glint/render/spherical_harmonics.h"
 
@@ -57,7 +58,10 @@ GLINT_HD T color_offset(const CloudPointers& cloud, std::size_t i, int c) {
 template <class T>
 GLINT_HD T sh_sum(const CloudPointers& cloud, std::size_t i, int count, const T basis[16], int c) {
   T sum(0);
-  for (int k = 0; k < count; ++k) sum = fma_of(basis[k], sh_coefficient<T>(cloud, i, k, c), sum);
+  // To a bound that compilers know, so that the basis stays in registers.
+  unrolled<16>([&](int k) {
+    if (k < count) sum = fma_of(basis[k], sh_coefficient<T>(cloud, i, k, c), sum);
+  });
   return sum;
 }
 
@@ -123,6 +127,7 @@ struct ActivateVjp {
   const float *scales, *opacities, *features;  // activated
   ActivatedGradient g;
   CloudGradientPointers out;  // added to
+  bool with_rest = true;      // sh_rest, too; else ShRestVjp does it
 
   template <class T>
   GLINT_HD void lanes(std::size_t i) const {
@@ -139,6 +144,14 @@ struct ActivateVjp {
     extra<T>(i);
   }
   GLINT_HD void operator()(std::size_t i) const { lanes<float>(i); }
+
+  // dL/d(sum of spherical harmonics) of a channel; exactly 0 where the colour was clamped.
+  template <class T>
+  GLINT_HD T sum_gradient(std::size_t i, int c) const {
+    const std::size_t at = i * static_cast<std::size_t>(channels()) + static_cast<std::size_t>(c);
+    const T color = load_strided<T>(features + at, channels()) - color_offset<T>(cloud, i, c);
+    return clamped_color_vjp(color, load_strided<T>(g.features + at, channels()));
+  }
 
  private:
   GLINT_HD int channels() const { return 3 + cloud.shown_extra; }
@@ -170,17 +183,15 @@ struct ActivateVjp {
     const int count = sh_coefficients(degree);
     T basis[16], dL_dbasis[16];
     sh_basis(degree, view.unit, basis);
-    for (int k = 0; k < count; ++k) dL_dbasis[k] = T(0);
+    unrolled<16>([&](int k) { dL_dbasis[k] = T(0); });
     for (int c = 0; c < 3; ++c) {
-      const std::size_t at = i * static_cast<std::size_t>(channels()) + static_cast<std::size_t>(c);
-      // Exactly 0 where the colour was clamped.
-      const T color = load_strided<T>(features + at, channels()) - color_offset<T>(cloud, i, c);
-      const T dL_dsum = clamped_color_vjp(color, load_strided<T>(g.features + at, channels()));
+      const T dL_dsum = sum_gradient<T>(i, c);
       add_strided(out.sh_dc + 3 * i + c, 3, dL_dsum * basis[0]);
-      for (int k = 1; k < count; ++k) {
-        add_strided(out.sh_rest + 45 * i + 3 * (k - 1) + c, 45, dL_dsum * basis[k]);
+      unrolled<16>([&](int k) {
+        if (k == 0 || k >= count) return;
+        if (with_rest) add_strided(out.sh_rest + 45 * i + 3 * (k - 1) + c, 45, dL_dsum * basis[k]);
         dL_dbasis[k] = fma_of(dL_dsum, sh_coefficient<T>(cloud, i, k, c), dL_dbasis[k]);
-      }
+      });
     }
     Vec3<T> dL_dd{};
     sh_basis_vjp(degree, view.unit, dL_dbasis, dL_dd);
@@ -203,32 +214,51 @@ struct ActivateVjp {
   }
 };
 
+// sh_rest of ActivateVjp alone, number by number, as a GPU likes to write rows of 45.
+struct ShRestVjp {
+  ActivateVjp whole;
+
+  GLINT_HD void operator()(std::size_t at) const {
+    const std::size_t i = at / 45;
+    const int k = static_cast<int>(at % 45 / 3) + 1, c = static_cast<int>(at % 3);
+    if (k >= sh_coefficients(whole.degree)) return;
+    float basis[16] = {}, value = 0;
+    sh_basis(whole.degree, view_direction<float>(whole.cloud, whole.eye, i).unit, basis);
+    unrolled<16>([&](int other) { value = other == k ? basis[other] : value; });
+    whole.out.sh_rest[at] += whole.sum_gradient<float>(i, c) * value;
+  }
+};
+
 // dL/d(activated) of trace().
 struct TracedGradient {
   const float *means, *scales, *rotations, *opacities, *sh_dc, *sh_rest;
 };
 
+// Number `at` of every array that has as many, out of 45 a surfel.
 struct TraceActivateVjp {
+  std::size_t count;                // surfels
   const float *scales, *opacities;  // activated
   TracedGradient g;
   CloudGradientPointers out;  // added to
 
-  GLINT_HD void operator()(std::size_t i) const {
-    add_row(g.means, i, 3, out.means);
-    add_row(g.rotations, i, 4, out.rotations);
-    add_row(g.sh_dc, i, 3, out.sh_dc);
-    add_row(g.sh_rest, i, 45, out.sh_rest);
-    for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
-      out.log_scales[k] += exp_vjp(scales[k], g.scales[k]);
-    out.opacity_logits[i] += sigmoid_vjp(opacities[i], g.opacities[i]);
+  GLINT_HD void operator()(std::size_t at) const {
+    out.sh_rest[at] += g.sh_rest[at];
+    if (at < 4 * count) few(at);
   }
 
  private:
-  GLINT_HD static void add_row(const float* from, std::size_t i, std::size_t width, float* to) {
-    for (std::size_t k = i * width; k < (i + 1) * width; ++k) to[k] += from[k];
+  GLINT_HD void few(std::size_t at) const {
+    out.rotations[at] += g.rotations[at];
+    if (at >= 3 * count) return;
+    out.means[at] += g.means[at];
+    out.sh_dc[at] += g.sh_dc[at];
+    if (at >= 2 * count) return;
+    out.log_scales[at] += exp_vjp(scales[at], g.scales[at]);
+    if (at < count) out.opacity_logits[at] += sigmoid_vjp(opacities[at], g.opacities[at]);
   }
 };
 
-using ShadeKernels = KernelList<ActivateGeometry, ActivateFeatures, ActivateVjp, TraceActivateVjp>;
+using ShadeKernels =
+    KernelList<ActivateGeometry, ActivateFeatures, ActivateVjp, ShRestVjp, TraceActivateVjp>;
 
 }  // namespace glint

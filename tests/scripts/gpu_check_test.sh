@@ -18,10 +18,10 @@ new_bundle() {
   rm -rf "$bundle"
   mkdir -p "$bundle/bin/no-fmad"
   cp "$script" "$bundle/"
-  echo : >"$bundle/environment.sh"
+  echo 'unxz_to_output() { xz -dc "$1"; }' >"$bundle/environment.sh"
   echo "Commit 123" >"$bundle/BUNDLE.md"
   echo kernels >"$bundle/resources.txt"
-  echo scene | gzip >"$bundle/scene.safetensors.gz"
+  echo scene | xz >"$bundle/scene.safetensors.xz"
   stand_in gpu-probe 'echo kernel ran'
   stand_in nvidia-smi 'echo a card'
   stand_in gpu_tests \
@@ -36,11 +36,12 @@ new_bundle() {
       perf*) printf "  \"op\": \"2dgs training step\",\n  \"ms\": 2.5,\n" ;;
       train*)
         mkdir -p "$run/renders/0"
+        loss=1; [[ $run != *-cpu-* ]] || loss=${LOSS_OF_CPU:-3}
         for i in 0 1 2 3 4; do
-          echo "{\"iteration\":$((10 * i)),\"num_surfels\":$((i < 3 ? 100 : 150)),\"seconds\":$((i < 3 ? i : i + 2)).0,\"saving_seconds\":0.5}"
+          echo "{\"iteration\":$((10 * i)),\"loss\":0.50000$loss,\"num_surfels\":$((i < 3 ? 100 : 150)),\"seconds\":$((i < 3 ? i : i + 2)).0,\"saving_seconds\":0.5}"
         done >"$run/log.jsonl"
         echo picture >"$run/renders/0/rgb.png" ;;
-      eval*) printf "  \"psnr\": 2%s.5,\n" "${PSNR_OF_CPU:+$(grep -c cpu <<<"$run")}" ;;
+      eval*) printf "  \"psnr\": %s.5,\n" "$(grep -c cuda <<<"$run")" ;;
     esac'
 }
 
@@ -66,9 +67,15 @@ expect "the folder has few files" [ "$(find "$OUT" -type f | wc -l)" = 3 ]
 order=$(grep -oE '^\| (nvidia-smi|tests of ops|steps, 480|steps, 240|train glint|profile|memcheck)' "$OUT/summary.md" | uniq | tr -d '\n')
 expect "the order: $order" [ "$order" = '| nvidia-smi| tests of ops| steps, 480| steps, 240| train glint| profile| memcheck' ]
 
-PSNR_OF_CPU=1 run train
+expect "devices alike are told" has 'glint on both devices | ok | losses of ten steps 4.0e-06 apart'
+expect "what came of it is told" has 'PSNR after 200: +1.00 dB'
+LOSS_OF_CPU=8 run train
 expect "devices apart: exit 4" [ $? = 4 ]
-expect "devices apart are told" has 'glint on both devices | \*\*failed\*\*: more than 0.1 dB apart'
+expect "devices apart are told" has 'glint on both devices | \*\*failed\*\*: losses of the first ten steps more than 1e-5 apart | 1.4e-05'
+
+run methods
+expect "methods, if asked for" has 'PSNR glint/plus, cuda, 2000 iterations'
+expect "a variant's files" archived glint+plus-cuda-2000-eval.json
 
 stand_in gpu_tests 'echo "1 of 3 failed"; exit 1'
 run tests
