@@ -16,6 +16,10 @@ bool is_packed_scene(const fs::path& file);
 // kEnvironment: as write_file.
 void write_packed_scene(const fs::path& file, const Scene& scene);
 
+// Leaves out what no training reads and no score: the truth of train views but their glass masks,
+// on which methods train where there are no others (glint/train/glass_masks.h).
+void leave_out_train_truth(Scene& scene);
+
 // The scene, bit for bit. Errors (kBadReference): SafetensorsFile's; tensors that are missing,
 // unknown, of another type or shape than the cameras say; cameras that are none; values that are
 // not finite; no train view.

@@ -44,6 +44,18 @@ GLINT_HD ViewDirection<T> view_direction(const CloudPointers& cloud, Vec3f eye, 
   return {(T(1) / norm) * d, norm};
 }
 
+// f(k) for coefficients [kFirst, count); for a GPU to a bound that the compiler knows, so that
+// arrays indexed by k stay in registers.
+template <int kFirst, class F>
+GLINT_HD void each_coefficient(int count, F&& f) {
+#if defined(__CUDA_ARCH__)
+  unrolled<16 - kFirst>([&](int k) {
+    if (kFirst + k < count) f(kFirst + k);
+  });
+#else
+  for (int k = kFirst; k < count; ++k) f(k);
+#endif
+}
 template <class T>
 GLINT_HD T sh_coefficient(const CloudPointers& cloud, std::size_t i, int k, int c) {
   return k == 0 ? load_strided<T>(cloud.sh_dc + 3 * i + c, 3)
@@ -58,9 +70,8 @@ GLINT_HD T color_offset(const CloudPointers& cloud, std::size_t i, int c) {
 template <class T>
 GLINT_HD T sh_sum(const CloudPointers& cloud, std::size_t i, int count, const T basis[16], int c) {
   T sum(0);
-  // To a bound that compilers know, so that the basis stays in registers.
-  unrolled<16>([&](int k) {
-    if (k < count) sum = fma_of(basis[k], sh_coefficient<T>(cloud, i, k, c), sum);
+  each_coefficient<0>(count, [&](int k) {
+    sum = fma_of(basis[k], sh_coefficient<T>(cloud, i, k, c), sum);
   });
   return sum;
 }
@@ -183,12 +194,11 @@ struct ActivateVjp {
     const int count = sh_coefficients(degree);
     T basis[16], dL_dbasis[16];
     sh_basis(degree, view.unit, basis);
-    unrolled<16>([&](int k) { dL_dbasis[k] = T(0); });
+    each_coefficient<0>(count, [&](int k) { dL_dbasis[k] = T(0); });
     for (int c = 0; c < 3; ++c) {
       const T dL_dsum = sum_gradient<T>(i, c);
       add_strided(out.sh_dc + 3 * i + c, 3, dL_dsum * basis[0]);
-      unrolled<16>([&](int k) {
-        if (k == 0 || k >= count) return;
+      each_coefficient<1>(count, [&](int k) {
         if (with_rest) add_strided(out.sh_rest + 45 * i + 3 * (k - 1) + c, 45, dL_dsum * basis[k]);
         dL_dbasis[k] = fma_of(dL_dsum, sh_coefficient<T>(cloud, i, k, c), dL_dbasis[k]);
       });

@@ -128,18 +128,8 @@ void SphericalLookup::texels_vjp(const Image& dL_dvalues, FloatArray& dL_dlevel0
   sort_taps();
   dL_dtexels_.resize(texels_.size());
   dL_dtexels_.fill(0.0f);
+  gather_texels(dL_dvalues);
   const auto channels = static_cast<std::size_t>(shape_.channels);
-  run_kernel(
-      shape_.first_texel(shape_.levels),
-      kGrain,
-      GatherMapTexels{
-          shape_,
-          dL_dvalues.on_device(),
-          weights_.on_device(),
-          begins_.on_device(),
-          taps_.on_device(),
-          dL_dtexels_.on_device()}
-  );
   for (int level = shape_.levels - 1; level > 0; --level)
     run_kernel(
         shape_.num_texels(level - 1) * channels,
@@ -147,6 +137,35 @@ void SphericalLookup::texels_vjp(const Image& dL_dvalues, FloatArray& dL_dlevel0
         BuildMapLevelVjp{shape_, level, dL_dtexels_.on_device()}
     );
   run_kernel(num_values(), kValueGrain, AddValues{dL_dtexels_.on_device(), dL_dlevel0.on_device()});
+}
+
+// On a GPU a thread has one channel of a texel, and long runs of taps are added up before.
+void SphericalLookup::gather_texels(const Image& dL_dvalues) {
+  const auto channels = static_cast<std::size_t>(shape_.channels);
+  GatherMapTexels gather{
+      shape_,
+      dL_dvalues.on_device(),
+      weights_.on_device(),
+      begins_.on_device(),
+      taps_.on_device(),
+      dL_dtexels_.on_device()};
+  const std::size_t texels = shape_.first_texel(shape_.levels);
+  if (!on_gpu()) return run_kernel(texels, kGrain, gather);
+  const std::size_t num_windows = keys_.size() / kTapWindow;
+  windows_.resize(std::max<std::size_t>(4 * num_windows * channels, 1));
+  run_kernel(
+      num_windows * channels,
+      kGrain,
+      SumTapWindows{
+          gather.dL_dvalues,
+          gather.weights,
+          std::as_const(keys_).on_device(),
+          gather.taps,
+          channels,
+          windows_.on_device()}
+  );
+  gather.windows = windows_.on_device();
+  run_kernel(texels * channels, kGrain, gather);
 }
 
 }  // namespace glint

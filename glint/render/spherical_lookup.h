@@ -36,6 +36,7 @@ class SphericalLookup {
   void sort_taps();
   void sort_taps_on_gpu();
   void texels_vjp(const Image& dL_dvalues, FloatArray& dL_dlevel0);
+  void gather_texels(const Image& dL_dvalues);
 
   MapShape shape_;
   FloatArray texels_, dL_dtexels_;  // all levels
@@ -43,6 +44,7 @@ class SphericalLookup {
   Image values_;
   Array<std::uint32_t> keys_, begins_, taps_;  // taps by key (counting sort)
   Array<TexelWeights> weights_;
+  FloatArray windows_;  // sums of taps that lie together, on a GPU
 };
 
 }  // namespace glint

@@ -143,37 +143,90 @@ struct MapTaps {
   }
 };
 
-// Adds to the gradient of one texel what its look-ups give: index over texels of all levels. A
-// look-up that touches it has its key there, or one to the left, above, or both.
+// Sorted taps [kTapWindow w, kTapWindow (w + 1)) of one key: the sums of their gradients by each of
+// the four weights, index of (window, channel). Thousands of pixels may look at one texel of a
+// coarse level, and one thread would add them up while the others of a GPU wait.
+inline constexpr std::uint32_t kTapWindow = 64;
+struct SumTapWindows {
+  const float* dL_dvalues;
+  const TexelWeights* weights;
+  const std::uint32_t *sorted, *taps;  // keys, and whose they are
+  std::size_t channels;
+  float* windows;  // [windows][4][channels], those of several keys are not written
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const std::size_t w = i / channels, c = i % channels, begin = w * kTapWindow;
+    const std::uint32_t key = sorted[begin];
+    if (key == kNoTexel || sorted[begin + kTapWindow - 1] != key) return;
+    TexelWeights sum{};
+    for (std::size_t t = begin; t < begin + kTapWindow; ++t) {
+      const TexelWeights& weight = weights[taps[t]];
+      const float g = dL_dvalues[taps[t] / 2 * channels + c];
+      sum.here += weight.here * g;
+      sum.right += weight.right * g;
+      sum.below += weight.below * g;
+      sum.below_right += weight.below_right * g;
+    }
+    float* to = windows + w * 4 * channels + c;
+    to[0] = sum.here;
+    to[channels] = sum.right;
+    to[2 * channels] = sum.below;
+    to[3 * channels] = sum.below_right;
+  }
+};
+
+// Adds to the gradient of one texel what its look-ups give: index over texels of all levels, or
+// over (texel, channel). A look-up that touches it has its key there, or one to the left, above, or
+// both.
 struct GatherMapTexels {
   MapShape shape;
   const float* dL_dvalues;
   const TexelWeights* weights;
   const std::uint32_t *begins, *taps;  // of key k: taps[begins[k]] ... before begins[k + 1]
   float* dL_dtexels;                   // all levels
+  const float* windows = nullptr;      // of SumTapWindows; then the index has channels
 
   GLINT_HD void operator()(std::size_t i) const {
+    const auto channels = static_cast<std::size_t>(shape.channels);
+    if (windows == nullptr) return gather(i, 0, channels);
+    gather(i / channels, i % channels, i % channels + 1);
+  }
+
+ private:
+  GLINT_HD void gather(std::size_t i, std::size_t c, std::size_t end) const {
     int level = 0;
     while (level + 1 < shape.levels && i >= shape.first_texel(level + 1)) ++level;
     const std::size_t first = shape.first_texel(level);
     const auto width = static_cast<std::size_t>(2 * shape.rows(level));
     const std::size_t row = (i - first) / width, column = (i - first) % width;
     const std::size_t left = i - column + (column + width - 1) % width;
-    add(i, i, &TexelWeights::here);
-    add(i, left, &TexelWeights::right);
+    add(i, c, end, i, 0, &TexelWeights::here);
+    add(i, c, end, left, 1, &TexelWeights::right);
     if (row == 0) return;
-    add(i, i - width, &TexelWeights::below);
-    add(i, left - width, &TexelWeights::below_right);
+    add(i, c, end, i - width, 2, &TexelWeights::below);
+    add(i, c, end, left - width, 3, &TexelWeights::below_right);
   }
-
- private:
-  GLINT_HD void add(std::size_t texel, std::size_t key, float TexelWeights::*weight) const {
+  // Channels [first, end) of what the taps of a key give by their `corner`th weight.
+  GLINT_HD void add(
+      std::size_t texel,
+      std::size_t first,
+      std::size_t end,
+      std::size_t key,
+      std::size_t corner,
+      float TexelWeights::*weight
+  ) const {
     const auto channels = static_cast<std::size_t>(shape.channels);
     float* to = dL_dtexels + texel * channels;
-    for (std::uint32_t t = begins[key]; t < begins[key + 1]; ++t) {
+    const std::uint32_t stop = begins[key + 1];
+    for (std::uint32_t t = begins[key]; t < stop; ++t) {
+      if (windows != nullptr && t % kTapWindow == 0 && t + kTapWindow <= stop) {
+        to[first] += windows[(t / kTapWindow * 4 + corner) * channels + first];
+        t += kTapWindow - 1;
+        continue;
+      }
       const float w = weights[taps[t]].*weight;
       const float* g = dL_dvalues + taps[t] / 2 * channels;
-      for (std::size_t c = 0; c < channels; ++c) to[c] += w * g[c];
+      for (std::size_t c = first; c < end; ++c) to[c] += w * g[c];
     }
   }
 };
@@ -187,6 +240,7 @@ using SphericalMapKernels = KernelList<
     LookUpMap,
     LookUpMapVjp,
     MapTaps,
+    SumTapWindows,
     GatherMapTexels>;
 
 }  // namespace glint

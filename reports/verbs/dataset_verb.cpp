@@ -194,8 +194,7 @@ void check_pack_target(const fs::path& file) {
 int run_pack(const CommonOptions& common, const PackOptions& options) {
   check_pack_target(options.file);
   Scene scene = load_scene(options.folder, options.load);
-  if (options.test_truth_only)
-    for (View& view : scene.train) view.truth = {};
+  if (options.test_truth_only) leave_out_train_truth(scene);
   write_packed_scene(options.file, scene);
   const std::uintmax_t bytes = fs::file_size(options.file);
   const std::size_t views = scene.train.size() + scene.test.size();
@@ -225,7 +224,7 @@ void add_pack(CommandLine& line, CLI::App& dataset) {
   pack->add_flag(
       "--test-truth-only",
       options->test_truth_only,
-      "leave out the ground truth of train views, which is never scored"
+      "leave out the ground truth of train views, which is never scored, but for glass masks"
   );
 }
 

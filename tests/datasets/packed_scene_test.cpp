@@ -98,6 +98,19 @@ TEST_CASE("scenes made by hand survive, with points without normals and odd name
   CHECK(check_dataset(folder / "x")[0].check == "no-test-views");
 }
 
+TEST_CASE("without the truth of train views all is there that a method trains on") {
+  Scene scene = small_room(), whole = scene;
+  REQUIRE(scene.train.at(0).truth.has("glass"));
+  REQUIRE(scene.train.at(0).truth.has("depth"));
+  leave_out_train_truth(scene);
+  for (std::size_t i = 0; i < scene.train.size(); ++i) {
+    CHECK(same_bytes(scene.train[i].truth["glass"], whole.train[i].truth["glass"]));
+    CHECK(!scene.train[i].truth.has("depth"));
+    whole.train[i].truth = scene.train[i].truth;
+  }
+  check_same(scene, whole);
+}
+
 TEST_CASE("packing twice gives the same bytes") {
   const TempFolder folder;
   write_packed_scene(folder / "a", box_scene());

@@ -43,6 +43,14 @@ run
 expect "all there: exit 0" [ $? = 0 ]
 expect "ratios are told" grep -qF '| step (gsplat: L1, Adam) | 8.000 | 4.000 | 2.00 |' "$OUT/gsplat.md"
 expect "every size is timed" [ "$(grep -c surfels "$OUT/gsplat.md")" = 4 ]
+rm -r "$OUT"
+run --folder "$folder/kept" --build
+expect "built and no more: exit 0" [ $? = 0 ]
+expect "nothing is timed" [ "$(grep -c surfels "$OUT/gsplat.md")" = 0 ]
+touch "$folder/kept/source/here"
+run --folder "$folder/kept"
+expect "what was built is taken" [ -f "$folder/kept/source/here" ]
+expect "and timed" [ "$(grep -c surfels "$OUT/gsplat.md")" = 4 ]
 expect "an archive" tar -tzf "$OUT/gsplat.tar.gz" >/dev/null
 
 stand_in python3 'case $* in *_backend*) echo "error: no such header"; exit 1 ;; esac'
