@@ -6,6 +6,7 @@
 #include "datasets/side_maps.h"
 #include "glint/core/config.h"
 #include "glint/core/error.h"
+#include "glint/core/json_error.h"
 
 namespace glint {
 namespace {
@@ -129,7 +130,8 @@ void read_scene_json(const fs::path& folder, SceneIndex& index) {
       leave_out_priors(json["without_priors"], path.string(), index);
   } catch (const nlohmann::json::exception& error) {
     throw Error(
-        ExitCode::kBadReference, fmt::format("{}: {}; write it again", path.string(), error.what())
+        ExitCode::kBadReference,
+        fmt::format("{}: {}; write it again", path.string(), json_error(error))
     );
   }
 }

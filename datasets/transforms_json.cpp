@@ -7,6 +7,7 @@
 #include <set>
 
 #include "glint/core/error.h"
+#include "glint/core/json_error.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {
@@ -221,7 +222,7 @@ Json parse_transforms(const fs::path& path) {
   } catch (const nlohmann::json::exception& error) {
     throw Error(
         ExitCode::kBadReference,
-        fmt::format("{}: {}; it is cut off or damaged", path.string(), error.what())
+        fmt::format("{}: {}; it is cut off or damaged", path.string(), json_error(error))
     );
   }
 }

@@ -5,13 +5,18 @@
 #include <cmath>
 #include <set>
 
+#include "glint/method.h"
 #include "reports/tables/tables.h"
 
 namespace glint {
 
 namespace {
 
-bool is_variant(const std::string& id) { return id.find('/') != std::string::npos; }
+// Of one of our methods; a slash in an import's name says nothing.
+bool is_variant(const std::string& id) {
+  const std::size_t slash = id.find('/');
+  return slash != std::string::npos && Registry<MethodSpec>::all().contains(id.substr(0, slash));
+}
 
 bool any_matches(const std::vector<std::string>& globs, const std::string& id) {
   return std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "glint/core/json_error.h"
 #include "glint/core/progress.h"
 #include "glint/scene/scene.h"
 
@@ -157,7 +158,7 @@ Record record_from_json(const Json& json, std::string_view where) {
   } catch (const nlohmann::json::exception& error) {
     throw Error(
         ExitCode::kBadPrediction,
-        fmt::format("{}: a field has another type ({})", where, error.what())
+        fmt::format("{}: a field has another type ({})", where, json_error(error))
     );
   }
 }

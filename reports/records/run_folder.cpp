@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "glint/core/json_error.h"
 #include "glint/scene/image_files.h"
 #include "reports/records/earlier_run.h"
 #include "reports/records/environment.h"
@@ -80,7 +81,8 @@ RunSpec read_run_spec(const fs::path& folder) {
     spec.image_ratio = json.value("image_ratio", 1.0);
   } catch (const nlohmann::json::exception& error) {
     throw Error(
-        ExitCode::kBadPrediction, fmt::format("{}: {}; train again", path.string(), error.what())
+        ExitCode::kBadPrediction,
+        fmt::format("{}: {}; train again", path.string(), json_error(error))
     );
   }
   return spec;
@@ -109,7 +111,8 @@ std::optional<TrainCost> trained_cost(const RunSpec& spec) {
         json.value("data_notes", std::vector<std::string>{})};
   } catch (const nlohmann::json::exception& error) {
     throw Error(
-        ExitCode::kBadPrediction, fmt::format("{}: {}; train again", path.string(), error.what())
+        ExitCode::kBadPrediction,
+        fmt::format("{}: {}; train again", path.string(), json_error(error))
     );
   }
 }
