@@ -23,7 +23,7 @@ std::string error_of(F&& f) {
 TEST_CASE("errors of JSON say where and what, and nothing of the library") {
   CHECK(error_of([] {
           return Json::parse("{\n \"a\": [1, 2,, 3]}");
-        }) == "line 2, column 14: unexpected ','; expected '[', '{', or a literal");
+        }) == "line 2, column 13: unexpected ','; expected '[', '{', or a literal");
   CHECK(error_of([] {
           return Json::parse("{\"a\": ");
         }) == "line 1, column 7: unexpected end of input; expected '[', '{', or a literal");
