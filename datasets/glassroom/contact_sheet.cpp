@@ -13,6 +13,7 @@ namespace glint {
 namespace {
 
 constexpr float kFarDepth = 6;  // metres, end of the depth colours
+constexpr float kFarPrior = 1;  // priors are relative
 
 // A row of the sheet: what is true, or what a simulated prior says.
 bool is_shown(const MapRow& row, bool truth) { return !(truth ? row.truth : row.prior).empty(); }
@@ -67,7 +68,10 @@ ContactSheet::ContactSheet(int views, int columns, ImageSize tile)
   for (int column = 0; column < columns_; ++column)
     grid_.titles.push_back("view " + view_name(column * views_ / columns_));
   grid_.legend = {
-      {"depth: 0 m", LegendBar::kDepth, fmt::format("{:g} m, black: nothing", kFarDepth)}};
+      {"true depth: 0 m", LegendBar::kDepth, fmt::format("{:g} m, black: nothing", kFarDepth)},
+      {"simulated depth prior: 0",
+       LegendBar::kDepth,
+       fmt::format("{:g}, without unit", kFarPrior)}};
 }
 
 void ContactSheet::add(
@@ -92,7 +96,7 @@ void ContactSheet::add(
     for (const MapRow& entry : maps()) {
       const Image& map = (is_truth ? truth.maps : priors)[entry];
       if (!is_shown(entry, is_truth) || (!is_truth && map.empty())) continue;  // not simulated
-      const float far_depth = is_truth ? kFarDepth : 1;  // priors are relative
+      const float far_depth = is_truth ? kFarDepth : kFarPrior;
       add_row(
           title_of(entry, is_truth), map.empty() ? Image() : pictures.of(entry.kind, map, far_depth)
       );

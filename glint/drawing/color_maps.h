@@ -21,5 +21,7 @@ Image colorize_normal(ImageView normal);
 // Other maps, dark (low) to light (high); mid-grey where not finite.
 enum class ScalarColors { kViridis, kMagma };
 Image colorize_scalar(ImageView map, float low, float high, ScalarColors colors);
+// Differences: white at 0, blue down to -range, red up to range.
+Image colorize_signed(ImageView map, float range);
 
 }  // namespace glint

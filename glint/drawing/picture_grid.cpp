@@ -34,6 +34,11 @@ Image color_bar(LegendBar bar) {
   constexpr int kSteps = 256;
   if (is_swatch(bar)) return plain_bar(bar, 6 * kStripes, 2 * kStripes);
   Image ramp(kSteps, 1, 1);
+  if (bar == LegendBar::kSigned) {
+    for (int x = 0; x < kSteps; ++x)
+      ramp.at(x, 0) = 2 * (static_cast<float>(x) + 0.5f) / kSteps - 1;
+    return colorize_signed(ramp, 1);
+  }
   for (int x = 0; x < kSteps; ++x) ramp.at(x, 0) = static_cast<float>(x + 1);
   if (bar == LegendBar::kDepth) return colorize_depth(ramp, 1, kSteps);
   const bool share = bar == LegendBar::kShare;
@@ -78,14 +83,14 @@ class GridDrawing {
   double pixels_per_point() const { return pixels_ / column_; }
 
   double height() const {
-    double height = 2 * kMargin + static_cast<double>(num_bands_) * band_height();
+    double height = 2 * kMargin + static_cast<double>(starts_.size()) * band_height();
     for (const LegendLine& line : grid_.legend) height += height_of(line);
     return height;
   }
 
   void draw(Canvas& canvas) const {
     double top = kMargin;
-    for (std::size_t band = 0; band < num_bands_; ++band) {
+    for (std::size_t band = 0; band < starts_.size(); ++band) {
       draw_titles(canvas, band, top);
       double row_top = top + titles_height();
       for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -118,14 +123,15 @@ class GridDrawing {
   double columns_width() const {
     return row_titles_ + static_cast<double>(num_columns_) * (column_ + kGap) - kGap;
   }
-  double left_of(std::size_t column) const {
-    return kMargin + row_titles_ + static_cast<double>(column % num_columns_) * (column_ + kGap);
+  std::size_t end_of(std::size_t band, std::size_t count) const {
+    return band + 1 < starts_.size() ? std::min(starts_[band + 1], count) : count;
   }
-  // Calls f(column) for a band's columns among `count`.
+  // Calls f(column, its left edge) for a band's columns among `count`.
   template <class F>
   void for_columns(std::size_t band, std::size_t count, F&& f) const {
-    const std::size_t end = std::min((band + 1) * num_columns_, count);
-    for (std::size_t column = band * num_columns_; column < end; ++column) f(column);
+    double left = kMargin + row_titles_;
+    for (std::size_t i = starts_[band]; i < end_of(band, count); ++i, left += column_ + kGap)
+      f(i, left);
   }
 
   // As wide as the page leaves room for, but not so wide that letters have few pixels.
@@ -148,8 +154,16 @@ class GridDrawing {
   void fold_columns() {
     const double room = kPageWidth - 2 * kMargin - row_titles_ + kGap;
     const auto most = static_cast<std::size_t>(std::max(1.0, room / (kMinColumn + kGap)));
-    num_bands_ = (num_columns_ + most - 1) / most;
-    num_columns_ = (num_columns_ + num_bands_ - 1) / num_bands_;
+    const std::size_t count = num_columns_, bands = (count + most - 1) / most;
+    const std::size_t even = (count + bands - 1) / bands;
+    for (std::size_t next = even; next < count; next += even) {
+      std::size_t start = next;
+      while (grid_.joined.count(start) > 0 && start > starts_.back()) --start;
+      if (start > starts_.back()) starts_.push_back(start);
+    }
+    num_columns_ = 0;
+    for (std::size_t band = 0; band < starts_.size(); ++band)
+      num_columns_ = std::max(num_columns_, end_of(band, count) - starts_[band]);
   }
 
   void measure_rows() {
@@ -168,11 +182,9 @@ class GridDrawing {
   // The last lines of all titles stand side by side.
   void draw_titles(Canvas& canvas, std::size_t band, double top) const {
     const TextStyle style = wrapped(kTitle, column_);
-    for_columns(band, grid_.titles.size(), [&](std::size_t i) {
+    for_columns(band, grid_.titles.size(), [&](std::size_t i, double left) {
       const double last = measure_text(grid_.titles[i], style).last_baseline;
-      canvas.text(
-          grid_.titles[i], {left_of(i) + column_ / 2, top + titles_baseline_ - last}, style
-      );
+      canvas.text(grid_.titles[i], {left + column_ / 2, top + titles_baseline_ - last}, style);
     });
   }
 
@@ -181,8 +193,8 @@ class GridDrawing {
       const double height = measure_text(grid_.row_titles[row], row_style()).height;
       canvas.text(grid_.row_titles[row], {kMargin, top + (rows_[row] - height) / 2}, row_style());
     }
-    for_columns(band, grid_.rows[row].size(), [&](std::size_t i) {
-      draw_panel(canvas, grid_.rows[row][i], {left_of(i), top, column_, rows_[row]});
+    for_columns(band, grid_.rows[row].size(), [&](std::size_t i, double left) {
+      draw_panel(canvas, grid_.rows[row][i], {left, top, column_, rows_[row]});
     });
   }
 
@@ -216,7 +228,8 @@ class GridDrawing {
   }
 
   PictureGrid grid_;
-  std::size_t num_columns_ = 0, num_bands_ = 1;     // columns of a band
+  std::size_t num_columns_ = 0;                     // of the widest band
+  std::vector<std::size_t> starts_ = {0};           // first columns of the bands
   int pixels_ = 0;                                  // width of a panel
   double column_ = 0, row_titles_ = 0, width_ = 0;  // points
   double titles_baseline_ = 0, below_ = 0;          // of the titles: last baseline, from there on

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@ inline constexpr int kMinPanelWidth = 200, kMaxPanelWidth = 480;  // pixels
 
 // The colours of a map from low to high, as layer_picture() and the strips show it; or what stands
 // for a pixel without a value.
-enum class LegendBar { kNone, kDepth, kShare, kError, kHatch, kGrey };
+enum class LegendBar { kNone, kDepth, kShare, kError, kSigned, kHatch, kGrey };
 
 // Of a pixel that is there but does not count: pale blue stripes, which no map of errors has.
 std::array<float, 3> hatch_color(int x, int y);
@@ -49,6 +50,7 @@ struct PictureGrid {
   std::vector<LegendLine> legend;
   std::vector<std::string> row_titles = {};  // left of the rows, '\n' between lines; none: no room
   bool bands = false;  // columns that do not fit the page stand below the others, all rows of them
+  std::set<std::size_t> joined = {};  // columns that stand in the band of the one before them
 };
 
 Image fit_panel(const Image& panel);

@@ -85,7 +85,9 @@ LegendLine error_line() {
       fmt::format("{:g} and more", kPageErrorHigh)};
 }
 
-LegendLine share_line() { return {"shares: 0", LegendBar::kShare, "1"}; }
+LegendLine share_line(const std::vector<std::string>& shares) {
+  return {fmt::format("{}: 0", fmt::join(shares, ", ")), LegendBar::kShare, "1"};
+}
 
 // A row of one layer: the truth, then every method.
 PanelRow layer_row(
@@ -224,12 +226,15 @@ PictureGrid depth_figure(const std::vector<FigureScene>& scenes) {
 PictureGrid transparency_figure(const std::vector<FigureScene>& scenes) {
   PictureGrid grid;
   std::vector<std::pair<std::string, std::string>> panels;  // method, map
+  std::vector<std::string> shares;
   grid.titles = {"image", "true glass"};
   for (const MapRow& row : maps()) {
     if (row.kind != MapKind::kShare) continue;
-    for (const std::string& method : methods_with(scenes, std::string(row.id))) {
+    const auto methods = methods_with(scenes, std::string(row.id));
+    if (!methods.empty()) shares.emplace_back(row.title);
+    for (const std::string& method : methods) {
       panels.emplace_back(method, row.id);
-      grid.titles.push_back(fmt::format("{}, {}", method_title(method), row.title));
+      grid.titles.push_back(fmt::format("{},\n{}", method_title(method), row.title));
     }
   }
   if (panels.empty()) return {};
@@ -240,7 +245,8 @@ PictureGrid transparency_figure(const std::vector<FigureScene>& scenes) {
     add_row(grid, scene.name, std::move(row));
   }
   grid.legend = legend_of(scenes, false);
-  grid.legend.push_back(share_line());
+  grid.legend.push_back({"true glass: white"});
+  grid.legend.push_back(share_line(shares));
   return grid;
 }
 

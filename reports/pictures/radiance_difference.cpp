@@ -5,16 +5,17 @@
 #include <cmath>
 
 #include "glint/core/error.h"
-#include "glint/core/vec.h"
+#include "glint/drawing/color_maps.h"
+#include "glint/drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {
 
 namespace {
 
-constexpr int kBlock = 8;   // pixels
-constexpr int kRadius = 2;  // of the means in the picture
-constexpr int kGap = 4;     // pixels between panels
+constexpr int kBlock = 8;             // pixels
+constexpr int kRadius = 2;            // of the means in the picture
+constexpr float kFarBrighter = 1e6f;  // relative difference to black
 
 double channel_sum(ImageView image, int x, int y) {
   const float* rgb = image.pixel(x, y);
@@ -48,36 +49,20 @@ Image displayed(ImageView radiance) {
   return image;
 }
 
-// White at 0, blue down to -range, red up to range.
-Image colorize_signed(ImageView map, float range) {
-  constexpr Vec3f kBelow{0.02f, 0.19f, 0.38f}, kWhite{1, 1, 1}, kAbove{0.4f, 0, 0.12f};
-  Image image(map.width, map.height, 3);
-  for (std::size_t i = 0; i < map.num_pixels(); ++i) {
-    const float t = std::clamp(map.data[i] / range, -1.0f, 1.0f), share = std::abs(t);
-    const Vec3f color = (1 - share) * kWhite + share * (t < 0 ? kBelow : kAbove);
-    for (int c = 0; c < 3; ++c) image.values()[3 * i + static_cast<std::size_t>(c)] = color[c];
-  }
-  return image;
+PanelRow row_of(ImageView first, ImageView second, float range) {
+  return {
+      fit_panel(displayed(first)),
+      fit_panel(displayed(second)),
+      fit_panel(colorize_signed(relative_difference(first, second), range))};
 }
 
-void place(Image& page, const Image& panel, int left, int top) {
-  for (int y = 0; y < panel.height(); ++y)
-    std::copy_n(panel.pixel(0, y), 3 * panel.width(), page.pixel(left, top + y));
-}
-
-Image below_each_other(const std::vector<Image>& pictures) {
-  int width = 0, height = -kGap;
-  for (const Image& picture : pictures) {
-    width = std::max(width, picture.width());
-    height += picture.height() + kGap;
-  }
-  Image page(width, height, 3, 1.0f);
-  int top = 0;
-  for (const Image& picture : pictures) {
-    place(page, picture, 0, top);
-    top += picture.height() + kGap;
-  }
-  return page;
+std::vector<LegendLine> legend_of(const fs::path& first, const fs::path& second, float range) {
+  return {
+      {fmt::format("first: {}", first.string())},
+      {fmt::format("second: {}", second.string())},
+      {fmt::format("second / first - 1, means over 5 x 5 pixels: -{:g} and less", range),
+       LegendBar::kSigned,
+       fmt::format("{:g} and more", range)}};
 }
 
 std::vector<bool> glass_of(const fs::path& folder, const std::string& view, ImageSize size) {
@@ -161,27 +146,23 @@ RadianceDifference radiance_difference(
   return difference;
 }
 
-Image difference_picture(ImageView first, ImageView second, float range) {
+Image relative_difference(ImageView first, ImageView second) {
   constexpr int kSize = 2 * kRadius + 1;
   Image relative(first.width, first.height, 1);
   for (int y = 0; y < first.height; ++y)
     for (int x = 0; x < first.width; ++x) {
       const double a = mean_around(first, x - kRadius, y - kRadius, kSize);
       const double b = mean_around(second, x - kRadius, y - kRadius, kSize);
-      relative.at(x, y) = a > 0 ? static_cast<float>(b / a - 1) : b > 0 ? range : 0.0f;
+      relative.at(x, y) = a > 0 ? static_cast<float>(b / a - 1) : b > 0 ? kFarBrighter : 0.0f;
     }
-  Image page(3 * first.width + 2 * kGap, first.height, 3, 1.0f);
-  place(page, displayed(first), 0, 0);
-  place(page, displayed(second), first.width + kGap, 0);
-  place(page, colorize_signed(relative, range), 2 * (first.width + kGap), 0);
-  return page;
+  return relative;
 }
 
 std::vector<ComparedView> compare_renderings(
     const fs::path& first, const fs::path& second, const fs::path& picture, float range
 ) {
   std::vector<ComparedView> compared;
-  std::vector<Image> pictures;
+  PictureGrid grid{{"first", "second", "second / first - 1"}, {}, legend_of(first, second, range)};
   for (const std::string& view : common_views(first, second)) {
     const fs::path file = fs::path("gt") / "rgb" / (view + ".exr");
     const Image a = read_image(first / file, 3), b = read_image(second / file, 3);
@@ -197,9 +178,11 @@ std::vector<ComparedView> compare_renderings(
         a.height()
     );
     compared.push_back({view, radiance_difference(a, b, glass_of(first, view, a.size()))});
-    if (!picture.empty()) pictures.push_back(difference_picture(a, b, range));
+    if (picture.empty()) continue;
+    grid.row_titles.push_back(view);
+    grid.rows.push_back(row_of(a, b, range));
   }
-  if (!picture.empty()) write_png(picture, below_each_other(pictures));
+  if (!picture.empty()) write_png(picture, draw_bytes(draw_grid(std::move(grid))));
   return compared;
 }
 

@@ -39,18 +39,19 @@ RadianceDifference radiance_difference(
     ImageView first, ImageView second, const std::vector<bool>& glass
 );
 
-// The first, the second, and (second - first) / first of means over 5x5 pixels, side by side: blue
-// where the second is darker, red where it is brighter, full at `range`.
-Image difference_picture(ImageView first, ImageView second, float range);
+// (second - first) / first of means over 5x5 pixels, of all channels; huge where only the first is
+// black.
+Image relative_difference(ImageView first, ImageView second);
 
 struct ComparedView {
   std::string name;
   RadianceDifference difference;
 };
 
-// gt/rgb/<view>.exr of both folders, glass by gt/glass/<view>.png of the first. With `picture`,
-// that of all views, one below the other, is written there. Errors (kBadReference): no view that
-// both have, sizes that differ, unreadable files.
+// gt/rgb/<view>.exr of both folders, glass by gt/glass/<view>.png of the first. With `picture`, a
+// PNG of a row a view is written there: the first, the second, and their relative difference, blue
+// where the second is darker, red where it is brighter, full at `range`. Errors (kBadReference): no
+// view that both have, sizes that differ, unreadable files.
 std::vector<ComparedView> compare_renderings(
     const fs::path& first, const fs::path& second, const fs::path& picture, float range
 );

@@ -118,11 +118,23 @@ std::vector<LegendLine> legend_of(const StripPlan& plan, const std::vector<const
   return legend;
 }
 
+// A map's truth stays beside it.
+std::set<std::size_t> truth_columns(const StripPlan& plan) {
+  std::set<std::size_t> columns;
+  std::size_t column = 3;
+  for (const MapPanel& panel : plan.panels) {
+    if (panel.truth) columns.insert(++column);
+    ++column;
+  }
+  return columns;
+}
+
 void write_strip(
     const fs::path& path, const StripPlan& plan, const std::vector<const View*>& views
 ) {
   PictureGrid grid{titles_of(plan), {}, legend_of(plan, views)};
   grid.bands = true;
+  grid.joined = truth_columns(plan);
   for (const View* view : views) grid.rows.push_back(row_of(plan, *view));
   write_png(path, draw_bytes(draw_grid(std::move(grid))));
 }

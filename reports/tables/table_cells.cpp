@@ -2,6 +2,7 @@
 #include "reports/tables/table_cells.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "reports/tables/published.h"
 #include "reports/tables/statistics.h"
@@ -9,10 +10,6 @@
 namespace glint {
 
 namespace {
-
-std::string format_value(double value, const TableColumn& column) {
-  return fmt::format("{:.{}f}", value, column.decimals);
-}
 
 // What a finished run says about why it has no value of the metric; empty: nothing.
 std::string reason_of_absence(const RecordPointers& records, const std::string& metric) {
@@ -135,6 +132,12 @@ std::string text_field(const Record& record, const std::string& field) {
 
 }  // namespace
 
+std::string format_value(double value, int decimals) {
+  constexpr double kHuge = 1e7;
+  return std::abs(value) < kHuge ? fmt::format("{:.{}f}", value, decimals)
+                                 : fmt::format("{:.3e}", value);
+}
+
 std::string eight_bit_metric(const std::string& metric) {
   const std::string whole = metric.substr(0, metric.find('@'));
   return whole == "psnr" ? whole + "-8bit" + metric.substr(whole.size()) : "";
@@ -151,7 +154,7 @@ TableCell measured_cell(
   TableCell cell;
   cell.apart = measured.apart;
   fill_means(cell, measured, column.scale, metric);
-  cell.text = format_value(cell.value, column);
+  cell.text = format_value(cell.value, column.decimals);
   cell.note = partial_note(cell, measured, common.size(), eight_bit);
   cell.status = cell.note.empty() ? CellStatus::kOk : CellStatus::kPartial;
   return cell;

@@ -19,6 +19,9 @@ TableCell measured_cell(
     const RecordPointers& records, const TableColumn& column, const SizedScenes& common
 );
 
+// With the column's decimals; from ten million on by exponent, "1.234e+08", as of lost models.
+std::string format_value(double value, int decimals);
+
 // The metric of 8-bit images that stands in a column without a value of its own; empty: none.
 std::string eight_bit_metric(const std::string& metric);
 

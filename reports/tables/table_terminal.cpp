@@ -289,13 +289,15 @@ std::size_t text_width(std::string_view utf8) {
   }));
 }
 
-std::string aligned_rows(const std::vector<std::vector<std::string>>& rows) {
+std::string aligned_rows(
+    const std::vector<std::vector<std::string>>& rows, const std::set<std::size_t>& words
+) {
   const std::vector<std::size_t> widths = widths_of(rows);
   std::string text;
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i)
-      line += (i ? "  " : "") + padded(row[i], widths[i], i == 0);
+      line += (i ? "  " : "") + padded(row[i], widths[i], words.count(i) > 0);
     line.erase(line.find_last_not_of(' ') + 1);
     text += printable(line) + "\n";
   }

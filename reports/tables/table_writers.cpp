@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glint/core/printable.h"
+#include "reports/tables/table_cells.h"
 
 namespace glint {
 
@@ -138,7 +139,7 @@ std::string shown_text(const TableCell& cell, const TableColumn& column) {
   if (cell.status == CellStatus::kNotApplicable) return "–";
   if (!cell.has_value()) return word_of(cell);
   std::string text = cell.text;
-  if (cell.num_seeds > 1) text += fmt::format(" ± {:.{}f}", cell.spread, column.decimals);
+  if (cell.num_seeds > 1) text += " ± " + format_value(cell.spread, column.decimals);
   if (cell.tied) text += "≈";
   return cell.status == CellStatus::kPartial ? text + "*" : text;
 }

@@ -3,6 +3,7 @@
 // columns carry a dagger, values that are not ranked an asterisk.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -53,9 +54,11 @@ std::string latex_document(const std::vector<Table>& tables);
 // FOLDER/<id>.md, .tex, .csv, .json, .html; <id>_differences.tex where there are any
 void write_table(const fs::path& folder, const Table& table);
 
-// Plain rows in aligned columns, two spaces apart; the first column flush left, others right. For
-// listings that are no Table (plan, status, perf).
-std::string aligned_rows(const std::vector<std::vector<std::string>>& rows);
+// Plain rows in aligned columns, two spaces apart; columns of `words` flush left, others right. For
+// listings that are no Table (plan, status, selftest).
+std::string aligned_rows(
+    const std::vector<std::vector<std::string>>& rows, const std::set<std::size_t>& words = {0}
+);
 
 // Text inside a cell of a Markdown table: pipes and tags stay letters.
 std::string markdown_text(std::string_view text);

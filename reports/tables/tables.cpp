@@ -290,15 +290,38 @@ void add_tie_notes(Table& table, const TieTests& tests) {
     ));
 }
 
-// What the methods of the rows have to say, each line once.
+// What is said of rows: each once, in the order in which it is first said, with their titles.
+class RowNotes {
+ public:
+  void add(const std::string& title, const std::string& note) {
+    auto said =
+        std::find_if(all_.begin(), all_.end(), [&](const auto& a) { return a.note == note; });
+    if (said == all_.end()) said = all_.insert(all_.end(), Said{note, {}});
+    auto& titles = said->titles;
+    if (std::find(titles.begin(), titles.end(), title) == titles.end()) titles.push_back(title);
+  }
+
+  void append_to(Table& table, const std::string& before, const std::string& after) const {
+    for (const auto& [note, titles] : all_)
+      table.notes.push_back(fmt::format("{}{}: {}{}.", before, fmt::join(titles, ", "), note, after)
+      );
+  }
+
+ private:
+  struct Said {
+    std::string note;
+    std::vector<std::string> titles;
+  };
+  std::vector<Said> all_;
+};
+
 void add_method_notes(Table& table, const std::vector<Record>& records) {
-  std::set<std::string> notes;
+  RowNotes notes;
   for (const TableRow& row : table.rows)
     for (const Record& record : records)
       if (record.cell.method == row.method)
-        for (const std::string& note : record.notes)
-          notes.insert(fmt::format("{}: {}.", row.title, note));
-  table.notes.insert(table.notes.end(), notes.begin(), notes.end());
+        for (const std::string& note : record.notes) notes.add(row.title, note);
+  notes.append_to(table, "", "");
 }
 
 void add_failures(Table& table, const std::vector<Record>& records) {
@@ -309,15 +332,13 @@ void add_failures(Table& table, const std::vector<Record>& records) {
   table.notes.insert(table.notes.end(), failures.begin(), failures.end());
 }
 
-// What the cells with an asterisk are means of, a line for each row and reason.
+// What the cells with an asterisk are means of.
 void add_partial_notes(Table& table) {
-  for (const TableRow& row : table.rows) {
-    std::set<std::string> reasons;
+  RowNotes reasons;
+  for (const TableRow& row : table.rows)
     for (const TableCell& cell : row.cells)
-      if (cell.status == CellStatus::kPartial) reasons.insert(cell.note);
-    for (const std::string& reason : reasons)
-      table.notes.push_back(fmt::format("* {}: {}; not ranked.", row.title, reason));
-  }
+      if (cell.status == CellStatus::kPartial) reasons.add(row.title, cell.note);
+  reasons.append_to(table, "* ", "; not ranked");
 }
 
 // Scenes that some methods have beyond those of the means.

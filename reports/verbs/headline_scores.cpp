@@ -47,9 +47,7 @@ std::string headline_scores(const std::map<std::string, double>& means) {
     if (!exact) found = means.find(eight_bit_metric(column.metric));
     const bool eight_bit = !exact && found != means.end();
     const std::string value =
-        found == means.end()
-            ? "-"
-            : fmt::format("{:.{}f}", column.scale * found->second, column.decimals);
+        found == means.end() ? "-" : format_value(column.scale * found->second, column.decimals);
     const bool higher = column.order == RankOrder::kHigherFirst;
     rows.push_back(
         {column.title + (eight_bit ? " of 8-bit images" : ""),

@@ -38,7 +38,7 @@ void print_results(const std::vector<VectorResult>& results) {
          result.note.empty() ? vector.convention : result.note.substr(0, result.note.find('\n'))}
     );
   }
-  print_text(aligned_rows(rows));
+  print_text(aligned_rows(rows, {0, 1, 5, 6}));
   print_text(fmt::format(
       "{} passed, {} failed, {} skipped\n",
       count(results, VectorStatus::kPassed),

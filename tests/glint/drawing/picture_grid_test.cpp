@@ -75,6 +75,23 @@ TEST_CASE("in bands, columns that do not fit the page stand below the others") {
   CHECK(panels == Approx(36 * 480 * 240).epsilon(0.02));
 }
 
+TEST_CASE("columns that belong together stand in one band") {
+  const auto drawn = [](const std::set<std::size_t>& joined) {
+    PictureGrid grid{std::vector<std::string>(16, "title"), {}, {}};
+    grid.rows.emplace_back(16, Image(480, 240, 3, 0.75f));
+    grid.bands = true;
+    grid.joined = joined;
+    return draw_grid(std::move(grid));
+  };
+  CHECK(drawn({}).width == Approx(504));           // two bands of eight
+  CHECK(drawn({7}).width == drawn({}).width);      // no band begins there
+  CHECK(drawn({8}).width > drawn({}).width + 10);  // seven, nine
+  CHECK(drawn({8}).height > 0.8 * drawn({}).height);
+  std::set<std::size_t> all;
+  for (std::size_t column = 1; column < 16; ++column) all.insert(column);
+  CHECK(drawn(all).height < 0.6 * drawn({}).height);  // one band
+}
+
 TEST_CASE("titles of rows stand left of the panels, long ones are broken") {
   PictureGrid grid = one_panel();
   const Drawing plain = draw_grid(grid);

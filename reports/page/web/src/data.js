@@ -63,8 +63,11 @@ export function metricTitle(id) {
   return `${id}${unit ? ` (${unit})` : ""}${arrow}`;
 }
 
+const kHuge = 1e7; // from here on with an exponent, as in tables
+
 export function metricText(id, value) {
   if (value === null || value === undefined) return "–";
+  if (Math.abs(value) >= kHuge) return value.toExponential(3);
   return value.toFixed(metricInfo(id).decimals);
 }
 

@@ -55,6 +55,7 @@ function drawText(plot, x, text, color, atTop) {
   ctx.rotate(-Math.PI / 2);
   ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
   ctx.fillStyle = color;
+  ctx.textBaseline = "bottom"; // beside the line, not on it
   ctx.textAlign = atTop ? "right" : "left";
   ctx.fillText(text, 0, 0);
 }
