@@ -32,6 +32,13 @@ void use_cpu() {
 void use_gpu(const DeviceBackend& backend) { current = &backend; }
 const char* device_name() { return current == nullptr ? "cpu" : current->name; }
 
+double device_peak_mb() {
+  return current == nullptr ? 0 : static_cast<double>(current->peak()) / 1e6;
+}
+void reset_device_peak() {
+  if (current != nullptr) current->reset_peak();
+}
+
 std::size_t device_room() { return current == nullptr ? 0 : current->room(); }
 
 void synchronize() {

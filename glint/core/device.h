@@ -28,6 +28,9 @@ struct DeviceBackend {
   void (*fill)(float* to, std::size_t count, float value);
   void (*synchronize)();
   std::size_t (*room)();  // bytes of its memory that are free
+  // The most bytes of its memory that were in use since the last reset.
+  std::size_t (*peak)();
+  void (*reset_peak)();
   // Memory of the host's sides, 64-byte aligned; null: the host's own.
   void* (*allocate_host)(std::size_t bytes) = nullptr;
   void (*release_host)(void* block) noexcept = nullptr;
@@ -42,6 +45,10 @@ void use_gpu(const DeviceBackend& backend);
 const char* device_name();
 // Bytes of the GPU's memory that are free; 0 on the CPU.
 std::size_t device_room();
+// The most of the GPU's memory that this program had in use since the last reset, in megabytes
+// (10^6 bytes); 0 on the CPU.
+double device_peak_mb();
+void reset_device_peak();
 
 // What the host asked of a device since the program began: differences over a step are of interest.
 struct DeviceCounters {

@@ -140,7 +140,9 @@ void use_cuda() {
         std::size_t free = 0, total = 0;
         check_cuda(cudaMemGetInfo(&free, &total), "asking for its free memory");
         return free + pool().bytes_held() - pool().bytes_in_use();
-      }};
+      },
+      .peak = [] { return pool().peak_bytes(); },
+      .reset_peak = [] { pool().reset_peak(); }};
   use_executor<DeviceExec>(backend);
   use_graphs(graphs_wanted());
   char card[32] = "";

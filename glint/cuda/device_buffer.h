@@ -33,6 +33,9 @@ class MemoryPool {
   void trim();
   std::size_t bytes_in_use() const { return in_use_; }
   std::size_t bytes_held() const { return held_; }  // those in use, too
+  // The most that were in use since the last reset.
+  std::size_t peak_bytes() const { return peak_; }
+  void reset_peak();
 
   // At most an eighth larger.
   static std::size_t rounded(std::size_t bytes);
@@ -45,7 +48,7 @@ class MemoryPool {
   std::mutex mutex_;
   std::map<std::size_t, std::vector<void*>> free_;  // by size
   std::map<void*, std::size_t> sizes_;
-  std::size_t in_use_ = 0, held_ = 0;
+  std::size_t in_use_ = 0, held_ = 0, peak_ = 0;
 };
 
 // An array without a host's side. Grows and never shrinks, so that a steady state allocates

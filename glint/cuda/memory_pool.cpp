@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <bit>
 
 #include "glint/core/device.h"
@@ -38,6 +39,7 @@ void* MemoryPool::allocate(std::size_t bytes) {
     block = fresh(size);
   }
   if (block != nullptr) in_use_ += size;
+  peak_ = std::max(peak_, in_use_);
   return block;
 }
 
@@ -46,6 +48,11 @@ void MemoryPool::release(void* block) {
   const std::size_t size = sizes_.at(block);
   in_use_ -= size;
   free_[size].push_back(block);
+}
+
+void MemoryPool::reset_peak() {
+  const std::lock_guard lock(mutex_);
+  peak_ = in_use_;
 }
 
 void MemoryPool::trim() {

@@ -93,10 +93,12 @@ void TrainingProgress::visit_state(TrainingState& state) {
   state("seconds", seconds);
   state("saving_seconds", saving_seconds);
   state("peak_memory_mb", peak_memory_mb);
+  state("device_memory_mb", device_memory_mb);
   state("events", events);
   if (!state.reading()) return;
   const bool possible = iterations >= 0 && std::isfinite(seconds) &&
-                        std::isfinite(saving_seconds) && std::isfinite(peak_memory_mb);
+                        std::isfinite(saving_seconds) && std::isfinite(peak_memory_mb) &&
+                        std::isfinite(device_memory_mb);
   GLINT_CHECK(
       possible, kBadReference, "iteration {} after {} s, of no training", iterations, seconds
   );

@@ -23,7 +23,7 @@ inline constexpr const char* kProgressFile = "checkpoint/progress.json";
 struct TrainingProgress {
   int iterations = 0;  // done
   double seconds = 0, saving_seconds = 0;
-  double peak_memory_mb = 0;
+  double peak_memory_mb = 0, device_memory_mb = 0;
   std::string events = "[]";  // JSON: since the last line of the log
 
   void visit_state(TrainingState& state);

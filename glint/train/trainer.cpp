@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "glint/core/device.h"
 #include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/machine.h"
@@ -203,7 +204,7 @@ class Training {
   void save() {
     const auto start = Clock::now();
     method_.check_finite();
-    done_.peak_memory_mb = std::max(done_.peak_memory_mb, peak_memory_mb());
+    note_memory();
     done_.events = events_.dump();
     on_device(done_.iterations, [&] {
       try {
@@ -248,12 +249,18 @@ class Training {
       );
     throw Error(ExitCode::kBadPrediction, fmt::format("{}: the loss is {}", stopped, stats.loss));
   }
-  TrainReport report() const {
+  void note_memory() {
+    done_.peak_memory_mb = std::max(done_.peak_memory_mb, peak_memory_mb());
+    done_.device_memory_mb = std::max(done_.device_memory_mb, device_peak_mb());
+  }
+  TrainReport report() {
+    note_memory();
     TrainReport report;
     report.iterations = done_.iterations;
     report.seconds = done_.seconds;
     report.saving_seconds = done_.saving_seconds;
-    report.peak_memory_mb = std::max(done_.peak_memory_mb, peak_memory_mb());
+    report.peak_memory_mb = done_.peak_memory_mb;
+    report.device_memory_mb = done_.device_memory_mb;
     report.num_surfels = method_.num_surfels();
     report.last = last_;
     return report;

@@ -21,9 +21,10 @@ struct TrainOptions {
 
 struct TrainReport {
   int iterations = 0;
-  double seconds = 0;         // of steps only: no loading, logging or saving
-  double saving_seconds = 0;  // of checkpoints: at most 2 % of the time
-  double peak_memory_mb = 0;
+  double seconds = 0;           // of steps only: no loading, logging or saving
+  double saving_seconds = 0;    // of checkpoints: at most 2 % of the time
+  double peak_memory_mb = 0;    // of the host
+  double device_memory_mb = 0;  // in use on the GPU at most; 0 on the CPU
   std::size_t num_surfels = 0;
   StepStats last;
 };

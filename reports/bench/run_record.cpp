@@ -45,7 +45,9 @@ std::vector<std::string> without_truth(const Record& record, const RunSpec& spec
 Scores training_cost(const RunSpec& spec) {
   const auto cost = trained_cost(spec);
   if (!cost || cost->seconds <= 0) return {};
-  return {{"train-minutes", cost->seconds / 60}, {"peak-memory", cost->peak_memory_mb}};
+  Scores scores = {{"train-minutes", cost->seconds / 60}, {"peak-memory", cost->peak_memory_mb}};
+  if (cost->device_memory_mb > 0) scores["device-memory"] = cost->device_memory_mb;
+  return scores;
 }
 
 void describe_run(Record& record, const RunSpec& spec, const Scene& scene) {

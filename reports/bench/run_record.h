@@ -8,8 +8,9 @@
 
 namespace glint {
 
-// What training took, as metrics: "train-minutes" and "peak-memory" (MB). Empty: nobody knows (no
-// env.json), or another program trained it. Errors (kBadPrediction): env.json is damaged.
+// What training took, as metrics: "train-minutes", "peak-memory" and, of a GPU, "device-memory"
+// (MB). Empty: nobody knows (no env.json), or another program trained it. Errors (kBadPrediction):
+// env.json is damaged.
 Scores training_cost(const RunSpec& spec);
 
 // Fills in a record that has its metrics: what else was not measured and why (files of metrics, no

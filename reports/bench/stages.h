@@ -47,8 +47,8 @@ RunScores score_run(
 
 // The same, and writes metrics.json (means, per-view values with names, protocols). `cost` joins
 // the means: "fps" (measured by `timing`, where that is known), "train-minutes", "peak-memory",
-// "num-surfels". Returns the means by id; regions as "psnr@glass". Errors (kBadPrediction): a
-// render is missing, damaged or of another size.
+// "device-memory", "num-surfels". Returns the means by id; regions as "psnr@glass". Errors
+// (kBadPrediction): a render is missing, damaged or of another size.
 std::map<std::string, double> eval_stage(
     const RunSpec& spec,
     const Scene& scene,

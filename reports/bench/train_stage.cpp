@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "glint/core/device.h"
 #include "glint/core/machine.h"
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
@@ -37,12 +38,18 @@ std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
   EarlierRun earlier(spec.folder, goes_on);
   write_run_spec(spec, method->config());
   reset_peak_memory();
+  reset_device_peak();
   const TrainReport report = train(*method, scene, train_options(spec));
   auto files =
       save_in_place(spec.folder, [&](const fs::path& folder) { method->save(folder.string()); });
   write_trained(
       spec,
-      {report.seconds, report.peak_memory_mb, method->warnings(), method->notes(), scene.data_notes}
+      {report.seconds,
+       report.peak_memory_mb,
+       report.device_memory_mb,
+       method->warnings(),
+       method->notes(),
+       scene.data_notes}
   );
   files.emplace_back("env.json");
   write_stage(spec.folder, Stage::kTrain, spec.train_document, files);

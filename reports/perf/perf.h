@@ -80,7 +80,7 @@ void write_perf_scene(const PerfOptions& options, const fs::path& folder);
 double seconds_of_step(const std::string& method, const Json& config, const PerfOptions& options);
 
 // The same step, and the memory that the method, its scene and its steps take at most, megabytes
-// (10^6 bytes): the process's highest less what it had before. Of the host only.
+// (10^6 bytes): the highest less what there was before, of the process or, on a GPU, in use there.
 struct StepCost {
   double seconds = 0, memory_mb = 0;
 };

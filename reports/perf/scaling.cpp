@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "glint/core/device.h"
 #include "glint/core/machine.h"
 #include "glint/core/progress.h"
 #include "glint/method.h"
@@ -66,7 +67,8 @@ std::string too_large(const ScalingSweep& sweep, const ScalingPoint& next) {
   const ScalingPoint& last = sweep.points.back();
   const double growth = value_of(next, sweep.variable) / value_of(last, sweep.variable);
   const double megabytes = kMemoryMargin * growth * last.memory_mb;
-  const double free = static_cast<double>(available_memory_bytes()) / 1e6;
+  const double free =
+      static_cast<double>(on_gpu() ? device_room() : available_memory_bytes()) / 1e6;
   if (megabytes <= free) return "";
   return fmt::format(
       "{} {}: about {:.0f} MB, {:.0f} MB are free",

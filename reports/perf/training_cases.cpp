@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "glint/core/device.h"
 #include "glint/core/files.h"
 #include "glint/core/machine.h"
 #include "glint/method.h"
@@ -174,10 +175,13 @@ double seconds_of_step(const std::string& method, const Json& config, const Perf
 StepCost cost_of_step(const std::string& method, const PerfOptions& options) {
   ::malloc_trim(0);  // what was freed before is not this method's
   const double before = static_cast<double>(resident_memory_bytes()) / 1e6;
+  reset_device_peak();
+  const double device_before = device_peak_mb();
   const PerfCase timed = step_case(method, method, Json::object(), options);
   ::malloc_trim(0);
   reset_peak_memory();
   const double seconds = least_seconds(timed, options.runs);
+  if (on_gpu()) return {seconds, device_peak_mb() - device_before};
   return {seconds, peak_memory_mb() - before};
 }
 

@@ -321,6 +321,7 @@ class RunExamination {
     };
     compare("train-minutes", cost->seconds / 60);
     compare("peak-memory", cost->peak_memory_mb);
+    compare("device-memory", cost->device_memory_mb);
     add("cost", wrong, "as env.json says");
   }
 

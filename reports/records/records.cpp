@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -187,7 +188,8 @@ std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte)
 }
 
 bool is_cost(const std::string& metric) {
-  return metric == "fps" || metric == "train-minutes" || metric == "peak-memory";
+  static const std::set<std::string> costs{"fps", "train-minutes", "peak-memory", "device-memory"};
+  return costs.contains(metric);
 }
 
 const Record* find_record(const std::vector<Record>& records, const CellKey& cell) {

@@ -92,6 +92,7 @@ void write_trained(const RunSpec& spec, const TrainCost& cost) {
   Json json = environment_json();
   json["train_seconds"] = cost.seconds;
   json["peak_memory_mb"] = cost.peak_memory_mb;
+  json["device_memory_mb"] = cost.device_memory_mb;
   json["warnings"] = cost.warnings;
   json["notes"] = cost.notes;
   json["data_notes"] = cost.data_notes;
@@ -106,6 +107,7 @@ std::optional<TrainCost> trained_cost(const RunSpec& spec) {
     return TrainCost{
         json.value("train_seconds", 0.0),
         json.value("peak_memory_mb", 0.0),
+        json.value("device_memory_mb", 0.0),
         json.value("warnings", std::vector<std::string>{}),
         json.value("notes", std::vector<std::string>{}),
         json.value("data_notes", std::vector<std::string>{})};

@@ -41,6 +41,7 @@ RunSpec read_run_spec(const fs::path& folder);
 // What training cost and had to say, in env.json; nothing: no training has ended there.
 struct TrainCost {
   double seconds = 0, peak_memory_mb = 0;
+  double device_memory_mb = 0;  // 0: trained on the CPU, or by an earlier version
   std::vector<std::string> warnings, notes, data_notes;  // of the method; of the scene
 };
 void write_trained(const RunSpec& spec, const TrainCost& cost);

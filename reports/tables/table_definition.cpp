@@ -30,6 +30,7 @@ struct ColumnKeys {
     v("direction", direction, "higher, lower or none");
     v("decimals", column.decimals, "digits behind the point");
     v("scale", column.scale, "shown = scale x measured");
+    v("where_measured", column.where_measured, "only where a record has it");
     v("paper_column", column.paper_column, "column in the paper's table");
     v("paper_title", column.paper_title, "its title; empty: the same");
   }

@@ -65,6 +65,9 @@ std::vector<TableColumn> columns_of(
     const TableDefinition& definition, const std::vector<Record>& records
 ) {
   std::vector<TableColumn> columns = definition.columns;
+  std::erase_if(columns, [&](const TableColumn& column) {
+    return column.where_measured && !has_value(records, definition.dataset, column.metric);
+  });
   std::set<std::string> further;
   for (const Record& record : records)
     if (record.dataset != definition.dataset) further.insert(record.dataset);

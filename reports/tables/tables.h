@@ -28,8 +28,9 @@ struct TableColumn {
   std::string unit;
   RankOrder order = RankOrder::kNone;
   int decimals = 2;
-  double scale = 1;        // shown = scale x measured
-  bool published = false;  // the paper's numbers on the paper's own data
+  double scale = 1;             // shown = scale x measured
+  bool where_measured = false;  // no column where no record has it
+  bool published = false;       // the paper's numbers on the paper's own data
 };
 
 struct TableRowDefinition {

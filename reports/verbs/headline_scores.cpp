@@ -30,7 +30,7 @@ std::vector<TableColumn> headline_columns() {
 std::string unit_of(const std::string& id) {
   if (const Metric* metric = find_metric(id)) return metric->unit;
   if (id == "train-minutes") return "min";
-  if (id == "peak-memory") return "MB";
+  if (id == "peak-memory" || id == "device-memory") return "MB";
   return id == "fps" ? "frames/s" : "";
 }
 

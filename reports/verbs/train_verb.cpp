@@ -25,7 +25,8 @@ int run_train(
           {{"run", folder},
            {"num_surfels", method->num_surfels()},
            {"train_seconds", cost.seconds},
-           {"peak_memory_mb", cost.peak_memory_mb}}
+           {"peak_memory_mb", cost.peak_memory_mb},
+           {"device_memory_mb", cost.device_memory_mb}}
       );
     else
       print_text(fmt::format(

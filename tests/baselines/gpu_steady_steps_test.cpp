@@ -164,6 +164,25 @@ TEST_CASE("A training of recorded steps ends with the bytes of one that is told 
   use_cpu();
 }
 
+TEST_CASE("What a training had in use on a device at most is told, and is 0 on the CPU") {
+  const auto memory_of_training = [] {
+    const Scene scene = small_room();
+    const auto method = create_method("2dgs");
+    TrainOptions options;
+    options.run.iterations = 4;
+    reset_device_peak();
+    return train(*method, scene, options).device_memory_mb;
+  };
+  CHECK(memory_of_training() == 0);
+  use_host_kernels();
+  watch_memory(false);
+  const double first = memory_of_training();
+  const double photo_mb = 4e-6 * static_cast<double>(small_room().train[0].rgb.values().size());
+  CHECK(first > photo_mb);
+  CHECK(memory_of_training() == Approx(first).epsilon(0.3));  // the one before has left
+  use_cpu();
+}
+
 TEST_CASE("Images that fill more than half of a device come for a step and leave, or stay") {
   use_host_kernels();
   watch_memory(false);

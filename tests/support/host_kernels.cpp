@@ -51,6 +51,8 @@ void use_host_kernels(bool recorded) {
       .fill = HostDeviceOps::fill,
       .synchronize = [] { host_recorder().interrupt(); },
       .room = [] { return host_memory().room; },
+      .peak = [] { return HostDeviceMemory::pool().peak_bytes(); },
+      .reset_peak = [] { HostDeviceMemory::pool().reset_peak(); },
       .allocate_host = [](std::size_t bytes) { return host_memory().host.allocate(bytes); },
       .release_host = [](void* block) noexcept { host_memory().host.release(block); }};
   gpu::use_executor<HostExec>(backend);

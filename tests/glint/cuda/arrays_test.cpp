@@ -186,11 +186,15 @@ TEST_CASE("Blocks of a pool are used again, and given back before there is no ro
   pool.release(first);
   CHECK(pool.bytes_held() == 1024);
   CHECK(pool.bytes_in_use() == 0);
+  CHECK(pool.peak_bytes() == 1024);
+  pool.reset_peak();
+  CHECK(pool.peak_bytes() == 0);
   void* large = pool.allocate(4096);
   CHECK(large != nullptr);  // in place of the first
   CHECK(given == 1);
   CHECK(pool.allocate(512) == nullptr);
   pool.release(large);
+  CHECK(pool.peak_bytes() == 4096);  // what was released counts
   room = 0;
   pool.trim();
 }

@@ -157,6 +157,7 @@ TEST_CASE("what training took is one of its files: without it, the cell is train
   OneCell cell;
   CHECK(read_stage(cell.run, Stage::kTrain)->files.contains("env.json"));
   CHECK(cell.record().metrics.at("train-minutes") > 0);
+  CHECK_FALSE(cell.record().metrics.contains("device-memory"));  // trained on the CPU
   fs::remove(cell.run / "env.json");
   CHECK(cell.stages()[Stage::kTrain].why == "env.json is missing");
   CHECK(cell.run_again(1) == "train render mesh score");

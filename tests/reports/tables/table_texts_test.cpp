@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <set>
 
 #include "reports/tables/table_cells.h"
 #include "reports/tables/table_writers.h"
@@ -35,4 +36,20 @@ TEST_CASE("huge values and spreads have an exponent") {
   cell.num_seeds = 2;
   cell.spread = 1e12;
   CHECK(shown_text(cell, {}) == "2.000e+12 ± 1.000e+12");
+}
+
+TEST_CASE("there is a column of GPU memory where one was measured") {
+  auto records = read_records("tests/reports/golden/records.jsonl");
+  const auto titles = [&] {
+    std::set<std::string> titles;
+    for (const TableDefinition& definition : table_definitions())
+      if (definition.id == "tableB_cost")
+        for (const TableColumn& column : build_table(definition, records).columns)
+          titles.insert(column.title);
+    return titles;
+  };
+  CHECK(titles().contains("Peak memory"));
+  CHECK_FALSE(titles().contains("GPU memory"));
+  records[1].metrics["device-memory"] = 512;
+  CHECK(titles().contains("GPU memory"));
 }

@@ -403,7 +403,7 @@ TEST_CASE("columns agree with the metric registry on unit and which way is bette
       INFO(definition.id << " " << column.metric << column.field);
       if (!metric) {  // of cost, or what a run says of itself
         static const std::set<std::string> others{
-            "", "train-minutes", "peak-memory", "fps", "num-surfels"};
+            "", "train-minutes", "peak-memory", "device-memory", "fps", "num-surfels"};
         CHECK(others.contains(column.metric));
         continue;
       }

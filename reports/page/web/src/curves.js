@@ -31,7 +31,7 @@ const start = () => ({
   range: null,
 });
 const state = { scene: 0, ...start() };
-const kCosts = ["train-minutes", "num-surfels", "fps", "peak-memory"];
+const kCosts = ["train-minutes", "num-surfels", "fps", "peak-memory", "device-memory"];
 const kBy = { iteration: "iteration", time: "seconds" };
 
 function keep(scene, push = false) {
