@@ -4,7 +4,6 @@
 // points3d.ply is read where 3DGS keeps it. Alpha is dropped, so transparent pictures lie on their
 // own colour.
 #include "datasets/dataset.h"
-#include "datasets/scene_json.h"
 #include "datasets/transforms_json.h"
 #include "glint/core/error.h"
 
@@ -50,7 +49,6 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   if (const fs::path points = folder / "points3d.ply"; fs::exists(points, code))
     index.points = points;
   index.spec_hash = hash_of_files(train + test, index.views);
-  read_scene_json(folder, index);
   return index;
 }
 

@@ -9,7 +9,6 @@
 #include "datasets/colmap_model.h"
 #include "datasets/dataset.h"
 #include "datasets/scene_index.h"
-#include "datasets/scene_json.h"
 #include "glint/core/error.h"
 
 namespace glint {
@@ -158,7 +157,6 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   shorten_names(index.views);
   index.points = find_colmap_points(files);
   index.spec_hash = hash_of_files(model_text(model), index.views);
-  read_scene_json(folder, index);
   return index;
 }
 

@@ -10,7 +10,6 @@
 #include "datasets/dataset.h"
 #include "datasets/opencv_yaml.h"
 #include "datasets/scene_index.h"
-#include "datasets/scene_json.h"
 
 namespace glint {
 namespace {
@@ -114,7 +113,6 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   std::error_code code;
   if (fs::exists(points, code)) index.points = points;
   index.spec_hash = hash_of_files(read_file(intri) + read_file(extri), index.views);
-  read_scene_json(folder, index);
   return index;
 }
 

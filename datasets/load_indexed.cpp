@@ -13,6 +13,7 @@
 #include "datasets/prior_maps.h"
 #include "datasets/released_truth.h"
 #include "datasets/scene_index.h"
+#include "datasets/scene_json.h"
 #include "datasets/undistort.h"
 #include "datasets/view_maps.h"
 #include "glint/core/error.h"
@@ -434,6 +435,7 @@ LoaderSpec indexed_loader(
   const FolderIndexer index = [index_folder](const fs::path& folder, const LoadOptions& options) {
     SceneIndex of_folder = index_folder(folder, options);
     of_folder.folder = folder;
+    read_scene_json(folder, of_folder);
     refuse_outside(folder, of_folder);
     add_released_truth(folder, of_folder);
     return of_folder;

@@ -3,7 +3,6 @@
 #include <set>
 
 #include "datasets/dataset.h"
-#include "datasets/scene_json.h"
 #include "datasets/transforms_json.h"
 #include "glint/core/error.h"
 
@@ -84,7 +83,6 @@ SceneIndex index_nerfstudio(const fs::path& folder, const LoadOptions& options) 
   if (json.contains("ply_file_path") && json["ply_file_path"].is_string())
     index.points = folder / json["ply_file_path"].get<std::string>();
   index.spec_hash = hash_of_files(json.dump(), index.views);
-  read_scene_json(folder, index);
   return index;
 }
 

@@ -14,7 +14,6 @@
 
 #include "datasets/dataset.h"
 #include "datasets/scene_index.h"
-#include "datasets/scene_json.h"
 #include "glint/core/error.h"
 
 namespace glint {
@@ -129,7 +128,6 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   if (fs::exists(folder / "points.ply", code)) index.points = folder / "points.ply";
   if (fs::exists(folder / "intrinsics.txt", code)) text += read_file(folder / "intrinsics.txt");
   index.spec_hash = hash_of_files(text, index.views);
-  read_scene_json(folder, index);
   return index;
 }
 

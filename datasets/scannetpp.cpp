@@ -15,7 +15,6 @@
 
 #include "datasets/colmap_model.h"
 #include "datasets/dataset.h"
-#include "datasets/scene_json.h"
 #include "datasets/transforms_json.h"
 #include "glint/core/error.h"
 
@@ -171,7 +170,6 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   index.split_rule = split_views(test, options, index.views);
   shorten_names(index.views);
   index.spec_hash = hash_of_files(json.dump(), index.views);
-  read_scene_json(folder, index);
   return index;
 }
 

@@ -113,7 +113,8 @@ Scene outline_indexed(const SceneIndex& index);
 // Everything wrong with the files, the split, the points, and maps against cameras.
 std::vector<Finding> check_indexed(const SceneIndex& index);
 
-// A loader whose folders `index` lists: it loads, checks and tells the split by the above.
+// A loader whose folders `index` lists: it loads, checks and tells the split by the above, and by
+// what the folder says of itself (scene_json.h).
 using FolderIndexer = std::function<SceneIndex(const fs::path&, const LoadOptions&)>;
 LoaderSpec indexed_loader(
     const std::string& name,

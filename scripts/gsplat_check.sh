@@ -27,7 +27,7 @@ log=$out/gsplat.log table=$out/gsplat.md
 : >"$log"
 
 missing() { echo "gsplat_check: $1" | tee -a "$log" >&2; exit 6; }
-archive=$(find gsplat -name 'gsplat-*.tar.*' 2>/dev/null | head -n 1)
+archive=$(find gsplat -name '*.tar.*' ! -name glm.tar.xz 2>/dev/null | head -n 1)
 [ -n "$archive" ] || missing "gsplat's source is not in the bundle; make it with scripts/bundle.sh --gsplat ARCHIVE"
 [ -f gsplat/glm.tar.xz ] || missing "gsplat/glm.tar.xz is not in the bundle (scripts/bundle.sh --gsplat)"
 command -v nvcc >/dev/null || missing "no nvcc: gsplat's kernels are compiled where they run"

@@ -327,6 +327,10 @@ TEST_CASE("a scene of DL3DV's benchmark is known by its folders") {
   CHECK(scene.name == "abc123");
   CHECK(scene.train.size() == 8);
   CHECK(find_loader(outer / "abc123/nerfstudio").name == "nerfstudio");
+  const Json said{{"test_views", {scene.train[3].name}}};  // obeyed in the folder of any loader
+  write_file(outer / "abc123/scene.json", said.dump());
+  CHECK(load_scene(outer / "abc123", {}).test.at(0).name == scene.train[3].name);
+  CHECK(load_scene(outer / "abc123", {}).test.size() == 1);
 }
 
 TEST_CASE("distortion may stand in a list, in its own order") {
