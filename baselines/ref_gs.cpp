@@ -259,8 +259,8 @@ class RefGs final : public Method {
             dL_doutputs_.on_device()}
     );
     field_.backward(dL_doutputs_, gradient_);
-    field_.step(faster_);
     set_.backward(gradient_);
+    field_.step(faster_);  // now it is known whether the step is void
   }
   void add_entropy(StepStats& stats) {
     const float weight = config_.lambda_entropy;

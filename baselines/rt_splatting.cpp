@@ -311,13 +311,11 @@ class RtSplatting final : public Method {
       vjp.dL_doutputs = dL_doutputs_.on_device();
     }
     run_kernel(image_.num_pixels(), kGrain, vjp);
-    if (stage_ == RtStage::kAll) {
-      field_.backward(dL_doutputs_, dL_dsurface_);
-      field_.step(faster_);
-    }
+    if (stage_ == RtStage::kAll) field_.backward(dL_doutputs_, dL_dsurface_);
     const bool both = stage_ != RtStage::kTransmission;
     const RasterGradient& of_volume = set_.backward(dL_dvolume_, volume_, !both);
     if (both) set_.observe(volume_, of_volume, set_.backward(dL_dsurface_, surface_));
+    if (stage_ == RtStage::kAll) field_.step(faster_);  // now it is known whether the step is void
   }
 
   void add_mask_losses(const View& view, StepStats& stats) {

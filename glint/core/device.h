@@ -14,8 +14,8 @@ namespace glint {
 enum class Device { kCpu, kCuda };
 
 // What a backend other than the CPU offers (glint/cuda; tests that run kernels on the host). All
-// but download() and synchronize() are in the order of the ops and wait for nothing. They throw
-// Error (kEnvironment).
+// but download() and synchronize() are in the order of the ops and wait for nothing, but that
+// upload() may wait until `from` has been read. They throw Error (kEnvironment).
 struct DeviceBackend {
   const char* name;                      // of the device, for people
   void* (*allocate)(std::size_t bytes);  // device memory, 64-byte aligned, of any content

@@ -189,8 +189,9 @@ __global__ void __launch_bounds__(Body::kThreads, blocks_at_once<Body>()) run_bl
   body(block, shared);
 }
 
+// Parameters are not copied, as each thread would where it takes an element of an array among them.
 template <class F>
-__global__ void run_elements(std::size_t count, F f) {
+__global__ void run_elements(std::size_t count, const __grid_constant__ F f) {
   const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
   if (i < count) f(i);
 }

@@ -64,21 +64,23 @@ class DeviceBuffer {
   }
   ~DeviceBuffer() { release(); }
 
-  // What was there before is not kept once it has to grow.
-  void resize(std::size_t count) {
-    size_ = count;
-    if (count <= capacity_) return;
-    release();
-    const std::size_t room = count + count / 2;
-    data_ = static_cast<T*>(Memory::allocate(room * sizeof(T)));
-    capacity_ = room;
-  }
+  // What was there before is not kept once it has to grow, which it does by half more than that.
+  void resize(std::size_t count) { resize(count, count + count / 2); }
+  // For counts that have a margin already.
+  void resize_exactly(std::size_t count) { resize(count, count); }
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return capacity_; }
   T* data() { return data_; }
   const T* data() const { return data_; }
 
  private:
+  void resize(std::size_t count, std::size_t room) {
+    size_ = count;
+    if (count <= capacity_) return;
+    release();
+    data_ = static_cast<T*>(Memory::allocate(room * sizeof(T)));
+    capacity_ = room;
+  }
   void release() {
     if (data_ != nullptr) Memory::release(data_);
     data_ = nullptr;

@@ -14,7 +14,8 @@ namespace glint::gpu {
 
 inline PairRoom with_margin(const PairTotals& totals) {
   const auto more = [](std::uint32_t n, std::uint32_t most) {
-    return static_cast<std::uint32_t>(std::min(std::uint64_t{n} + n / 2 + 1, std::uint64_t{most}));
+    const std::uint64_t room = std::max<std::uint64_t>(std::uint64_t{n} + n / 2, 1);
+    return static_cast<std::uint32_t>(std::min(room, std::uint64_t{most}));
   };
   return {more(totals.pairs, kMostPairs.pairs), more(totals.slots, kMostPairs.slots)};
 }

@@ -70,7 +70,6 @@ class TracePipeline {
 
  private:
   static constexpr int kFirstRows = 64;    // hits of a ray for which there is room at first
-  static constexpr float kFirstHits = 32;  // of a place, on average, in backward()
   static constexpr float kMargin = 1.5f;   // above what a call had; views differ
   static constexpr float kKept = 0.9f;     // of the room that there was, at least
 
@@ -85,10 +84,11 @@ class TracePipeline {
     saved_.places = call_.rays.places();
     counts_.resize(saved_.places);
     find(counts);
-    while (saved_.rows < call.cutoffs.max_hits && !SilentStep::now() && read(overflow_) != 0) {
+    while (saved_.rows < call.cutoffs.max_hits && !is_silent() && read(overflow_) != 0) {
       rows_ = 2 * saved_.rows;
       find(counts);
     }
+    found_ = true;
     with_sh_degree(call.input.sh_degree, [&]<int kDegree>() {
       exec_.for_each(
           saved_.places,
@@ -103,7 +103,7 @@ class TracePipeline {
     slots_.resize(saved_.places * static_cast<std::size_t>(saved_.rows));
     saved_.counts = counts_.data();
     saved_.slots = slots_.data();
-    if (!SilentStep::now()) exec_.fill_zero(overflow_);
+    if (!is_silent()) exec_.fill_zero(overflow_);
     constexpr std::size_t kThreads = FindHits<kHits, Counts>::kThreads;
     exec_.launch(
         (saved_.places + kThreads - 1) / kThreads,
@@ -117,7 +117,9 @@ class TracePipeline {
             counts}
     );
   }
-  std::uint32_t* overflow_word() { return SilentStep::now() ? call_.overflow : overflow_.data(); }
+  // The first call waits, even in a silent step: nobody knows yet how many hits there are.
+  bool is_silent() const { return SilentStep::now() && found_; }
+  std::uint32_t* overflow_word() { return is_silent() ? call_.overflow : overflow_.data(); }
   // Waits for the device.
   std::uint32_t read(const Buffer<std::uint32_t>& word) {
     std::uint32_t value = 0;
@@ -131,7 +133,7 @@ class TracePipeline {
   HitGradients make_room() {
     exec_.exclusive_sum_on_device(counts_, saved_.places, first_hits_);
     const auto places = static_cast<float>(saved_.places);
-    if (!SilentStep::now()) {
+    if (!SilentStep::now() || !known_) {
       exec_.for_each(1, CopyWord{first_hits_.data() + saved_.places, overflow_.data()});
       const auto hits = static_cast<float>(read(overflow_));
       const float room = 1 + kMargin * hits / std::max(places, 1.0f);
@@ -139,9 +141,9 @@ class TracePipeline {
       known_ = true;
     }
     const auto capacity = static_cast<std::uint32_t>(hits_a_place_ * places);
-    hits_.resize(capacity);
-    keys_.resize(capacity);
-    order_.resize(capacity);
+    hits_.resize_exactly(capacity);
+    keys_.resize_exactly(capacity);
+    order_.resize_exactly(capacity);
     return {first_hits_.data(), capacity, hits_.data(), keys_.data(), order_.data()};
   }
   template <int kDegree>
@@ -187,8 +189,8 @@ class TracePipeline {
   DeviceTraceCall call_{};
   DeviceHits saved_{};
   int rows_ = kFirstRows;
-  float hits_a_place_ = kFirstHits;
-  bool known_ = false;  // from a call
+  float hits_a_place_ = 0;  // for which backward() has room
+  bool found_ = false, known_ = false;  // there was a call forth, one back
   Buffer<std::uint32_t> counts_, slots_, first_hits_, keys_, order_, overflow_;
   Buffer<HitGradient> hits_;
   Buffer<HitRun> runs_;

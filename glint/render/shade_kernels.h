@@ -232,10 +232,12 @@ struct ShRestVjp {
     const std::size_t i = at / 45;
     const int k = static_cast<int>(at % 45 / 3) + 1, c = static_cast<int>(at % 3);
     if (k >= sh_coefficients(whole.degree)) return;
+    const float gradient = whole.sum_gradient<float>(i, c);
+    if (gradient == 0) return;  // of most surfels: not in view
     float basis[16] = {}, value = 0;
     sh_basis(whole.degree, view_direction<float>(whole.cloud, whole.eye, i).unit, basis);
     unrolled<16>([&](int other) { value = other == k ? basis[other] : value; });
-    whole.out.sh_rest[at] += whole.sum_gradient<float>(i, c) * value;
+    whole.out.sh_rest[at] += gradient * value;
   }
 };
 

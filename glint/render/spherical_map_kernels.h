@@ -188,46 +188,56 @@ struct GatherMapTexels {
 
   GLINT_HD void operator()(std::size_t i) const {
     const auto channels = static_cast<std::size_t>(shape.channels);
-    if (windows == nullptr) return gather(i, 0, channels);
-    gather(i / channels, i % channels, i % channels + 1);
+    if (windows == nullptr)
+      each_corner(i, [&](auto... corner) { add(corner...); });
+    else
+      each_corner(i / channels, [&](auto... corner) { add_channel(i % channels, corner...); });
   }
 
  private:
-  GLINT_HD void gather(std::size_t i, std::size_t c, std::size_t end) const {
+  // f(texel, key, which weight, the weight) of the keys whose taps touch a texel.
+  template <class F>
+  GLINT_HD void each_corner(std::size_t i, F&& f) const {
     int level = 0;
     while (level + 1 < shape.levels && i >= shape.first_texel(level + 1)) ++level;
     const std::size_t first = shape.first_texel(level);
     const auto width = static_cast<std::size_t>(2 * shape.rows(level));
     const std::size_t row = (i - first) / width, column = (i - first) % width;
     const std::size_t left = i - column + (column + width - 1) % width;
-    add(i, c, end, i, 0, &TexelWeights::here);
-    add(i, c, end, left, 1, &TexelWeights::right);
+    f(i, i, 0, &TexelWeights::here);
+    f(i, left, 1, &TexelWeights::right);
     if (row == 0) return;
-    add(i, c, end, i - width, 2, &TexelWeights::below);
-    add(i, c, end, left - width, 3, &TexelWeights::below_right);
+    f(i, i - width, 2, &TexelWeights::below);
+    f(i, left - width, 3, &TexelWeights::below_right);
   }
-  // Channels [first, end) of what the taps of a key give by their `corner`th weight.
-  GLINT_HD void add(
-      std::size_t texel,
-      std::size_t first,
-      std::size_t end,
-      std::size_t key,
-      std::size_t corner,
-      float TexelWeights::*weight
-  ) const {
+  GLINT_HD void add(std::size_t texel, std::size_t key, int /*corner*/, float TexelWeights::*weight)
+      const {
     const auto channels = static_cast<std::size_t>(shape.channels);
     float* to = dL_dtexels + texel * channels;
-    const std::uint32_t stop = begins[key + 1];
-    for (std::uint32_t t = begins[key]; t < stop; ++t) {
-      if (windows != nullptr && t % kTapWindow == 0 && t + kTapWindow <= stop) {
-        to[first] += windows[(t / kTapWindow * 4 + corner) * channels + first];
-        t += kTapWindow - 1;
-        continue;
-      }
+    for (std::uint32_t t = begins[key]; t < begins[key + 1]; ++t) {
       const float w = weights[taps[t]].*weight;
       const float* g = dL_dvalues + taps[t] / 2 * channels;
-      for (std::size_t c = first; c < end; ++c) to[c] += w * g[c];
+      for (std::size_t c = 0; c < channels; ++c) to[c] += w * g[c];
     }
+  }
+  // One channel, whole windows at a time. The sum is held here, as what is read might be it.
+  GLINT_HD void add_channel(
+      std::size_t c, std::size_t texel, std::size_t key, int corner, float TexelWeights::*weight
+  ) const {
+    const auto channels = static_cast<std::size_t>(shape.channels);
+    float& to = dL_dtexels[texel * channels + c];
+    float sum = to;
+    const std::uint32_t stop = begins[key + 1];
+    for (std::uint32_t t = begins[key]; t < stop; ++t) {
+      if (t % kTapWindow == 0 && t + kTapWindow <= stop) {
+        const std::size_t row = t / kTapWindow * 4 + static_cast<std::size_t>(corner);
+        sum += windows[row * channels + c];
+        t += kTapWindow - 1;
+      } else {
+        sum += weights[taps[t]].*weight * dL_dvalues[taps[t] / 2 * channels + c];
+      }
+    }
+    to = sum;
   }
 };
 

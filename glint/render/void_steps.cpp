@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "glint/render/void_steps.h"
 
+#include <utility>
+
 #include "glint/render/void_steps_kernels.h"
 
 namespace glint {
@@ -21,7 +23,7 @@ void end_silent_step() {
 
 std::size_t take_void_steps() {
   if (!on_gpu()) return 0;
-  const std::size_t count = words()[1];
+  const std::size_t count = std::as_const(words())[1];  // the device's side stays valid
   if (count > 0) words().assign(2, 0u);
   return count;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Silent steps (glint/core/device.h) have no more room than the steps before them needed. One that
-// needs more is void: the op that finds it out says so in a word on the device, the optimiser and
-// the statistics of density control see the word and leave everything as it is, and the next step
-// that is not silent makes room.
+// needs more is void: the op that finds it out says so in a word on the device, the optimisers and
+// the statistics of density control that come after see the word and leave everything as it is, and
+// the next step that is not silent makes room. What came before in the step stays: statistics of
+// another set, steps of exposures (PGSR, TSGS).
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A layer y = relu(W^T x + b) of an Mlp on a GPU: one thread an output, an input's gradient or a
-// weight. Neighbouring threads read neighbouring weights; rows are shared by the caches.
+// weight. Forward, neighbouring threads read neighbouring weights; rows are shared by the caches.
 #pragma once
 
 #include "glint/core/kernel.h"

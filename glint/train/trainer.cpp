@@ -174,7 +174,7 @@ class Training {
     check(stats);
     last_ = stats;
     if (const std::size_t count = take_void_steps(); count > 0)
-      note(i, fmt::format("{} steps were left out: no room for their pairs yet", count));
+      note(i, fmt::format("{} steps were left out: no room for their pairs or hits yet", count));
     if (on_disk_ && is_logged(i)) append_log(stats);
     if (on_disk_ && checkpoint_is_due()) save();
   }

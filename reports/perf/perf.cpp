@@ -13,6 +13,7 @@
 #include "glint/core/progress.h"
 #include "glint/core/recorded_step.h"
 #include "glint/cuda/backend.h"
+#include "glint/render/void_steps.h"
 #include "reports/records/environment.h"
 
 namespace glint {
@@ -46,6 +47,13 @@ DeviceCounters asked_since(const DeviceCounters& before, int runs) {
   return asked;
 }
 
+void warn_of_void_runs(const PerfCase& c) {
+  end_silent_step();
+  if (take_void_steps() > 0)
+    log::warn(fmt::format("{}: some of its runs had no room and did less than they had to", c.name)
+    );
+}
+
 // On a GPU runs are silent, as nearly all steps of a training are.
 PerfRow measure(const PerfCase& c, int threads, int runs) {
   set_num_threads(threads);
@@ -62,6 +70,7 @@ PerfRow measure(const PerfCase& c, int threads, int runs) {
   }
   PerfRow row{c.name, c.unit, threads, upper_median(times)};
   row.asked = asked_since(before, runs);
+  warn_of_void_runs(c);
   row.per_second = c.work() / (row.ms / 1000);
   if (c.bytes) row.bytes_per_second = c.bytes() / (row.ms / 1000);
   if (!ratios.empty()) row.scalar_ratio = upper_median(ratios);

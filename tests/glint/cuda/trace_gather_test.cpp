@@ -138,6 +138,25 @@ TEST_CASE("A silent trace waits for nothing and gives the same") {
   use_cpu();
 }
 
+TEST_CASE("The first trace of all makes room, in a silent step, too") {
+  use_host_kernels();
+  const Layers many(150, {16, 12});
+  Calls loud, silent;
+  loud.run(many);
+  {
+    const SilentStep step(true);
+    silent.run(many);
+    CHECK(silent.dropped_hits == 0);
+    CHECK(all_values(silent.gradient) == all_values(loud.gradient));
+    silent.exec.waits = 0;
+    silent.run(many);
+  }
+  CHECK(silent.exec.waits == 0);
+  CHECK(silent.dropped_hits == 0);
+  CHECK(all_values(silent.gradient) == all_values(loud.gradient));
+  use_cpu();
+}
+
 TEST_CASE("Where silent traces have more hits than room, they say so; others make room") {
   use_host_kernels();
   const Layers few(20, {16, 12}), many(150, {16, 12});
