@@ -6,8 +6,8 @@
 
 #include "glint/core/error.h"
 #include "glint/drawing/color_maps.h"
-#include "glint/drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
+#include "reports/pictures/difference_page.h"
 
 namespace glint {
 
@@ -47,22 +47,6 @@ Image displayed(ImageView radiance) {
   for (std::size_t i = 0; i < image.values().size(); ++i)
     image.values()[i] = std::clamp(srgb_encode(radiance.data[i]), 0.0f, 1.0f);
   return image;
-}
-
-PanelRow row_of(ImageView first, ImageView second, float range) {
-  return {
-      fit_panel(displayed(first)),
-      fit_panel(displayed(second)),
-      fit_panel(colorize_signed(relative_difference(first, second), range))};
-}
-
-std::vector<LegendLine> legend_of(const fs::path& first, const fs::path& second, float range) {
-  return {
-      {fmt::format("first: {}", first.string())},
-      {fmt::format("second: {}", second.string())},
-      {fmt::format("second / first - 1, means over 5 x 5 pixels: -{:g} and less", range),
-       LegendBar::kSigned,
-       fmt::format("{:g} and more", range)}};
 }
 
 std::vector<bool> glass_of(const fs::path& folder, const std::string& view, ImageSize size) {
@@ -162,7 +146,7 @@ std::vector<ComparedView> compare_renderings(
     const fs::path& first, const fs::path& second, const fs::path& picture, float range
 ) {
   std::vector<ComparedView> compared;
-  PictureGrid grid{{"first", "second", "second / first - 1"}, {}, legend_of(first, second, range)};
+  DifferencePage page{first.string(), second.string(), range, {}};
   for (const std::string& view : common_views(first, second)) {
     const fs::path file = fs::path("gt") / "rgb" / (view + ".exr");
     const Image a = read_image(first / file, 3), b = read_image(second / file, 3);
@@ -179,10 +163,11 @@ std::vector<ComparedView> compare_renderings(
     );
     compared.push_back({view, radiance_difference(a, b, glass_of(first, view, a.size()))});
     if (picture.empty()) continue;
-    grid.row_titles.push_back(view);
-    grid.rows.push_back(row_of(a, b, range));
+    page.rows.push_back(
+        {view, displayed(a), displayed(b), colorize_signed(relative_difference(a, b), range)}
+    );
   }
-  if (!picture.empty()) write_png(picture, draw_bytes(draw_grid(std::move(grid))));
+  if (!picture.empty()) write_difference_page(picture, page);
   return compared;
 }
 
