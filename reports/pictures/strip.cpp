@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "glint/drawing/color_maps.h"
 #include "glint/drawing/picture_grid.h"
@@ -49,13 +50,20 @@ StripPlan plan_strips(const fs::path& run, const std::vector<View>& views) {
   return plan;
 }
 
-std::vector<std::string> titles_of(const StripPlan& plan) {
+struct StripColumns {
   std::vector<std::string> titles = {"truth", "rendered", fmt::format("error x {}", kErrorGain)};
+  std::set<std::size_t> truths;  // which stay beside their map
+};
+
+StripColumns columns_of(const StripPlan& plan) {
+  StripColumns columns;
   for (const MapPanel& panel : plan.panels) {
-    titles.emplace_back(panel.map.title);
-    if (panel.truth) titles.push_back(fmt::format("{}, truth", panel.map.title));
+    columns.titles.emplace_back(panel.map.title);
+    if (!panel.truth) continue;
+    columns.truths.insert(columns.titles.size());
+    columns.titles.push_back(fmt::format("{}, truth", panel.map.title));
   }
-  return titles;
+  return columns;
 }
 
 // Of the render as it is scored, clamped to [0, 1].
@@ -118,23 +126,13 @@ std::vector<LegendLine> legend_of(const StripPlan& plan, const std::vector<const
   return legend;
 }
 
-// A map's truth stays beside it.
-std::set<std::size_t> truth_columns(const StripPlan& plan) {
-  std::set<std::size_t> columns;
-  std::size_t column = 3;
-  for (const MapPanel& panel : plan.panels) {
-    if (panel.truth) columns.insert(++column);
-    ++column;
-  }
-  return columns;
-}
-
 void write_strip(
     const fs::path& path, const StripPlan& plan, const std::vector<const View*>& views
 ) {
-  PictureGrid grid{titles_of(plan), {}, legend_of(plan, views)};
+  StripColumns columns = columns_of(plan);
+  PictureGrid grid{std::move(columns.titles), {}, legend_of(plan, views)};
   grid.bands = true;
-  grid.joined = truth_columns(plan);
+  grid.joined = std::move(columns.truths);
   for (const View* view : views) grid.rows.push_back(row_of(plan, *view));
   write_png(path, draw_bytes(draw_grid(std::move(grid))));
 }
@@ -142,7 +140,7 @@ void write_strip(
 }  // namespace
 
 std::vector<std::string> strip_titles(const fs::path& run, const std::vector<View>& views) {
-  return titles_of(plan_strips(run, views));
+  return columns_of(plan_strips(run, views)).titles;
 }
 
 namespace {
