@@ -136,11 +136,12 @@ void use_cuda() {
       .clear = clear,
       .fill = fill_floats,
       .synchronize = wait,
-      .room = [] {
-        std::size_t free = 0, total = 0;
-        check_cuda(cudaMemGetInfo(&free, &total), "asking for its free memory");
-        return free + pool().bytes_held() - pool().bytes_in_use();
-      },
+      .room =
+          [] {
+            std::size_t free = 0, total = 0;
+            check_cuda(cudaMemGetInfo(&free, &total), "asking for its free memory");
+            return free + pool().bytes_held() - pool().bytes_in_use();
+          },
       .peak = [] { return pool().peak_bytes(); },
       .reset_peak = [] { pool().reset_peak(); }};
   use_executor<DeviceExec>(backend);

@@ -69,9 +69,9 @@ class TracePipeline {
   }
 
  private:
-  static constexpr int kFirstRows = 64;    // hits of a ray for which there is room at first
-  static constexpr float kMargin = 1.5f;   // above what a call had; views differ
-  static constexpr float kKept = 0.9f;     // of the room that there was, at least
+  static constexpr int kFirstRows = 64;   // hits of a ray for which there is room at first
+  static constexpr float kMargin = 1.5f;  // above what a call had; views differ
+  static constexpr float kKept = 0.9f;    // of the room that there was, at least
 
   // ---- forward
 
@@ -189,7 +189,7 @@ class TracePipeline {
   DeviceTraceCall call_{};
   DeviceHits saved_{};
   int rows_ = kFirstRows;
-  float hits_a_place_ = 0;  // for which backward() has room
+  float hits_a_place_ = 0;              // for which backward() has room
   bool found_ = false, known_ = false;  // there was a call forth, one back
   Buffer<std::uint32_t> counts_, slots_, first_hits_, keys_, order_, overflow_;
   Buffer<HitGradient> hits_;
