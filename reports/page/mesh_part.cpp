@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <cstdint>
+#include <unordered_map>
 
 #include "reports/records/script_text.h"
 
@@ -13,6 +14,17 @@ namespace glint {
 namespace {
 
 using Cell = std::array<std::int64_t, 3>;
+
+struct CellHash {
+  std::size_t operator()(const Cell& cell) const {
+    std::uint64_t hash = 0;
+    for (const std::int64_t index : cell) {
+      hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 32;
+    }
+    return hash;
+  }
+};
 
 struct Box {
   std::array<float, 3> low{}, high{};
@@ -78,7 +90,7 @@ Json color_codes(const TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh merge_vertices(const TriangleMesh& mesh, float cell) {
-  std::map<Cell, std::int32_t> merged_of;
+  std::unordered_map<Cell, std::int32_t, CellHash> merged_of;
   std::vector<std::int32_t> merged(mesh.vertices.size());
   std::vector<float> counts;
   TriangleMesh coarse;
