@@ -5,7 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "reports/records/script_text.h"
 
@@ -14,17 +15,6 @@ namespace glint {
 namespace {
 
 using Cell = std::array<std::int64_t, 3>;
-
-struct CellHash {
-  std::size_t operator()(const Cell& cell) const {
-    std::uint64_t hash = 0;
-    for (const std::int64_t index : cell) {
-      hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9e3779b97f4a7c15u;
-      hash ^= hash >> 32;
-    }
-    return hash;
-  }
-};
 
 struct Box {
   std::array<float, 3> low{}, high{};
@@ -53,6 +43,23 @@ Cell cell_of(Vec3f vertex, float cell) {
   for (std::size_t i = 0; i < 3; ++i)
     at[i] = static_cast<std::int64_t>(std::floor(components(vertex)[i] / cell));
   return at;
+}
+
+// Of each vertex the first one of its cell. Sorted, not looked up: half a million places in a map
+// or a table are as many cache misses.
+std::vector<std::int32_t> first_of_cell(const TriangleMesh& mesh, float cell) {
+  std::vector<std::pair<Cell, std::int32_t>> places;
+  places.reserve(mesh.vertices.size());
+  for (const Vec3f& vertex : mesh.vertices)
+    places.emplace_back(cell_of(vertex, cell), static_cast<std::int32_t>(places.size()));
+  std::sort(places.begin(), places.end());
+  std::vector<std::int32_t> first(places.size());
+  const std::pair<Cell, std::int32_t>* head = nullptr;
+  for (const auto& place : places) {
+    if (head == nullptr || head->first != place.first) head = &place;
+    first[static_cast<std::size_t>(place.second)] = head->second;
+  }
+  return first;
 }
 
 std::vector<std::uint8_t> position_codes(const TriangleMesh& mesh, const Box& box) {
@@ -90,16 +97,16 @@ Json color_codes(const TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh merge_vertices(const TriangleMesh& mesh, float cell) {
-  std::unordered_map<Cell, std::int32_t, CellHash> merged_of;
+  const std::vector<std::int32_t> first = first_of_cell(mesh, cell);
   std::vector<std::int32_t> merged(mesh.vertices.size());
   std::vector<float> counts;
   TriangleMesh coarse;
   const bool colored = mesh.colors.size() == mesh.vertices.size();
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const auto next = static_cast<std::int32_t>(merged_of.size());
-    const auto [it, added] = merged_of.emplace(cell_of(mesh.vertices[i], cell), next);
-    const auto at = static_cast<std::size_t>(merged[i] = it->second);
-    if (added) {
+    const auto leader = static_cast<std::size_t>(first[i]);
+    merged[i] = leader == i ? static_cast<std::int32_t>(counts.size()) : merged[leader];
+    const auto at = static_cast<std::size_t>(merged[i]);
+    if (leader == i) {
       coarse.vertices.emplace_back();
       if (colored) coarse.colors.emplace_back();
       counts.push_back(0);
