@@ -45,8 +45,8 @@ Cell cell_of(Vec3f vertex, float cell) {
   return at;
 }
 
-// Of each vertex the first one of its cell. Sorted, not looked up: half a million places in a map
-// or a table are as many cache misses.
+// Of each vertex the first one of its cell. Sorted, not looked up: what a map or a table keeps lies
+// all over the memory.
 std::vector<std::int32_t> first_of_cell(const TriangleMesh& mesh, float cell) {
   std::vector<std::pair<Cell, std::int32_t>> places;
   places.reserve(mesh.vertices.size());
