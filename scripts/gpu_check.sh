@@ -159,7 +159,6 @@ step_perf() {
       at=(--width "${size%x*}" --height "${size#*x}" --surfels "$surfels")
       perf "steps, $size, $surfels surfels a set, ms" 60 "steps-$size-$surfels.json" --op "$step" "${at[@]}"
       [ "$size" = "${sizes[0]}" ] || continue
-      GLINT_CUDA_GRAPHS=1 perf "the same as graphs" 60 "graphs-$size-$surfels.json" --op "$step" "${at[@]}"
       check "kernels, $size, $surfels surfels" 60 glint-bench perf --quiet --device "$device" --kernels --json --runs 5 \
         --op 'glint training step|2dgs training step' "${at[@]}" && keep "kernels-$size-$surfels.json"
     done
@@ -267,7 +266,7 @@ step_sanitizer() {
   command -v compute-sanitizer >/dev/null || { skip compute-sanitizer "neither here nor in the bundle"; return; }
   local tool
   for tool in memcheck synccheck racecheck initcheck; do
-    # As long as its share lasts. Calls that fail are ours to see: a graph that cannot be updated is made anew.
+    # As long as its share lasts. Calls that fail are the program's to see, not the sanitizer's.
     check "$tool" "$seconds" compute-sanitizer --require-cuda-init=no --report-api-errors no --tool $tool --error-exitcode 1 bin/gpu_tests && continue
     if grep -q "Device not supported" "$log"; then skip compute-sanitizer "it does not support this machine"; return; fi
   done

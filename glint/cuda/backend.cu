@@ -6,7 +6,6 @@
 #include "glint/cuda/card_lock.h"
 #include "glint/cuda/device_exec.cuh"
 #include "glint/cuda/ops.h"
-#include "glint/cuda/step_graph.h"
 
 namespace glint::gpu {
 
@@ -18,10 +17,7 @@ struct FillFloats {
   GLINT_HD void operator()(std::size_t i) const { to[i] = value; }
 };
 
-void wait() {
-  step_graph().end();
-  check_cuda(cudaDeviceSynchronize(), "waiting for the device");
-}
+void wait() { check_cuda(cudaDeviceSynchronize(), "waiting for the device"); }
 
 MemoryPool& pool() {
   // Never destroyed: arrays of the program may outlive it.
@@ -42,24 +38,22 @@ MemoryPool& pool() {
 }
 
 void copy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind, const char* what) {
-  check_cuda(cudaMemcpyAsync(to, from, bytes, kind, device_stream()), what);
+  check_cuda(cudaMemcpyAsync(to, from, bytes, kind), what);
 }
 // `from` may change as soon as it returns, which an asynchronous copy from pages that are not
-// locked does not promise. In order with device_stream(), which waits for the legacy stream.
+// locked does not promise.
 void upload(void* to, const void* from, std::size_t bytes) {
-  step_graph().end();
   check_cuda(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "copying to the device");
 }
 void download(void* to, const void* from, std::size_t bytes) {
-  step_graph().end();
   copy(to, from, bytes, cudaMemcpyDeviceToHost, "copying from the device");
-  check_cuda(cudaStreamSynchronize(device_stream()), "waiting for the device");
+  check_cuda(cudaStreamSynchronize(nullptr), "waiting for the device");
 }
 void copy_inside(void* to, const void* from, std::size_t bytes) {
   copy(to, from, bytes, cudaMemcpyDeviceToDevice, "copying inside the device");
 }
 void clear(void* block, std::size_t bytes) {
-  check_cuda(cudaMemsetAsync(block, 0, bytes, device_stream()), "clearing memory");
+  check_cuda(cudaMemsetAsync(block, 0, bytes), "clearing memory");
 }
 void fill_floats(float* to, std::size_t count, float value) {
   executor<DeviceExec>().for_each(count, FillFloats{to, value});
@@ -145,12 +139,9 @@ void use_cuda() {
       .peak = [] { return pool().peak_bytes(); },
       .reset_peak = [] { pool().reset_peak(); }};
   use_executor<DeviceExec>(backend);
-  use_graphs(graphs_wanted());
   char card[32] = "";
   if (cudaDeviceGetPCIBusId(card, sizeof card, 0) == cudaSuccess) warn_of_sharing(card);
 }
-
-void use_graphs(bool captured) { step_recorder = captured ? &step_graph() : nullptr; }
 
 double measure_copy_bandwidth(std::size_t bytes) {
   constexpr int kRuns = 9;

@@ -20,9 +20,6 @@ struct CudaDevice {
 const CudaDevice& cuda_device();
 // Ops run on it from now on. Errors (kEnvironment): it is not usable.
 void use_cuda();
-// Whether silent steps are captured as graphs (step_graph.h); use_cuda() does what
-// GLINT_CUDA_GRAPHS=1 says. Only while the device is in use.
-void use_graphs(bool captured);
 // Bytes a second of a copy inside the device's memory, reads and writes counted; by a copy of
 // `bytes`, the median of several. Errors (kEnvironment): the device fails.
 double measure_copy_bandwidth(std::size_t bytes);

@@ -9,7 +9,6 @@ const CudaDevice& cuda_device() {
   return none;
 }
 void use_cuda() { throw Error(ExitCode::kEnvironment, cuda_device().why_not); }
-void use_graphs(bool) {}
 double measure_copy_bandwidth(std::size_t) {
   throw Error(ExitCode::kEnvironment, cuda_device().why_not);
 }

@@ -15,7 +15,6 @@
 #include "glint/cuda/block.h"
 #include "glint/cuda/cuda_error.h"
 #include "glint/cuda/device_buffer.h"
-#include "glint/cuda/step_graph.h"
 
 namespace glint::gpu {
 
@@ -34,7 +33,7 @@ class DeviceExec {
   template <class T>
   using Buffer = DeviceBuffer<T, CudaMemory>;
 
-  explicit DeviceExec(cudaStream_t stream = device_stream()) : stream_(stream) {}
+  explicit DeviceExec(cudaStream_t stream = nullptr) : stream_(stream) {}
 
   // Waits for the device.
   template <class T>
@@ -42,7 +41,6 @@ class DeviceExec {
     if (count == 0) return;
     ++device_counters.downloads;
     ++device_counters.waits;
-    step_graph().end();
     check_cuda(
         cudaMemcpyAsync(to, from.data(), count * sizeof(T), cudaMemcpyDeviceToHost, stream_),
         "copying from the device"

@@ -13,7 +13,6 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/machine.h"
 #include "glint/core/progress.h"
-#include "glint/core/recorded_step.h"
 #include "glint/core/rng.h"
 #include "glint/render/void_steps.h"
 #include "glint/train/checkpoint.h"
@@ -160,10 +159,8 @@ class Training {
     const auto start = Clock::now();
     const StepStats stats = on_device(i, [&] {
       const SilentStep silent(!is_told(i));
-      RecordedStep recorded;
       StepStats result = method_.step(i);
       end_silent_step();
-      recorded.end();
       images.end_step();
       return result;
     });

@@ -11,7 +11,6 @@
 #include "glint/core/median.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
-#include "glint/core/recorded_step.h"
 #include "glint/cuda/backend.h"
 #include "glint/render/void_steps.h"
 #include "reports/records/environment.h"
@@ -24,9 +23,7 @@ constexpr std::size_t kCopyBytes = std::size_t{256} << 20;  // beyond any cache
 
 double milliseconds(const std::function<void()>& body) {
   const auto start = std::chrono::steady_clock::now();
-  RecordedStep recorded;
   body();
-  recorded.end();
   synchronize();
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();

@@ -5,7 +5,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "glint/core/recorded_step.h"
 #include "glint/method.h"
 #include "glint/render/void_steps.h"
 #include "glint/train/neighbor_views.h"
@@ -45,7 +44,6 @@ void bring_to_device(const Scene& scene) {
 struct Costs {
   DeviceCounters counters;
   int steps = 0;
-  std::uint64_t interrupted = 0;  // steps that were not recorded to their end
   DeviceCounters before = device_counters;
   void add() {
     const DeviceCounters& now = device_counters;
@@ -62,11 +60,11 @@ struct Costs {
 };
 
 // Trains to the end, with silent steps from `silent_from` on; the cost of the last ones.
-Costs train_silently(Method& method, const Scene& scene, int silent_from, bool recorded = false) {
+Costs train_silently(Method& method, const Scene& scene, int silent_from) {
   use_cpu();
   method.initialize(scene, {kPlanned, 0});
   for (int i = 0; i < kOnCpu; ++i) method.step(i);
-  use_host_kernels(recorded);
+  use_host_kernels();
   bring_to_device(scene);
   watch_memory(false);
   Costs costs;
@@ -74,23 +72,16 @@ Costs train_silently(Method& method, const Scene& scene, int silent_from, bool r
     if (i == kSteady) watch_memory(true);
     const SilentStep silent(i >= silent_from);
     costs.before = device_counters;
-    const std::uint64_t interrupted = host_recorder().interrupted;
-    RecordedStep step;
     method.step(i);
     end_silent_step();
-    step.end();
-    if (i < kSteady) continue;
-    costs.add();
-    costs.interrupted += host_recorder().interrupted - interrupted;
+    if (i >= kSteady) costs.add();
   }
   return costs;
 }
 
-std::string saved_after(
-    const Trained& trained, const Scene& scene, int silent_from, bool recorded = false
-) {
+std::string saved_after(const Trained& trained, const Scene& scene, int silent_from) {
   const auto method = create_method(trained.id, trained.options);
-  train_silently(*method, scene, silent_from, recorded);
+  train_silently(*method, scene, silent_from);
   return saved_bytes(*method);
 }
 
@@ -99,8 +90,7 @@ std::uint64_t check_steady(const Trained& trained) {
   INFO(trained.name);
   const Scene scene = two_views_of_room();
   const auto method = create_method(trained.id, trained.options);
-  const Costs costs = train_silently(*method, scene, kSilentFrom, true);
-  CHECK(costs.interrupted == 0);
+  const Costs costs = train_silently(*method, scene, kSilentFrom);
   CHECK(costs.steps == kEnd - kSteady);
   CHECK(costs.counters.uploads == 0);
   CHECK(costs.counters.downloads == 0);
@@ -147,19 +137,16 @@ TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
   use_cpu();
 }
 
-TEST_CASE("A training of recorded steps ends with the bytes of one that is told everything") {
+TEST_CASE("A training of silent steps ends with the bytes of one that is told everything") {
   use_host_kernels();
   const LpipsWeightsHere weights;  // for those that look at LPIPS
   const Scene scene = two_views_of_room();
   for (const Trained& trained : all_trained()) {
     INFO(trained.name);
     const std::string told = saved_after(trained, scene, kEnd);
-    const std::uint64_t kept = host_recorder().kept;
-    const std::string recorded = saved_after(trained, scene, kSilentFrom, true);
-    CHECK(host_recorder().kept > kept);
+    const std::string silent = saved_after(trained, scene, kSilentFrom);
     CHECK(take_void_steps() == 0);
-    CHECK((told == recorded));
-    if (trained.id == "glint/release") CHECK((told == saved_after(trained, scene, kSilentFrom)));
+    CHECK((told == silent));
   }
   use_cpu();
 }

@@ -17,8 +17,8 @@
 
 namespace glint::test {
 
-// `recorded`: silent steps of trainings are. Kernels are compiled once, in host_kernels.cpp.
-void use_host_kernels(bool recorded = false);
+// Kernels are compiled once, in host_kernels.cpp.
+void use_host_kernels();
 
 // Calls f(name) with each backend in use, and the CPU afterwards.
 template <class F>

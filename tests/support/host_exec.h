@@ -26,34 +26,27 @@ class HostExec {
   void download(const Buffer<T>& from, std::size_t count, T* to) {
     ++device_counters.downloads;
     ++device_counters.waits;
-    host_recorder().interrupt();
     const OpenMemory open(OpenMemory::kBoth);
     std::copy_n(from.data(), count, to);
   }
   template <class T>
   void fill_zero(Buffer<T>& buffer) {
-    host_recorder().now_or_later([data = buffer.data(), size = buffer.size()] {
-      const OpenMemory open(OpenMemory::kDevice);
-      std::fill_n(data, size, T{});
-    });
+    const OpenMemory open(OpenMemory::kDevice);
+    std::fill_n(buffer.data(), buffer.size(), T{});
   }
   template <class F>
   void for_each(std::size_t count, F f) {
     ++device_counters.launches;
-    host_recorder().now_or_later([count, f] {
-      const OpenMemory open(OpenMemory::kDevice);
-      const TracedKernel traced(typeid(F));
-      in_host_order(count, f);
-    });
+    const OpenMemory open(OpenMemory::kDevice);
+    const TracedKernel traced(typeid(F));
+    in_host_order(count, f);
   }
   template <class Body>
   void launch(std::size_t blocks, const Body& body) {
     ++device_counters.launches;
-    host_recorder().now_or_later([blocks, body] {
-      const OpenMemory open(OpenMemory::kDevice);
-      const TracedKernel traced(typeid(Body));
-      in_host_order(blocks, [&](std::size_t i) { run_block(body, static_cast<int>(i)); });
-    });
+    const OpenMemory open(OpenMemory::kDevice);
+    const TracedKernel traced(typeid(Body));
+    in_host_order(blocks, [&](std::size_t i) { run_block(body, static_cast<int>(i)); });
   }
   // sums[i] = counts[0] + ... + counts[i - 1] for i in [0, count], added by `add`.
   template <class T, class Add = gpu::Plus>
@@ -62,20 +55,16 @@ class HostExec {
   ) {
     sums.resize(count + 1);
     ++device_counters.launches;
-    host_recorder().now_or_later([from = counts.data(), count, to = sums.data(), add] {
-      const OpenMemory open(OpenMemory::kDevice);
-      to[0] = T{};
-      std::partial_sum(from, from + count, to + 1, add);
-    });
+    const OpenMemory open(OpenMemory::kDevice);
+    sums.data()[0] = T{};
+    std::partial_sum(counts.data(), counts.data() + count, sums.data() + 1, add);
   }
   // Stable, by the low `bits` bits of the keys.
   template <class Key>
   void sort_pairs(std::size_t count, int bits, Buffer<Key>& keys, Buffer<std::uint32_t>& values) {
     ++device_counters.launches;
-    host_recorder().now_or_later([count, bits, k = keys.data(), v = values.data()] {
-      const OpenMemory open(OpenMemory::kBoth);
-      sort_now(count, bits, k, v);
-    });
+    const OpenMemory open(OpenMemory::kBoth);
+    sort_now(count, bits, keys.data(), values.data());
   }
 
  private:

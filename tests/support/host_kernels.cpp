@@ -11,52 +11,39 @@ namespace {
 
 // Memory operations of kernels on the host.
 struct HostDeviceOps {
-  static void move(void* to, const void* from, std::size_t bytes) {
+  static void copy(void* to, const void* from, std::size_t bytes) {
     const OpenMemory open(OpenMemory::kBoth);
     std::memcpy(to, from, bytes);
   }
-  // From or to the host.
-  static void transfer(void* to, const void* from, std::size_t bytes) {
-    host_recorder().interrupt();
-    move(to, from, bytes);
-  }
-  static void copy(void* to, const void* from, std::size_t bytes) {
-    host_recorder().now_or_later([=] { move(to, from, bytes); });
-  }
   static void clear(void* block, std::size_t bytes) {
-    host_recorder().now_or_later([=] {
-      const OpenMemory open(OpenMemory::kDevice);
-      std::memset(block, 0, bytes);
-    });
+    const OpenMemory open(OpenMemory::kDevice);
+    std::memset(block, 0, bytes);
   }
   static void fill(float* to, std::size_t count, float value) {
-    host_recorder().now_or_later([=] {
-      const OpenMemory open(OpenMemory::kDevice);
-      std::fill_n(to, count, value);
-    });
+    const OpenMemory open(OpenMemory::kDevice);
+    std::fill_n(to, count, value);
   }
 };
 
 }  // namespace
 
-void use_host_kernels(bool recorded) {
+void use_host_kernels() {
   static const DeviceBackend backend{
       .name = "kernels on the host",
       .allocate = HostDeviceMemory::allocate,
       .release = HostDeviceMemory::release,
-      .upload = HostDeviceOps::transfer,
-      .download = HostDeviceOps::transfer,
+      .upload = HostDeviceOps::copy,
+      .download = HostDeviceOps::copy,
       .copy = HostDeviceOps::copy,
       .clear = HostDeviceOps::clear,
       .fill = HostDeviceOps::fill,
-      .synchronize = [] { host_recorder().interrupt(); },
+      .synchronize = [] {},
       .room = [] { return host_memory().room; },
       .peak = [] { return HostDeviceMemory::pool().peak_bytes(); },
       .reset_peak = [] { HostDeviceMemory::pool().reset_peak(); },
       .allocate_host = [](std::size_t bytes) { return host_memory().host.allocate(bytes); },
       .release_host = [](void* block) noexcept { host_memory().host.release(block); }};
   gpu::use_executor<HostExec>(backend);
-  step_recorder = recorded ? &host_recorder() : nullptr;
 }
 
 }  // namespace glint::test

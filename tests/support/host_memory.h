@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "glint/cuda/device_buffer.h"
-#include "tests/support/host_recorder.h"
 
 namespace glint::test {
 
@@ -143,16 +142,14 @@ struct HostDeviceMemory {
     static gpu::MemoryPool& pool = *new gpu::MemoryPool(
         {[](std::size_t bytes) { return host_memory().device.allocate(bytes); },
          [](void* block) { host_memory().device.release(block); },
-         [] { host_recorder().interrupt(); }}
+         [] {}}
     );
     return pool;
   }
   static void* allocate(std::size_t bytes) {
     void* block = pool().allocate(bytes);
-    host_recorder().now_or_later([block, bytes] {
-      const OpenMemory open(OpenMemory::kBoth);
-      std::memset(block, 0xff, bytes);  // what was there before is not to be relied on
-    });
+    const OpenMemory open(OpenMemory::kBoth);
+    std::memset(block, 0xff, bytes);  // what was there before is not to be relied on
     return block;
   }
   static void release(void* block) noexcept { pool().release(block); }
