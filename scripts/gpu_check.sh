@@ -192,13 +192,15 @@ training_split() {
     { i = field("iteration"); s = field("seconds"); n = field("num_surfels") }
     NR == 1 { first = n }
     NR > 1 { step[++k] = (s - s0) / (i - i0); length_of[k] = i - i0; changed[k] = n != n0; if (n == n0) still[++m] = step[k] }
-    { i0 = i; s0 = s; n0 = n; saving = field("saving_seconds"); if (n > most) most = n }
+    { i0 = i; s0 = s; n0 = n; saving = field("saving_seconds"); if (n > most) most = n
+      v = field("void_steps"); if (v > v0) last_void = i; v0 = v }
     END {
       for (a = 2; a <= m; ++a) for (b = a; b > 1 && still[b - 1] > still[b]; --b) { t = still[b]; still[b] = still[b - 1]; still[b - 1] = t }
       median = m ? still[int((m + 1) / 2)] : 0
       for (a = 1; a <= k; ++a) if (changed[a]) more += (step[a] - median) * length_of[a]
-      printf "step %.2f ms (median), densification %.2f s, saving %.2f s, of %.2f s; %d to %d surfels, most %d\n",
-        1000 * median, more, saving, s + saving, first, n, most
+      printf "step %.2f ms (median), densification %.2f s, saving %.2f s, of %.2f s; %d to %d surfels, most %d; %d steps left out",
+        1000 * median, more, saving, s + saving, first, n, most, v
+      print v ? ", the last by iteration " last_void : ""
     }' "$1"
 }
 

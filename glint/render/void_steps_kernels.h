@@ -7,11 +7,15 @@
 
 namespace glint {
 
-// Of words[0], whether the step is void, and words[1], how many steps were.
+// Of words[0], whether the step is void, words[1], how many steps were, and words[2], the last
+// one's iteration.
 struct CountVoidStep {
   std::uint32_t* words;
+  std::uint32_t iteration;
   GLINT_HD void operator()(std::size_t) const {
-    words[1] += words[0];
+    if (words[0] == 0) return;
+    ++words[1];
+    words[2] = iteration;
     words[0] = 0;
   }
 };

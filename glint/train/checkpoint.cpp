@@ -14,7 +14,7 @@ namespace glint {
 namespace {
 
 // Kept in the metadata; grows when a checkpoint of before cannot be read any more.
-constexpr const char* kFormat = "glint-bench checkpoint 1";
+constexpr const char* kFormat = "glint-bench checkpoint 2";
 constexpr const char* kFormatKey = "format";
 constexpr const char* kIdentityKey = "identity";
 
@@ -94,6 +94,7 @@ void TrainingProgress::visit_state(TrainingState& state) {
   state("saving_seconds", saving_seconds);
   state("peak_memory_mb", peak_memory_mb);
   state("device_memory_mb", device_memory_mb);
+  state("void_steps", void_steps);
   state("events", events);
   if (!state.reading()) return;
   const bool possible = iterations >= 0 && std::isfinite(seconds) &&

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "glint/core/files.h"
+#include "glint/render/void_steps.h"
 #include "glint/train/training_state.h"
 
 namespace glint {
@@ -24,6 +25,7 @@ struct TrainingProgress {
   int iterations = 0;  // done
   double seconds = 0, saving_seconds = 0;
   double peak_memory_mb = 0, device_memory_mb = 0;
+  VoidSteps void_steps;
   std::string events = "[]";  // JSON: since the last line of the log
 
   void visit_state(TrainingState& state);

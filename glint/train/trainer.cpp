@@ -33,7 +33,8 @@ Json log_line(const StepStats& stats, const TrainingProgress& done) {
       {"psnr", stats.psnr},
       {"num_surfels", stats.num_surfels},
       {"seconds", done.seconds},
-      {"saving_seconds", done.saving_seconds}};
+      {"saving_seconds", done.saving_seconds},
+      {"void_steps", done.void_steps.count}};
   for (const auto& [name, value] : stats.terms) line["terms"][name] = value;
   for (const auto& [name, size] : stats.sets) line["sets"][name] = size;
   return line;
@@ -132,6 +133,7 @@ class Training {
     for (const std::string& warning : method_.warnings()) log::warn(warning);
     if (on_disk_ && is_checkpoint_of(checkpoint_, options_.identity)) resume();
     first_ = done_.iterations;
+    take_void_steps();  // of a training that failed in this process
     last_checkpoint_ = Clock::now();
   }
 
@@ -160,7 +162,7 @@ class Training {
     const StepStats stats = on_device(i, [&] {
       const SilentStep silent(!is_told(i));
       StepStats result = method_.step(i);
-      end_silent_step();
+      end_silent_step(i);
       images.end_step();
       return result;
     });
@@ -170,12 +172,21 @@ class Training {
     if (!is_told(i)) return;
     check(stats);
     last_ = stats;
-    if (const std::size_t count = take_void_steps(); count > 0)
-      note(i, fmt::format("{} steps were left out: no room for their pairs or hits yet", count));
+    count_void_steps();
     if (on_disk_ && is_logged(i)) append_log(stats);
     if (on_disk_ && checkpoint_is_due()) save();
   }
 
+  void count_void_steps() {
+    const VoidSteps found = take_void_steps();
+    if (found.count == 0) return;
+    done_.void_steps.count += found.count;
+    done_.void_steps.last = found.last;
+    note(
+        found.last,
+        fmt::format("{} steps were left out: no room for their pairs or hits yet", found.count)
+    );
+  }
   void note(int iteration, const std::string& event) {
     events_.push_back({{"iteration", iteration}, {"text", event}});
   }
@@ -202,6 +213,7 @@ class Training {
     const auto start = Clock::now();
     method_.check_finite();
     note_memory();
+    count_void_steps();
     done_.events = events_.dump();
     on_device(done_.iterations, [&] {
       try {
@@ -259,6 +271,7 @@ class Training {
     report.peak_memory_mb = done_.peak_memory_mb;
     report.device_memory_mb = done_.device_memory_mb;
     report.num_surfels = method_.num_surfels();
+    report.void_steps = done_.void_steps;
     report.last = last_;
     return report;
   }

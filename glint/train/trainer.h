@@ -7,6 +7,7 @@
 
 #include "glint/core/files.h"
 #include "glint/method.h"
+#include "glint/render/void_steps.h"
 
 namespace glint {
 
@@ -26,6 +27,7 @@ struct TrainReport {
   double peak_memory_mb = 0;    // of the host
   double device_memory_mb = 0;  // in use on the GPU at most; 0 on the CPU
   std::size_t num_surfels = 0;
+  VoidSteps void_steps;  // that did nothing, since a GPU had no room for them
   StepStats last;
 };
 

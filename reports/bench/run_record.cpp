@@ -22,6 +22,7 @@ void add_training(Record& record, const TrainCost& cost) {
   record.warnings = cost.warnings;
   record.notes = cost.notes;
   record.data_notes = cost.data_notes;
+  record.void_steps = cost.void_steps;
 }
 
 // What is neither measured nor unmeasured for a reason: views without a truth of the kind, surfaces

@@ -49,7 +49,8 @@ std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
        report.device_memory_mb,
        method->warnings(),
        method->notes(),
-       scene.data_notes}
+       scene.data_notes,
+       {{"count", report.void_steps.count}, {"last", report.void_steps.last}}}
   );
   files.emplace_back("env.json");
   write_stage(spec.folder, Stage::kTrain, spec.train_document, files);

@@ -46,7 +46,7 @@ DeviceCounters asked_since(const DeviceCounters& before, int runs) {
 
 void warn_of_void_runs(const PerfCase& c) {
   end_silent_step();
-  if (take_void_steps() > 0)
+  if (take_void_steps().count > 0)
     log::warn(fmt::format("{}: some of its runs had no room and did less than they had to", c.name)
     );
 }

@@ -40,6 +40,7 @@ void visit_fields(R& record, V&& v) {
   v("data_notes", record.data_notes);
   v("not_measured", record.not_measured);
   v("not_applicable", record.not_applicable);
+  v("void_steps", record.void_steps);
   v("timings", record.timings);
   v("environment", record.environment);
 }

@@ -55,6 +55,7 @@ struct Record {
   std::vector<std::string> warnings;  // of the method: losses off, missing priors
   std::vector<std::string> notes;     // of the method, for readers of tables: which masks it got
   std::vector<std::string> data_notes;  // of the scene it was trained on: how priors were read
+  Json void_steps;                      // of its training (run_folder.h); null: not known
   Json timings = Json::object();        // stage -> seconds
   Json environment = Json::object();    // machine, build, date
 

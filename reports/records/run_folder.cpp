@@ -93,6 +93,7 @@ void write_trained(const RunSpec& spec, const TrainCost& cost) {
   json["train_seconds"] = cost.seconds;
   json["peak_memory_mb"] = cost.peak_memory_mb;
   json["device_memory_mb"] = cost.device_memory_mb;
+  json["void_steps"] = cost.void_steps;
   json["warnings"] = cost.warnings;
   json["notes"] = cost.notes;
   json["data_notes"] = cost.data_notes;
@@ -110,7 +111,8 @@ std::optional<TrainCost> trained_cost(const RunSpec& spec) {
         json.value("device_memory_mb", 0.0),
         json.value("warnings", std::vector<std::string>{}),
         json.value("notes", std::vector<std::string>{}),
-        json.value("data_notes", std::vector<std::string>{})};
+        json.value("data_notes", std::vector<std::string>{}),
+        json.value("void_steps", Json())};
   } catch (const nlohmann::json::exception& error) {
     throw Error(
         ExitCode::kBadPrediction,

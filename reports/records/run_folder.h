@@ -43,6 +43,7 @@ struct TrainCost {
   double seconds = 0, peak_memory_mb = 0;
   double device_memory_mb = 0;  // 0: trained on the CPU, or by an earlier version
   std::vector<std::string> warnings, notes, data_notes;  // of the method; of the scene
+  Json void_steps;  // "count" and "last" (VoidSteps); null: of an earlier version, or not trained
 };
 void write_trained(const RunSpec& spec, const TrainCost& cost);
 std::optional<TrainCost> trained_cost(const RunSpec& spec);

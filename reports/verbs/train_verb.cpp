@@ -10,6 +10,16 @@ namespace glint {
 
 namespace {
 
+// Empty where none was.
+std::string void_steps_text(const Json& steps) {
+  if (steps.at("count") == 0) return "";
+  return fmt::format(
+      ", {} steps left out for want of room, the last at iteration {}",
+      steps.at("count").get<int>(),
+      steps.at("last").get<int>()
+  );
+}
+
 int run_train(
     CommonOptions common, const SingleRunOptions& options, const std::string& transmission
 ) {
@@ -26,11 +36,16 @@ int run_train(
            {"num_surfels", method->num_surfels()},
            {"train_seconds", cost.seconds},
            {"peak_memory_mb", cost.peak_memory_mb},
-           {"device_memory_mb", cost.device_memory_mb}}
+           {"device_memory_mb", cost.device_memory_mb},
+           {"void_steps", cost.void_steps}}
       );
     else
       print_text(fmt::format(
-          "{}: {} surfels in {}\n", folder, method->num_surfels(), format_duration(cost.seconds)
+          "{}: {} surfels in {}{}\n",
+          folder,
+          method->num_surfels(),
+          format_duration(cost.seconds),
+          void_steps_text(cost.void_steps)
       ));
   } catch (const Interrupted&) {
     log::warn("interrupted: " + folder + " is not complete; the same command goes on");

@@ -38,7 +38,7 @@ new_bundle() {
         mkdir -p "$run/renders/0"
         loss=1; [[ $run != *-cpu-* ]] || loss=${LOSS_OF_CPU:-3}
         for i in 0 1 2 3 4; do
-          echo "{\"iteration\":$((10 * i)),\"loss\":0.50000$loss,\"num_surfels\":$((i < 3 ? 100 : 150)),\"seconds\":$((i < 3 ? i : i + 2)).0,\"saving_seconds\":0.5}"
+          echo "{\"iteration\":$((10 * i)),\"loss\":0.50000$loss,\"num_surfels\":$((i < 3 ? 100 : 150)),\"seconds\":$((i < 3 ? i : i + 2)).0,\"saving_seconds\":0.5,\"void_steps\":$((i < 2 ? i : 2))}"
         done >"$run/log.jsonl"
         echo picture >"$run/renders/0/rgb.png" ;;
       eval*) printf "  \"psnr\": %s.5,\n" "$(grep -c cuda <<<"$run")" ;;
@@ -54,7 +54,7 @@ expect "all well: exit 0" [ $? = 0 ]
 expect "differences are told" has 'most: 0.100 of the allowed, array in: test, card'
 expect "steps are told" has '2dgs training step 2.50'
 # 1 s for each ten iterations, but for the line where surfels were added: 3 s.
-expect "a training is split" has 'step 100.00 ms (median), densification 2.00 s, saving 0.50 s, of 6.50 s; 100 to 150 surfels, most 150'
+expect "a training is split" has 'step 100.00 ms (median), densification 2.00 s, saving 0.50 s, of 6.50 s; 100 to 150 surfels, most 150; 2 steps left out, the last by iteration 20'
 expect "the longest kernel is profiled" has 'profile of Blend'
 expect "sanitizers do not ask for CUDA" grep -q -- '--require-cuda-init=no --report-api-errors no --tool racecheck' "$OUT/log.txt"
 expect "a GPU is required" grep -q 'require 1' "$OUT/log.txt"

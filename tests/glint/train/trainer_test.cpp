@@ -11,6 +11,7 @@
 #include "glint/core/device_lost.h"
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
+#include "tests/support/gpu_backends.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -66,6 +67,23 @@ class Losing final : public Exploding {
  private:
   int in_step_, in_save_;
   int saves_ = 0;
+};
+
+// One with steps that have no room, and whose device is lost in a step.
+class Cramped final : public Exploding {
+ public:
+  Cramped(std::set<int> void_steps, int lost)
+      : Exploding(-1), void_steps_(std::move(void_steps)), lost_(lost) {}
+  StepStats step(int iteration) override {
+    if (iteration == lost_) throw DeviceLost("gone");
+    if (void_steps_.contains(iteration))
+      test::HostExec().for_each(1, [word = void_word()](std::size_t) { *word = 1; });
+    return Exploding::step(iteration);
+  }
+
+ private:
+  std::set<int> void_steps_;
+  int lost_;
 };
 
 // Steps that are in the folder's checkpoint.
@@ -264,6 +282,32 @@ TEST_CASE("Without room for a checkpoint training goes on and the last good one 
   train(second, one_view(), options);
   CHECK(second.steps == count_to(6));
   CHECK(steps_in(options.folder) == count_to(3));
+}
+
+TEST_CASE("Steps without room are counted, with the last one's iteration, also by one that goes on"
+) {
+  set_quiet(true);
+  test::use_host_kernels();
+  const test::TempFolder temporary;
+  TrainOptions options;
+  options.run.iterations = 50;
+  options.folder = temporary.path();
+  options.log_interval = 10;
+  options.checkpoint_seconds = 0;
+  const std::set<int> without_room{7, 13, 14, 23, 33};
+  // Of 23 the checkpoint, of step 20, knows nothing.
+  Cramped first(without_room, 25);
+  CHECK_THROWS_AS(train(first, one_view(), options), DeviceLost);
+  Cramped second(without_room, -1);
+  const TrainReport report = train(second, one_view(), options);
+  CHECK(report.void_steps.count == 5);
+  CHECK(report.void_steps.last == 33);
+  std::istringstream log(read_file(options.folder / "log.jsonl"));
+  std::vector<int> counts;
+  for (std::string line; std::getline(log, line);)
+    counts.push_back(Json::parse(line).at("void_steps").get<int>());
+  CHECK(counts == std::vector<int>{1, 3, 4, 5, 5});
+  use_cpu();
 }
 
 TEST_CASE("Events between a line of the log and a checkpoint stand in the next line") {

@@ -158,6 +158,7 @@ TEST_CASE("what training took is one of its files: without it, the cell is train
   CHECK(read_stage(cell.run, Stage::kTrain)->files.contains("env.json"));
   CHECK(cell.record().metrics.at("train-minutes") > 0);
   CHECK_FALSE(cell.record().metrics.contains("device-memory"));  // trained on the CPU
+  CHECK(cell.record().void_steps == Json({{"count", 0}, {"last", -1}}));
   fs::remove(cell.run / "env.json");
   CHECK(cell.stages()[Stage::kTrain].why == "env.json is missing");
   CHECK(cell.run_again(1) == "train render mesh score");
