@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Times gsplat's 2DGS on the scene that `glint-bench perf --write-scene` wrote: forward, forward + backward, and a
-training step (L1, Adam; with and without SSIM), by CUDA events, median of the runs. For gsplat_check.sh.
+"""Times gsplat's 2DGS on the scene that `glint-bench perf --write-scene` wrote: forward, forward + backward, both from
+and to the raw parameters (activation and spherical harmonics inside, as `perf`'s "activate + SH + rasterize ..."), and
+a training step (L1, Adam; with and without SSIM), by CUDA events, median of the runs. For gsplat_check.sh.
 
     python3 gsplat_times.py SCENE_FOLDER RUNS        one JSON object on standard output
 """
@@ -100,7 +101,8 @@ def ssim(x, y):
 
 
 def accept_columns():
-    """gsplat 90d7b4b3 refuses its own gradient of depths, a column of another array; a copy of it, one kernel more."""
+    """gsplat 90d7b4b3 refuses its own gradient of depths, a column of another array ("grad.depths must be contiguous");
+    a copy of it, one kernel more."""
     call = _wrapper._make_lazy_cuda_func
 
     def with_copies(name):

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <memory>
 
 #include "glint/render/shade.h"
@@ -38,6 +39,13 @@ struct RasterState {
     if (scalar) settings.lanes = 1;
     rasterizer.forward({input, view.camera, settings});
   }
+  // From raw parameters, as a step does that has just changed them.
+  void draw() {
+    activated.revision = {};
+    shade();
+    input = raster_input(cloud, activated);
+    forward(false);
+  }
   void backward() { gradient = &rasterizer.backward(dL_doutput); }
   // Parameters and gradients of the surfels (12 geometry and feature values each), maps.
   double bytes(int surfel_moves, int map_moves) const {
@@ -53,11 +61,14 @@ constexpr const char* kForward = "rasterize forward";
 constexpr const char* kBackward = "rasterize forward + backward";
 constexpr const char* kShade = "activate + SH degree 3";
 constexpr const char* kShadeBackward = "activate + SH degree 3, backward";
+// What other programs time as one: scripts/gsplat_check.sh.
+constexpr const char* kDraw = "activate + SH + rasterize forward";
+constexpr const char* kDrawBackward = "activate + SH + rasterize forward + backward";
 
 std::vector<PerfCase> raster_cases(const PerfOptions& options) {
-  if (!options.wants(kForward) && !options.wants(kBackward) && !options.wants(kShade) &&
-      !options.wants(kShadeBackward))
-    return {};
+  const auto names = {kForward, kBackward, kShade, kShadeBackward, kDraw, kDrawBackward};
+  const auto wanted = [&](const char* name) { return options.wants(name); };
+  if (std::none_of(names.begin(), names.end(), wanted)) return {};
   const auto s = std::make_shared<RasterState>(options);
   s->forward(false);
   s->backward();
@@ -77,7 +88,9 @@ std::vector<PerfCase> raster_cases(const PerfOptions& options) {
        [s] { s->forward(true), s->backward(); },
        [s] { return s->bytes(3, 3); }},
       {kShade, "surfels", surfels, [s] { s->shade(); }, {}},
-      {kShadeBackward, "surfels", surfels, [s] { s->shade_vjp(); }, {}}};
+      {kShadeBackward, "surfels", surfels, [s] { s->shade_vjp(); }, {}},
+      {kDraw, "pairs", pairs, [s] { s->draw(); }, {}},
+      {kDrawBackward, "pairs", pairs, [s] { s->draw(), s->backward(), s->shade_vjp(); }, {}}};
 }
 
 }  // namespace

@@ -37,11 +37,12 @@ stand_in python3 'case $* in
   *gsplat_times.py*) printf "  \"%s\": %s,\n" forward_ms 2 forward_backward_ms 6 step_l1_ms 8 step_l1_ssim_ms 9 ;;
 esac'
 stand_in glint-bench 'case $* in
-  *--json*) printf "  \"op\": \"%s\",\n  \"ms\": %s,\n" "rasterize forward" 1 "rasterize forward + backward" 3 "2dgs training step" 4 ;;
+  *--json*) printf "  \"op\": \"%s\",\n  \"ms\": %s,\n" "activate + SH + rasterize forward" 1 "activate + SH + rasterize forward + backward" 3 "2dgs training step" 4 ;;
 esac'
 run
 expect "all there: exit 0" [ $? = 0 ]
 expect "ratios are told" grep -qF '| step (gsplat: L1, Adam) | 8.000 | 4.000 | 2.00 |' "$OUT/gsplat.md"
+expect "and those of the rasteriser" grep -qF '| forward + backward, to the raw parameters | 6.000 | 3.000 | 2.00 |' "$OUT/gsplat.md"
 expect "every size is timed" [ "$(grep -c surfels "$OUT/gsplat.md")" = 4 ]
 rm -r "$OUT"
 run --folder "$folder/kept" --build
