@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <set>
 
 #include "datasets/findings.h"
-#include "datasets/packed_scene_format.h"
+#include "datasets/packed_reader.h"
 #include "datasets/view_maps.h"
 #include "glint/core/config.h"
 #include "glint/core/error.h"
-#include "glint/scene/safetensors.h"
 
 namespace glint {
 namespace {
@@ -20,94 +17,7 @@ using packed::Split;
 
 constexpr int kMaxSide = 65535;  // pixels, as of image files
 
-using Shape = std::vector<std::size_t>;
-
-// The file, and which of its tensors were asked for.
-class PackedReader {
- public:
-  explicit PackedReader(const fs::path& path) : file_(path) {}
-
-  std::string where() const { return file_.path().string(); }
-
-  const std::string& field(const std::string& key) const {
-    const auto it = file_.metadata().find(key);
-    GLINT_CHECK(
-        it != file_.metadata().end(),
-        kBadReference,
-        "{}: __metadata__ has no {}; expected a file that `glint-bench dataset pack` wrote",
-        where(),
-        key
-    );
-    return it->second;
-  }
-  bool has_field(const std::string& key) const { return file_.metadata().contains(key); }
-  std::vector<std::string> list(const std::string& key) const {
-    const Json json = parse_json(field(key));
-    const bool good = json.is_array() && std::all_of(json.begin(), json.end(), [](const auto& v) {
-                        return v.is_string();
-                      });
-    GLINT_CHECK(
-        good, kBadReference, "{}: __metadata__: {} is no list of texts; pack it again", where(), key
-    );
-    return json.get<std::vector<std::string>>();
-  }
-
-  bool has(const std::string& name) const { return file_.find(name) != nullptr; }
-  // The first extent of a tensor; 0 where there is none.
-  std::size_t count(const std::string& name) const {
-    const TensorInfo* info = file_.find(name);
-    return info == nullptr || info->shape.empty() ? 0 : info->shape[0];
-  }
-  template <class T>
-  std::vector<T> read(const std::string& name, const Shape& shape) {
-    used_.insert(name);
-    return file_.read<T>(name, shape);
-  }
-  // Floats, or integers over their maximum.
-  std::vector<float> read_floats(const std::string& name, const Shape& shape) {
-    const TensorInfo* info = file_.find(name);
-    std::vector<float> values;
-    if (info != nullptr && info->type == TensorType::kU8)
-      values = steps<std::uint8_t>(name, shape);
-    else if (info != nullptr && info->type == TensorType::kU16)
-      values = steps<std::uint16_t>(name, shape);
-    else
-      values = read<float>(name, shape);
-    return values;
-  }
-  void check_all_used() const {
-    for (const std::string& name : file_.names())
-      GLINT_CHECK(
-          used_.contains(name),
-          kBadReference,
-          "{}: tensor {} has no place in a scene of version {}; pack it again",
-          where(),
-          name,
-          packed::kVersion
-      );
-  }
-
- private:
-  template <class T>
-  std::vector<float> steps(const std::string& name, const Shape& shape) {
-    constexpr auto kMax = static_cast<float>(std::numeric_limits<T>::max());
-    std::vector<float> values;
-    for (const T step : read<T>(name, shape)) values.push_back(static_cast<float>(step) / kMax);
-    return values;
-  }
-
-  SafetensorsFile file_;
-  std::set<std::string> used_;
-};
-
-Shape shape_of(ImageSize size, int channels) {
-  return {
-      static_cast<std::size_t>(size.height),
-      static_cast<std::size_t>(size.width),
-      static_cast<std::size_t>(channels)};
-}
-
-void read_cameras(PackedReader& reader, const std::string& split, std::vector<View>& views) {
+void read_cameras(packed::Reader& reader, const std::string& split, std::vector<View>& views) {
   const auto sizes = reader.read<std::int32_t>(split + ".size", {views.size(), 2});
   const auto intrinsics = reader.read<double>(split + ".intrinsics", {views.size(), 4});
   const auto poses = reader.read<double>(split + ".cam_from_world", {views.size(), 3, 4});
@@ -139,19 +49,7 @@ void check_camera(const Camera& camera, const std::string& where) {
   GLINT_CHECK(!problem, kBadReference, "{}: {}", where, problem->message);
 }
 
-void read_maps(PackedReader& reader, const std::string& prefix, View& view) {
-  const ImageSize size = view.camera.size();
-  for_each_map(view, [&](const std::string& name, Image& map, const MapRow& row) {
-    if (!reader.has(prefix + name)) return;
-    auto values = reader.read_floats(prefix + name, shape_of(size, row.channels()));
-    if (row.kind == MapKind::kMask)
-      for (float& value : values) value = value != 0 ? 1.0f : 0.0f;
-    map = Image(size.width, size.height, row.channels());
-    std::copy(values.begin(), values.end(), map.data());
-  });
-}
-
-std::vector<View> read_views(PackedReader& reader, const std::string& split) {
+std::vector<View> read_views(packed::Reader& reader, const std::string& split) {
   std::vector<View> views;
   for (std::string& name : reader.list(split + "_views"))
     views.push_back({.name = std::move(name)});
@@ -160,37 +58,23 @@ std::vector<View> read_views(PackedReader& reader, const std::string& split) {
     const std::string prefix = packed::view_prefix(split, i);
     // Before anything of the camera's size is allocated.
     check_camera(views[i].camera, reader.where() + ": " + prefix + "camera");
-    read_maps(reader, prefix, views[i]);
   }
+  packed::read_maps(reader, split, views);
   return views;
 }
 
-std::vector<Vec3f> read_vectors(PackedReader& reader, const std::string& name, std::size_t count) {
-  const std::vector<float> values = reader.read_floats(name, {count, 3});
-  std::vector<Vec3f> vectors(count);
-  for (std::size_t i = 0; i < count; ++i)
-    vectors[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-  return vectors;
-}
-
-PointCloud read_points(PackedReader& reader) {
-  const std::size_t count = reader.count("points.positions");
-  PointCloud points;
-  points.positions = read_vectors(reader, "points.positions", count);
-  points.colors = read_vectors(reader, "points.colors", count);
-  if (reader.has("points.normals")) points.normals = read_vectors(reader, "points.normals", count);
-  return points;
-}
-
-void check_format(const PackedReader& reader) {
+void check_format(const packed::Reader& reader) {
+  const std::string &format = reader.field("format"), &version = reader.field("version");
   GLINT_CHECK(
-      reader.field("format") == packed::kFormat && reader.field("version") == packed::kVersion,
+      format == packed::kFormat &&
+          (version == packed::kVersion || version == packed::kFirstVersion),
       kBadReference,
-      "{}: {} of version {}, expected {} of version {}; pack the folder again",
+      "{}: {} of version {}, expected {} of version {} or {}; pack the folder again",
       reader.where(),
-      reader.field("format"),
-      reader.field("version"),
+      format,
+      version,
       packed::kFormat,
+      packed::kFirstVersion,
       packed::kVersion
   );
 }
@@ -220,8 +104,8 @@ void check_view(const View& view, const std::string& where) {
         "{}{}: {}, expected {}",
         where,
         name,
-        shape_text(shape_of(map.size(), map.channels())),
-        shape_text(shape_of(view.camera.size(), row.channels()))
+        shape_text(packed::shape_of(map.size(), map.channels())),
+        shape_text(packed::shape_of(view.camera.size(), row.channels()))
     );
     check_finite(map.values(), where + name);
   });
@@ -292,7 +176,7 @@ void packed::check_scene(const Scene& scene, const std::string& file) {
 namespace {
 
 Scene read_scene(const fs::path& file) {
-  PackedReader reader(file);
+  packed::Reader reader(file);
   check_format(reader);
   Scene scene;
   scene.name = reader.field("name");
@@ -301,8 +185,8 @@ Scene read_scene(const fs::path& file) {
   scene.simulated_priors = reader.field("simulated_priors") == "true";
   if (reader.has_field("data_notes")) scene.data_notes = reader.list("data_notes");
   for (const Split& split : packed::kSplits) scene.*split.views = read_views(reader, split.name);
-  scene.points = read_points(reader);
-  const std::vector<Vec3f> bounds = read_vectors(reader, "bounds", 2);
+  scene.points = packed::read_points(reader);
+  const std::vector<Vec3f> bounds = packed::read_vectors(reader, "bounds", 2);
   scene.bounds_min = bounds[0];
   scene.bounds_max = bounds[1];
   scene.spatial_scale = reader.read_floats("spatial_scale", {1})[0];
@@ -320,14 +204,6 @@ bool is_packed_scene(const fs::path& file) {
     return format != tensors.metadata().end() && format->second == packed::kFormat;
   } catch (const Error&) {
     return false;
-  }
-}
-
-void leave_out_train_truth(Scene& scene) {
-  for (View& view : scene.train) {
-    MapSet kept;
-    if (view.truth.has("glass")) kept["glass"] = view.truth["glass"];
-    view.truth = std::move(kept);
   }
 }
 

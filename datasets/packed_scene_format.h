@@ -10,7 +10,9 @@
 namespace glint::packed {
 
 inline constexpr const char* kFormat = "glint-scene";
-inline constexpr const char* kVersion = "1";  // grows when the meaning of a name changes
+// Grows when the meaning of a name changes. Of version 1, which is still read, every map of a view
+// is a tensor.
+inline constexpr const char *kVersion = "2", *kFirstVersion = "1";
 
 // Either list of views, and the beginning of its tensors' names.
 struct Split {
@@ -18,6 +20,18 @@ struct Split {
   std::vector<View> Scene::*views;
 };
 inline constexpr Split kSplits[] = {{"train", &Scene::train}, {"test", &Scene::test}};
+
+// Maps of so many views after each other are coded together (map_codes.h).
+inline constexpr std::size_t kViewsTogether = 8;
+
+// "train.prior.depth.3": of the views that have that map among those from 24 on. Its first byte
+// says which those are, the lowest bit the first.
+inline std::string maps_name(const std::string& split, const std::string& map, std::size_t group) {
+  return split + "." + map + "." + std::to_string(group);
+}
+
+// Points, their colours and normals are coded as pictures of one row, of this kind.
+inline constexpr MapKind kPointKind = MapKind::kColor;
 
 inline std::string view_prefix(const std::string& split, std::size_t view) {
   return split + "." + std::to_string(view) + ".";

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
+#include <map>
 
+#include "datasets/map_codes.h"
 #include "datasets/packed_scene.h"
 #include "datasets/packed_scene_format.h"
 #include "datasets/view_maps.h"
 #include "glint/core/config.h"
+#include "glint/core/parallel.h"
 #include "glint/scene/safetensors.h"
 
 namespace glint {
@@ -17,50 +17,52 @@ using packed::Split;
 
 using Shape = std::vector<std::size_t>;
 
-// The step of 1 / max(T) next to a value in [0, 1].
-template <class T>
-T nearest_step(float value) {
-  constexpr auto kMax = static_cast<float>(std::numeric_limits<T>::max());
-  return static_cast<T>(std::nearbyint(std::clamp(value, 0.0f, 1.0f) * kMax));
-}
+// Maps that are coded together.
+struct MapGroup {
+  std::string name;
+  MapKind kind = MapKind::kColor;
+  std::uint8_t present = 0;
+  std::vector<const Image*> maps;
+  std::string coded;
+};
 
-// Are all values steps of T, bit for bit?
-template <class T>
-bool fits(std::span<const float> values) {
-  constexpr auto kMax = static_cast<float>(std::numeric_limits<T>::max());
-  return std::all_of(values.begin(), values.end(), [&](float value) {
-    const float stored = static_cast<float>(nearest_step<T>(value)) / kMax;
-    return stored == value && !std::signbit(value);  // -0 has no step
-  });
-}
-
-template <class T>
-void fill_steps(std::span<const float> values, std::byte* to) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const T step = nearest_step<T>(values[i]);
-    std::memcpy(to + i * sizeof(T), &step, sizeof(T));
+// Of all views, in the order of names.
+std::vector<MapGroup> groups_of(const Scene& scene) {
+  std::map<std::string, MapGroup> groups;
+  for (const Split& split : packed::kSplits) {
+    const std::vector<View>& views = scene.*split.views;
+    for (std::size_t i = 0; i < views.size(); ++i)
+      for_each_map(views[i], [&](const std::string& name, const Image& map, const MapRow& row) {
+        if (map.empty()) return;
+        const std::size_t place = i % packed::kViewsTogether;
+        const std::string of = packed::maps_name(split.name, name, i / packed::kViewsTogether);
+        MapGroup& group = groups[of];
+        group.name = of;
+        group.kind = row.kind;
+        group.present = static_cast<std::uint8_t>(group.present | 1u << place);
+        group.maps.push_back(&map);
+      });
   }
+  std::vector<MapGroup> list;
+  for (auto& [name, group] : groups) list.push_back(std::move(group));
+  return list;
 }
 
-TensorType smallest_type(std::span<const float> values) {
-  if (fits<std::uint8_t>(values)) return TensorType::kU8;
-  return fits<std::uint16_t>(values) ? TensorType::kU16 : TensorType::kF32;
-}
-
-void fill_map(std::span<const float> values, TensorType type, std::byte* to) {
-  if (type == TensorType::kU8)
-    fill_steps<std::uint8_t>(values, to);
-  else if (type == TensorType::kU16)
-    fill_steps<std::uint16_t>(values, to);
-  else
-    std::memcpy(to, values.data(), values.size_bytes());
+std::vector<MapGroup> coded_maps(const Scene& scene) {
+  std::vector<MapGroup> groups = groups_of(scene);
+  parallel_for(groups.size(), 1, [&](std::size_t i) {
+    MapGroup& group = groups[i];
+    group.coded = static_cast<char>(group.present) + encode_maps(group.kind, group.maps);
+  });
+  return groups;
 }
 
 // Collects the tensors of a scene, which it borrows.
 class Packer {
  public:
   explicit Packer(const Scene& scene) {
-    for (const Split& split : packed::kSplits) add_views(split.name, scene.*split.views);
+    for (const Split& split : packed::kSplits) add_cameras(split.name, scene.*split.views);
+    for (MapGroup& group : coded_maps(scene)) add_text(group.name, std::move(group.coded));
     add_points("points.positions", scene.points.positions);
     add_points("points.colors", scene.points.colors);
     if (!scene.points.normals.empty()) add_points("points.normals", scene.points.normals);
@@ -87,16 +89,23 @@ class Packer {
       std::copy_n(from, values.size() * sizeof(T), to);
     });
   }
-  // Vectors [N][3], in 8 or 16 bits where that loses nothing.
+  // Vectors [N][3], coded as a picture of one row.
   void add_points(const std::string& name, std::span<const Vec3f> points) {
     static_assert(sizeof(Vec3f) == 3 * sizeof(float));
     const auto* first = reinterpret_cast<const float*>(points.data());
-    add_floats(name, {points.size(), 3}, {first, 3 * points.size()});
+    Image row(static_cast<int>(points.size()), 1, 3);
+    std::copy_n(first, 3 * points.size(), row.data());
+    const Image* rows[] = {&row};
+    const std::uint64_t count = points.size();
+    std::string coded(reinterpret_cast<const char*>(&count), sizeof count);
+    if (count > 0) coded += encode_maps(packed::kPointKind, rows);
+    add_text(name, std::move(coded));
   }
-  void add_floats(const std::string& name, Shape shape, std::span<const float> values) {
-    const TensorType type = smallest_type(values);
-    add(name, type, std::move(shape), [values, type](std::byte* to) { fill_map(values, type, to); }
-    );
+  void add_text(const std::string& name, std::string text) {
+    const Shape shape{text.size()};
+    add(name, TensorType::kU8, shape, [text = std::move(text)](std::byte* to) {
+      std::copy_n(reinterpret_cast<const std::byte*>(text.data()), text.size(), to);
+    });
   }
   void add_cameras(const std::string& split, const std::vector<View>& views) {
     std::vector<std::int32_t> sizes;
@@ -113,21 +122,6 @@ class Packer {
     add_array(split + ".size", {views.size(), 2}, std::move(sizes));
     add_array(split + ".intrinsics", {views.size(), 4}, std::move(intrinsics));
     add_array(split + ".cam_from_world", {views.size(), 3, 4}, std::move(poses));
-  }
-  void add_views(const std::string& split, const std::vector<View>& views) {
-    add_cameras(split, views);
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      const std::string prefix = packed::view_prefix(split, i);
-      for_each_map(views[i], [&](const std::string& name, const Image& map, const MapRow&) {
-        if (!map.empty()) add_floats(prefix + name, shape_of(map), map.values());
-      });
-    }
-  }
-  static Shape shape_of(const Image& image) {
-    return {
-        static_cast<std::size_t>(image.height()),
-        static_cast<std::size_t>(image.width()),
-        static_cast<std::size_t>(image.channels())};
   }
 
   std::vector<TensorToWrite> tensors_;

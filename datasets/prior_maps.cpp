@@ -6,6 +6,7 @@
 
 #include "datasets/map_files.h"
 #include "datasets/map_resize.h"
+#include "datasets/prior_codes.h"
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
 
@@ -18,16 +19,13 @@ Image read_finite(const fs::path& path, int channels) {
   return map;
 }
 
-// `normal`: n, or with `encoded` (n + 1) / 2. To unit length; what is shorter than half of it is
-// nothing: mid-grey decodes to about zero.
+// `normal`: n, or with `encoded` (n + 1) / 2.
 void decode_normals(Image& normal, bool encoded) {
-  constexpr float kMissing = 0.5f;
-  if (encoded)
-    for (float& value : normal.values()) value = 2 * value - 1;
   for (std::size_t i = 0; i < normal.num_pixels(); ++i) {
     float* n = normal.data() + 3 * i;
-    const float norm = length(Vec3f{n[0], n[1], n[2]});
-    for (int c = 0; c < 3; ++c) n[c] = norm < kMissing ? 0 : n[c] / norm;
+    const Vec3f stored{n[0], n[1], n[2]};
+    const Vec3f unit = encoded ? decode_normal(stored) : unit_normal(stored);
+    for (int c = 0; c < 3; ++c) n[c] = unit[c];
   }
 }
 
@@ -43,7 +41,7 @@ Image read_depth_prior(const fs::path& path) {
   Image depth(stored.width(), stored.height(), 1);
   for (std::size_t i = 0; i < depth.num_pixels(); ++i) {
     const float* rgb = stored.data() + 3 * i;
-    depth.data()[i] = rgb[0] + rgb[1] / 256 + rgb[2] / 65536;
+    depth.data()[i] = decode_depth(rgb[0], rgb[1], rgb[2]);
   }
   return depth;
 }

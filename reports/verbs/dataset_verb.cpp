@@ -170,7 +170,8 @@ int run_check(const CommonOptions& common, const FolderOptions& options) {
 
 struct PackOptions : FolderOptions {
   std::string file;
-  bool test_truth_only = false;
+  bool test_truth_only = false, compact = false;
+  std::vector<std::string> without;
 };
 
 // An earlier packed scene is replaced; whatever else lies there is somebody's.
@@ -194,7 +195,9 @@ void check_pack_target(const fs::path& file) {
 int run_pack(const CommonOptions& common, const PackOptions& options) {
   check_pack_target(options.file);
   Scene scene = load_scene(options.folder, options.load);
+  for (const std::string& prior : options.without) leave_out_prior(prior, scene);
   if (options.test_truth_only) leave_out_train_truth(scene);
+  if (options.compact) make_compact(scene);
   write_packed_scene(options.file, scene);
   const std::uintmax_t bytes = fs::file_size(options.file);
   const std::size_t views = scene.train.size() + scene.test.size();
@@ -226,6 +229,12 @@ void add_pack(CommandLine& line, CLI::App& dataset) {
       options->test_truth_only,
       "leave out the ground truth of train views, which is never scored, but for glass masks"
   );
+  pack->add_flag(
+      "--compact",
+      options->compact,
+      "leave out all that no training and no score reads, and round truth as far as no score shows"
+  );
+  pack->add_option("--without", options->without, "leave out a prior, such as basecolor");
 }
 
 void add_make(CommandLine& line, CLI::App& dataset) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 
+#include "datasets/view_maps.h"
 #include "glint/core/config.h"
 #include "glint/core/rng.h"
 #include "glint/scene/safetensors.h"
@@ -59,6 +60,90 @@ struct PackedFile : TempFolder {
     return length;
   }
 };
+
+// As files of version 1 were written, before maps were coded.
+class FirstVersion {
+ public:
+  explicit FirstVersion(const Scene& scene) {
+    for (const auto& [name, views] : {std::pair{"train", &scene.train}, {"test", &scene.test}})
+      add_views(name, *views);
+    const auto count = scene.points.positions.size();
+    add_vectors("points.positions", scene.points.positions);
+    add_vectors("points.colors", scene.points.colors);
+    REQUIRE((scene.points.normals.empty() && count > 0));
+    add_vectors("bounds", {scene.bounds_min, scene.bounds_max});
+    add<float>("spatial_scale", {1}, {scene.spatial_scale});
+  }
+  std::vector<TensorToWrite> tensors;
+
+ private:
+  template <class T>
+  void add(const std::string& name, std::vector<std::size_t> shape, std::vector<T> values) {
+    tensors.push_back({name, {kTensorTypeOf<T>, std::move(shape)}, [values](std::byte* to) {
+                         std::memcpy(to, values.data(), values.size() * sizeof(T));
+                       }});
+  }
+  void add_vectors(const std::string& name, const std::vector<Vec3f>& vectors) {
+    std::vector<float> values;
+    for (const Vec3f v : vectors) values.insert(values.end(), {v.x, v.y, v.z});
+    add(name, {vectors.size(), 3}, values);
+  }
+  void add_views(const std::string& split, const std::vector<View>& views) {
+    std::vector<std::int32_t> sizes;
+    std::vector<double> intrinsics, poses;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const Camera& c = views[i].camera;
+      sizes.insert(sizes.end(), {c.width, c.height});
+      intrinsics.insert(intrinsics.end(), {c.fx, c.fy, c.cx, c.cy});
+      for (int axis = 0; axis < 3; ++axis) {
+        const Vec3d& row = c.rotation_cam_from_world.rows[axis];
+        poses.insert(poses.end(), {row.x, row.y, row.z, c.translation_cam_from_world[axis]});
+      }
+      for_each_map(views[i], [&](const std::string& name, const Image& map, const MapRow&) {
+        if (!map.empty()) add_map(split + "." + std::to_string(i) + "." + name, map);
+      });
+    }
+    add(split + ".size", {views.size(), 2}, sizes);
+    add(split + ".intrinsics", {views.size(), 4}, intrinsics);
+    add(split + ".cam_from_world", {views.size(), 3, 4}, poses);
+  }
+  void add_map(const std::string& name, const Image& map) {
+    const std::vector<std::size_t> shape{
+        std::size_t(map.height()), std::size_t(map.width()), std::size_t(map.channels())};
+    std::vector<std::uint8_t> bytes;
+    for (const float value : map.values()) bytes.push_back(std::uint8_t(value * 255 + 0.5f));
+    const bool fits = std::equal(
+        bytes.begin(),
+        bytes.end(),
+        map.values().begin(),
+        [](std::uint8_t byte, float value) { return float(byte) / 255 == value; }
+    );
+    if (fits)
+      add(name, shape, bytes);
+    else
+      add(name, shape, std::vector<float>(map.values().begin(), map.values().end()));
+  }
+};
+
+void write_first_version(const fs::path& file, const Scene& scene) {
+  const auto names = [](const std::vector<View>& views) {
+    Json list = Json::array();
+    for (const View& view : views) list.push_back(view.name);
+    return list.dump();
+  };
+  write_safetensors(
+      file,
+      {{"format", "glint-scene"},
+       {"version", "1"},
+       {"name", scene.name},
+       {"dataset", scene.dataset},
+       {"hash", scene.spec_hash},
+       {"simulated_priors", scene.simulated_priors ? "true" : "false"},
+       {"train_views", names(scene.train)},
+       {"test_views", names(scene.test)}},
+      FirstVersion(scene).tensors
+  );
+}
 
 std::string write_error(Scene scene, const std::function<void(Scene&)>& spoil) {
   const TempFolder folder;
@@ -118,29 +203,62 @@ TEST_CASE("packing twice gives the same bytes") {
   CHECK(read_file(folder / "a") == read_file(folder / "b"));
 }
 
-TEST_CASE("maps take 8 or 16 bits only where that gives back the very floats") {
+TEST_CASE("a file of the first version, in which every map is a tensor of numbers, is read") {
+  const TempFolder folder;
+  const Scene scene = box_scene();
+  write_first_version(folder / "old", scene);
+  check_same(read_packed_scene(folder / "old"), scene);
+  CHECK(is_packed_scene(folder / "old"));
+}
+
+TEST_CASE("views that lack maps, and views of other sizes, share a file") {
   const TempFolder folder;
   Scene scene = box_scene();
-  Image& rgb = scene.train[0].rgb;
-  const auto fill = [&](float last, float step) {
-    for (float& value : rgb.values()) value = step;
-    rgb.data()[3] = last;
-  };
-  const auto stored = [&] {
-    write_packed_scene(folder / "x", scene);
-    check_same(read_packed_scene(folder / "x"), scene);
-    return SafetensorsFile(folder / "x").find("train.0.rgb")->type;
-  };
-  fill(200 / 255.0f, 1);
-  CHECK(stored() == TensorType::kU8);
-  fill(1234 / 65535.0f, 0);
-  CHECK(stored() == TensorType::kU16);
-  fill(std::nextafter(200 / 255.0f, 1.0f), 1);
-  CHECK(stored() == TensorType::kF32);
-  fill(-0.0f, 0);
-  CHECK(stored() == TensorType::kF32);
-  fill(1.5f, 0);
-  CHECK(stored() == TensorType::kF32);
+  const std::vector<View> views = box_room_views(12, {8, 6}), small = box_room_views(12, {5, 7});
+  scene.train = views;
+  scene.test.clear();
+  for (std::size_t i = 0; i < views.size(); i += 3) scene.train[i] = small[i];
+  for (std::size_t i = 0; i < views.size(); i += 2) scene.train[i].truth = {};
+  for (std::size_t i = 0; i < 8; ++i) scene.train[i].priors = {};
+  write_packed_scene(folder / "x", scene);
+  check_same(read_packed_scene(folder / "x"), scene);
+}
+
+TEST_CASE("a compact scene trains and scores as before with what is left") {
+  Scene scene = small_room();
+  const Scene whole = scene;
+  make_compact(scene);
+  for (std::size_t i = 0; i < scene.train.size(); ++i) {
+    CHECK(same_bytes(scene.train[i].rgb, whole.train[i].rgb));
+    CHECK(same_bytes(scene.train[i].priors["normal"], whole.train[i].priors["normal"]));
+    CHECK(same_bytes(scene.train[i].truth["glass"], whole.train[i].truth["glass"]));
+    CHECK_FALSE(scene.train[i].truth.has("depth"));
+  }
+  const MapSet &truth = scene.test.at(0).truth, &before = whole.test.at(0).truth;
+  CHECK(scene.test[0].priors.empty());
+  CHECK(same_bytes(truth["normal"], before["normal"]));
+  CHECK_FALSE(truth.has("albedo"));
+  REQUIRE(before.has("behind_depth"));
+  const Image &glass = truth["glass"], &behind = truth["behind_depth"];
+  for (std::size_t i = 0; i < glass.num_pixels(); ++i)
+    CHECK(
+        behind.data()[i] ==
+        Approx(glass.data()[i] != 0 ? before["behind_depth"].data()[i] : 0).margin(0.07e-3)
+    );
+  const TempFolder folder;
+  write_packed_scene(folder / "x", scene);
+  check_same(read_packed_scene(folder / "x"), scene);
+  write_packed_scene(folder / "whole", whole);
+  CHECK(fs::file_size(folder / "x") < fs::file_size(folder / "whole") / 2);
+}
+
+TEST_CASE("priors are left out by name") {
+  Scene scene = small_room();
+  leave_out_prior("basecolor", scene);
+  CHECK_FALSE(scene.train[0].priors.has("basecolor"));
+  CHECK(scene.train[0].priors.has("albedo"));
+  CHECK_THROWS_WITH(leave_out_prior("basecolor", scene), Contains("no such prior; priors are"));
+  CHECK_THROWS_WITH(leave_out_prior("colour", scene), Contains("--without colour"));
 }
 
 TEST_CASE("options drop priors and truth and resize, as with folders") {
@@ -182,7 +300,7 @@ TEST_CASE("a header that is not a scene's is an error that names the tensor") {
     header[to] = header[from];
     header.erase(from);
   };
-  CHECK_THAT(error([](Json& h) { h["__metadata__"]["version"] = "2"; }), Contains("version 2"));
+  CHECK_THAT(error([](Json& h) { h["__metadata__"]["version"] = "3"; }), Contains("version 3"));
   CHECK_THAT(error([](Json& h) { h["__metadata__"]["format"] = "pt"; }), Contains("pt of version"));
   CHECK_THAT(error([](Json& h) { h["__metadata__"].erase("hash"); }), Contains("has no hash"));
   CHECK_THAT(
@@ -194,23 +312,42 @@ TEST_CASE("a header that is not a scene's is an error that names the tensor") {
       Contains("train.size is I32 (2, 2), expected I32 (0, 2)")
   );
   CHECK_THAT(
-      error([&](Json& h) { rename(h, "train.0.rgb", "train.0.rbg"); }),
-      Contains("train.0.rbg has no place")
+      error([&](Json& h) { rename(h, "train.rgb.0", "train.rbg.0"); }),
+      Contains("train.rbg.0 has no place")
   );
   CHECK_THAT(
       error([&](Json& h) { rename(h, "train.intrinsics", "intrinsics"); }),
       Contains("no tensor train.intrinsics")
   );
   CHECK_THAT(
-      error([](Json& h) {
-        h["train.1.truth.depth"]["shape"] = {8, 6, 1};
-      }),
-      Contains("train.1.truth.depth is F32 (8, 6, 1), expected F32 (6, 8, 1)")
+      error([&](Json& h) { rename(h, "train.truth.depth.0", "train.truth.depth.1"); }),
+      Contains("train.truth.depth.1 has no place")
   );
   CHECK_THAT(
-      error([](Json& h) { h["train.1.truth.depth"]["dtype"] = "I32"; }),
-      Contains("is I32 (6, 8, 1), expected F32")
+      error([&](Json& h) { std::swap(h["train.truth.depth.0"], h["train.rgb.0"]); }),
+      Contains("train.rgb.0: ")
   );
+  CHECK_THAT(
+      error([](Json& h) { h["train.truth.depth.0"]["dtype"] = "I32"; }),
+      Contains("train.truth.depth.0: shape")
+  );
+}
+
+TEST_CASE("maps of views that are not there, and too few bytes for the pixels, are errors") {
+  const PackedFile f;
+  const auto error = [&](const char* tensor, std::size_t at, char byte) {
+    std::string text = read_file(f.file);
+    const Json offsets = f.header()[tensor]["data_offsets"];
+    text[8 + PackedFile::length(text) + offsets[0].get<std::size_t>() + at] = byte;
+    write_file(f / "changed", text);
+    return bad_reference([&] { read_packed_scene(f / "changed"); });
+  };
+  CHECK_THAT(error("train.rgb.0", 0, 0), Contains("train.rgb.0: it names maps of views"));
+  CHECK_THAT(
+      error("train.rgb.0", 0, 7), Contains("it names maps of views that are not there (0x7)")
+  );
+  CHECK_THAT(error("train.rgb.0", 1, 99), Contains("code 99 is not known"));
+  CHECK_THAT(error("points.positions", 5, 1), Contains("bytes for 1099511627778 points"));
 }
 
 TEST_CASE("a file that was cut off is an error wherever it was") {
