@@ -88,11 +88,11 @@ compare() {
   { glint-bench perf --device cpu "${size[@]}" --write-scene "$work/scene" &&
     timeout "$(left)" python3 gsplat_times.py "$work/scene" 31 >"$work/theirs" &&
     timeout "$(left)" glint-bench perf --quiet --device cuda --json --runs 31 "${size[@]}" \
-      --op 'activate + SH + rasterize*|2dgs training step' >"$work/ours"; } 2>>"$log" || return 1
+      --op 'activate, SH, rasterize*|2dgs training step' >"$work/ours"; } 2>>"$log" || return 1
   cat "$work/theirs" "$work/ours" >>"$log"
   { echo; echo "$1x$2, $3 surfels"; echo; echo "| ms | gsplat | ours | ratio |"; echo "|---|---:|---:|---:|"; } >>"$table"
-  line "forward, with activation and SH" "$(value forward_ms)" "$(ours 'activate + SH + rasterize forward')"
-  line "forward + backward, to the raw parameters" "$(value forward_backward_ms)" "$(ours 'activate + SH + rasterize forward + backward')"
+  line "forward, with activation and SH" "$(value forward_ms)" "$(ours 'activate, SH, rasterize')"
+  line "forward + backward, to the raw parameters" "$(value forward_backward_ms)" "$(ours 'activate, SH, rasterize + backward')"
   line "step (gsplat: L1, Adam)" "$(value step_l1_ms)" "$(ours '2dgs training step')"
   line "step (gsplat: L1 + SSIM, Adam; ours: the method's whole step)" "$(value step_l1_ssim_ms)" "$(ours '2dgs training step')"
   pack

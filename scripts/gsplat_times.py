@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Times gsplat's 2DGS on the scene that `glint-bench perf --write-scene` wrote: forward, forward + backward, both from
-and to the raw parameters (activation and spherical harmonics inside, as `perf`'s "activate + SH + rasterize ..."), and
+and to the raw parameters (activation and spherical harmonics inside, as `perf`'s "activate, SH, rasterize ..."), and
 a training step (L1, Adam; with and without SSIM), by CUDA events, median of the runs. For gsplat_check.sh.
 
     python3 gsplat_times.py SCENE_FOLDER RUNS        one JSON object on standard output

@@ -62,8 +62,8 @@ constexpr const char* kBackward = "rasterize forward + backward";
 constexpr const char* kShade = "activate + SH degree 3";
 constexpr const char* kShadeBackward = "activate + SH degree 3, backward";
 // What other programs time as one: scripts/gsplat_check.sh.
-constexpr const char* kDraw = "activate + SH + rasterize forward";
-constexpr const char* kDrawBackward = "activate + SH + rasterize forward + backward";
+constexpr const char* kDraw = "activate, SH, rasterize";
+constexpr const char* kDrawBackward = "activate, SH, rasterize + backward";
 
 std::vector<PerfCase> raster_cases(const PerfOptions& options) {
   const auto names = {kForward, kBackward, kShade, kShadeBackward, kDraw, kDrawBackward};

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include "glint/core/interrupt.h"
 #include "metrics/tools/numeric_options.h"
 #include "reports/perf/perf.h"
 #include "reports/perf/scaling.h"
-#include "reports/verbs/verb.h"
+#include "reports/verbs/perf_runs.h"
+#include "reports/verbs/single_run.h"
 
 namespace glint {
 
@@ -29,18 +31,29 @@ struct PerfVerb {
   std::string scaling;  // folder to write to
   std::vector<std::size_t> scaling_surfels = ScalingOptions().surfels;
   std::vector<std::string> scaling_sizes;  // "160x90"; none: those of ScalingOptions
+  FrameRateOptions frame_rates;            // of runs; none: ops are timed
+  std::vector<std::string> sizes;          // "480x270"; none: those of FrameRateOptions
 };
 
-ImageSize size_of(const std::string& text) {
+ImageSize size_of(const char* option, const std::string& text) {
   int width = 0, height = 0, read = 0;
   const int fields = std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &read);
   GLINT_CHECK(
       fields == 2 && static_cast<std::size_t>(read) == text.size() && width > 0 && height > 0,
       kUsage,
-      "--scaling-sizes: '{}', expected WIDTHxHEIGHT in pixels, such as 160x90",
+      "{}: '{}', expected WIDTHxHEIGHT in pixels, such as 160x90",
+      option,
       text
   );
   return {width, height};
+}
+
+// Those given, or else what there is.
+void take_sizes(
+    const char* option, const std::vector<std::string>& given, std::vector<ImageSize>& sizes
+) {
+  if (!given.empty()) sizes.clear();
+  for (const std::string& text : given) sizes.push_back(size_of(option, text));
 }
 
 // The folder gets scaling.json, and scaling.png where this build draws.
@@ -48,8 +61,7 @@ void run_scaling_verb(const CommonOptions& common, const PerfVerb& verb) {
   ScalingOptions options;
   options.base = verb.options;
   options.surfels = verb.scaling_surfels;
-  if (!verb.scaling_sizes.empty()) options.sizes.clear();
-  for (const std::string& size : verb.scaling_sizes) options.sizes.push_back(size_of(size));
+  take_sizes("--scaling-sizes", verb.scaling_sizes, options.sizes);
   const std::vector<ScalingSweep> sweeps = run_scaling(options);
   GLINT_CHECK(!sweeps.empty(), kUsage, "--op '{}': no method has such an id", options.base.only);
   const fs::path folder(verb.scaling);
@@ -62,8 +74,25 @@ void run_scaling_verb(const CommonOptions& common, const PerfVerb& verb) {
     print_text(scaling_to_text(options, sweeps));
 }
 
+int run_frame_rates(const CommonOptions& common, const PerfVerb& verb) {
+  FrameRateOptions options = verb.frame_rates;
+  take_sizes("--sizes", verb.sizes, options.sizes);
+  install_interrupt_handler();
+  try {
+    const std::vector<FrameRate> rates = measure_frame_rates(options);
+    if (common.json)
+      print_json(frame_rates_to_json(options, rates));
+    else
+      print_text(frame_rates_to_text(options, rates));
+    return 0;
+  } catch (const Interrupted&) {
+    return interrupted_exit();
+  }
+}
+
 int run(const CommonOptions& common, const PerfVerb& verb) {
   const PerfOptions& options = verb.options;
+  if (!verb.frame_rates.runs.empty()) return run_frame_rates(common, verb);
   if (!verb.scaling.empty())
     run_scaling_verb(common, verb);
   else if (!verb.scene.empty())
@@ -73,6 +102,20 @@ int run(const CommonOptions& common, const PerfVerb& verb) {
   else
     print_rows(common, options, run_perf(options), perf_to_json, perf_to_text);
   return 0;
+}
+
+void add_run_options(CLI::App& verb, PerfVerb& chosen) {
+  CLI::Option* run = verb.add_option(
+      "--run", chosen.frame_rates.runs, "only frames a second of these trained runs (folders)"
+  );
+  add_moved_dataset_option(verb, chosen.frame_rates.dataset);
+  verb.get_option("--dataset")->needs(run);
+  verb.add_option("--sizes", chosen.sizes, "of frames; 480x270 and 960x540 if not given")
+      ->needs(run);
+  verb.add_option("--frames", chosen.frame_rates.timing.frames, "timed, of each run and size")
+      ->needs(run)
+      ->check(above_zero())
+      ->capture_default_str();
 }
 
 void add_perf_verb(CommandLine& line) {
@@ -107,6 +150,7 @@ void add_perf_verb(CommandLine& line) {
       ->check(above_zero());
   verb->add_option("--scaling-sizes", chosen->scaling_sizes, "pixels, such as 160x90");
   verb->add_option("--write-scene", chosen->scene, "only write surfels and camera to a folder");
+  add_run_options(*verb, *chosen);
 }
 
 }  // namespace

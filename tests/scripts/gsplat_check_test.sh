@@ -37,7 +37,7 @@ stand_in python3 'case $* in
   *gsplat_times.py*) printf "  \"%s\": %s,\n" forward_ms 2 forward_backward_ms 6 step_l1_ms 8 step_l1_ssim_ms 9 ;;
 esac'
 stand_in glint-bench 'case $* in
-  *--json*) printf "  \"op\": \"%s\",\n  \"ms\": %s,\n" "activate + SH + rasterize forward" 1 "activate + SH + rasterize forward + backward" 3 "2dgs training step" 4 ;;
+  *--json*) printf "  \"op\": \"%s\",\n  \"ms\": %s,\n" "activate, SH, rasterize" 1 "activate, SH, rasterize + backward" 3 "2dgs training step" 4 ;;
 esac'
 run
 expect "all there: exit 0" [ $? = 0 ]
