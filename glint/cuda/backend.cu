@@ -97,6 +97,9 @@ CudaDevice look() {
   device.name = properties.name;
   device.compute_capability = 10 * properties.major + properties.minor;
   device.memory_bytes = properties.totalGlobalMem;
+  int mode = cudaComputeModeDefault;
+  cudaDeviceGetAttribute(&mode, cudaDevAttrComputeMode, 0);
+  device.exclusive = mode == cudaComputeModeExclusiveProcess;
   device.usable = true;
   return device;
 }

@@ -14,6 +14,7 @@ struct CudaDevice {
   std::string driver;          // highest CUDA version that the driver speaks, "13.0"
   int compute_capability = 0;  // 90: 9.0
   std::size_t memory_bytes = 0;
+  bool exclusive = false;  // it is set to serve one process at a time
 };
 
 // Looks once; never throws.

@@ -25,6 +25,11 @@ constexpr const char* kRebuild =
 constexpr const char* kLost = "the device is lost to this process; start it again";
 constexpr const char* kBroken =
     "the device or its driver failed: see nvidia-smi and the kernel's log (dmesg, lines with Xid)";
+constexpr const char* kMps =
+    "MPS, by which processes share the card, has ended or failed (logs: CUDA_MPS_LOG_DIRECTORY); "
+    "start it again, or run one process at a time";
+constexpr const char* kFewerJobs = "MPS serves as many processes as it can; use fewer (--jobs)";
+constexpr int kMemoryAllocation = 2;
 
 // What is known of an error: numbers of cudaError_t, which do not change (driver_types.h).
 struct Known {
@@ -57,6 +62,12 @@ constexpr Known kKnown[] = {
     {802, kBroken},         // system not ready
     {803, kNewerDriver},    // system driver mismatch
     {804, kNewerDriver},    // compatibility not supported
+    {805, kMps},            // no connection to MPS
+    {806, kMps, true},      // a call of MPS failed
+    {807, kMps},            // MPS takes no one yet
+    {808, kFewerJobs},      // MPS has as many processes as it takes
+    {809, kFewerJobs},      // MPS has as many connections as it takes
+    {810, kMps, true},      // ended by MPS
     {911, kBroken, true},   // external device
     {999, kBroken, true}};  // unknown: after a card fell off the bus
 
@@ -92,21 +103,19 @@ void throw_cuda_error(const char* what, int error, const char* reason) {
   std::string message = fmt::format("CUDA: {} failed: {}", what, reason);
   if (const std::string advice = advice_for(error); !advice.empty()) message += "; " + advice;
   if (loses_device(error)) throw DeviceLost(message);
+  if (error == kMemoryAllocation) throw OutOfMemory(message);
   throw Error(ExitCode::kEnvironment, message);
 }
 
 void throw_out_of_memory(std::size_t needed, std::size_t free, std::size_t total) {
-  throw Error(
-      ExitCode::kEnvironment,
-      fmt::format(
-          "the card is too small: {} are needed, {} of its {} are free; {}. Other processes on it: "
-          "nvidia-smi",
-          gib(needed),
-          gib(free),
-          gib(total),
-          kLess
-      )
-  );
+  throw OutOfMemory(fmt::format(
+      "the card is too small: {} are needed, {} of its {} are free; {}. Other processes on it: "
+      "nvidia-smi",
+      gib(needed),
+      gib(free),
+      gib(total),
+      kLess
+  ));
 }
 
 std::string driver_text(int driver, int runtime) {

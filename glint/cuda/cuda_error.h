@@ -14,10 +14,11 @@ std::string advice_for(int error);
 // After it no call of this process to the device works any more.
 bool loses_device(int error);
 
-// Throws Error (kEnvironment); DeviceLost where the device is.
+// Throws Error (kEnvironment): DeviceLost where the device is, OutOfMemory where it is full.
 [[noreturn]] void throw_cuda_error(const char* what, int error, const char* reason);
 [[noreturn]] void throw_cuda_error(const char* what, const char* reason);
-// The card is too small, or others fill it: bytes asked for, free and there in all.
+// Throws OutOfMemory: the card is too small, or others fill it. Bytes asked for, free and there in
+// all.
 [[noreturn]] void throw_out_of_memory(std::size_t needed, std::size_t free, std::size_t total);
 
 // "driver for CUDA 12.2, program for CUDA 13.0" of versions as CUDA counts them, 13000; with what

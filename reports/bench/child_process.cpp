@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <utility>
@@ -105,6 +106,19 @@ int wait_for_exec(int failure) {
   return why;
 }
 
+class TimeLimit {
+ public:
+  explicit TimeLimit(double seconds) : seconds_(seconds) {}
+  bool is_over() const {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
+    return seconds_ > 0 && passed.count() > seconds_;
+  }
+
+ private:
+  double seconds_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
 ProcessEnd end_of(int status) {
   if (WIFSIGNALED(status)) return {0, WTERMSIG(status)};
   return {WEXITSTATUS(status), 0};
@@ -182,16 +196,23 @@ std::optional<ProcessEnd> ChildProcess::end() {
   return end_;
 }
 
-std::optional<CommandResult> run_command(const ChildProcess::Words& words) {
+std::optional<CommandResult> run_command(
+    const ChildProcess::Words& words, const ChildProcess::Words& settings, double seconds
+) {
+  constexpr int kPollMilliseconds = 100;
   try {
-    ChildProcess child(words);
+    ChildProcess child(words, settings);
     CommandResult result;
-    while (child.output() >= 0) {
+    const TimeLimit limit(seconds);
+    while (child.output() >= 0 && !limit.is_over()) {
       pollfd waiting{child.output(), POLLIN, 0};
-      ::poll(&waiting, 1, -1);
+      ::poll(&waiting, 1, kPollMilliseconds);
       result.output += child.read();
     }
-    while (!child.end()) ::usleep(1000);
+    while (!child.end()) {
+      if (limit.is_over()) child.send(SIGKILL);
+      ::usleep(1000);
+    }
     result.end = *child.end();
     return result;
   } catch (const Error&) {

@@ -52,8 +52,11 @@ struct CommandResult {
   std::string output;  // standard output and error
 };
 
-// Runs a program to its end; nothing when there is no such program.
-std::optional<CommandResult> run_command(const ChildProcess::Words& words);
+// Runs a program to its end; nothing when there is no such program. One that takes longer than
+// `seconds` (0: any time) is killed, which is how it ends then.
+std::optional<CommandResult> run_command(
+    const ChildProcess::Words& words, const ChildProcess::Words& settings = {}, double seconds = 0
+);
 
 // "SIGSEGV"; "signal 99" of those without a name.
 std::string signal_name(int signal);

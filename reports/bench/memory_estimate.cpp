@@ -34,6 +34,14 @@ double bytes_of(const MapSet& maps) {
   return bytes;
 }
 
+// Surfels, and maps of a step.
+double training_bytes(const MemoryUser& user, const SceneSize& scene) {
+  const double pixels = scene.view_pixels;
+  const double seen = std::max(scene.points, pixels / kPixelsPerSurfel);
+  const double surfels = std::min(double(user.max_surfels), seen);
+  return kBytesPerPixel * pixels + kSets * kBytesPerSurfel * surfels;
+}
+
 std::string gib(double bytes) { return fmt::format("{:.2f} GiB", bytes / (1 << 30)); }
 
 }  // namespace
@@ -86,17 +94,24 @@ MemoryEstimate estimate_memory(
     if (record.ok() && record.cell.method == user.method && record.resolution == scene.resolution)
       most = std::max(most, bytes_taken(record));
   if (most > 0) return {most, "what such cells took before"};
-  const double pixels = scene.view_pixels;
-  const double seen = std::max(scene.points, pixels / kPixelsPerSurfel);
-  const double surfels = std::min(double(user.max_surfels), seen);
   const MemoryEstimate stages[] = {
-      {kBytesPerPixel * pixels + kSets * kBytesPerSurfel * surfels, "its images and surfels"},
+      {training_bytes(user, scene), "its images and surfels"},
       {user.voxel > 0 ? kFusionBytesTimesVoxel2 / (user.voxel * user.voxel) : 0,
        "its images and the fusion of meshes"},
       {kBytesPerSample * double(user.mesh_samples), "its images and the samples of meshes"}};
   MemoryEstimate largest = *std::ranges::max_element(stages, {}, &MemoryEstimate::bytes);
   largest.bytes += kProgramBytes + scene.image_bytes;
   return largest;
+}
+
+double estimate_device_bytes(const MemoryUser& user, const SceneSize& scene) {
+  return training_bytes(user, scene) + scene.image_bytes;
+}
+
+double device_bytes_of_process(double bytes_in_use) {
+  constexpr double kKept = 1.25;          // blocks are of a few sizes, and wait to be used again
+  constexpr double kDriverBytes = 500e6;  // kernels, stacks and tables of a context
+  return kKept * bytes_in_use + kDriverBytes;
 }
 
 void check_fits(const MemoryEstimate& estimate, std::uint64_t available) {

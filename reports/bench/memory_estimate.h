@@ -44,6 +44,13 @@ MemoryEstimate estimate_memory(
     const MemoryUser& user, const SceneSize& scene, const std::vector<Record>& records
 );
 
+// Bytes of a card that a training of a method that has not been seen yet will have in use, by the
+// images of the scene and its surfels.
+double estimate_device_bytes(const MemoryUser& user, const SceneSize& scene);
+// What a process has of the card whose training has so many bytes in use: also what it keeps for
+// later, its program, and what the driver keeps for it.
+double device_bytes_of_process(double bytes_in_use);
+
 // Bytes that the cell took, all stages; 0: unknown.
 double bytes_taken(const Record& record);
 

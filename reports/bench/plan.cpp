@@ -95,6 +95,19 @@ std::vector<PlanCell> make_plan(
   return plan;
 }
 
+namespace {
+
+// Of a record: what a training took that was stopped and went on is in its metrics, the timing is
+// of the last process alone.
+double seconds_of_stage(const Record& record, const std::string& stage) {
+  const double timed = record.timings.value(stage, 0.0);
+  const auto trained = record.metrics.find("train-minutes");
+  const bool known = stage == "train" && trained != record.metrics.end();
+  return known ? std::max(timed, 60 * trained->second) : timed;
+}
+
+}  // namespace
+
 std::optional<double> estimated_seconds(
     const PlanCell& cell, const std::vector<Record>& records, const std::vector<std::string>& stages
 ) {
@@ -102,7 +115,7 @@ std::optional<double> estimated_seconds(
   int count = 0;
   for (const Record& record : records)
     if (record.ok() && record.cell.method == cell.cell.method) {
-      for (const std::string& stage : stages) sum += record.timings.value(stage, 0.0);
+      for (const std::string& stage : stages) sum += seconds_of_stage(record, stage);
       ++count;
     }
   return count > 0 ? std::optional(sum / count) : std::nullopt;

@@ -51,17 +51,23 @@ int signal_behind(const ProcessEnd& end) {
 }
 
 ChildProcess start(
-    const CellTry& what, const RunnerOptions&, const ExecutorOptions& how, int threads
+    const CellTry& what,
+    const ExecutorOptions& how,
+    const ProcessShare& share,
+    ChildProcess::Words settings
 ) {
-  ChildProcess::Words settings;
   if (how.jobs == 1 && ::isatty(STDERR_FILENO) != 0) settings.emplace_back(kDrawnProgress);
-  return ChildProcess(how.command(what.cell->cell, what.force, threads), settings);
+  return ChildProcess(how.command(what.cell->cell, what.force, share), settings);
 }
 
 }  // namespace
 
 CellProcess::CellProcess(
-    const CellTry& what, const RunnerOptions& options, const ExecutorOptions& how, int threads
+    const CellTry& what,
+    const RunnerOptions& options,
+    const ExecutorOptions& how,
+    const ProcessShare& share,
+    ChildProcess::Words settings
 )
     : options_(options),
       how_(how),
@@ -71,7 +77,7 @@ CellProcess::CellProcess(
       records_bytes_(bytes_of_file(records_file_)),
       memory_kills_(out_of_memory_kills()),
       begin_(Clock::now()),
-      child_(start(what, options, how, threads)) {}
+      child_(start(what, how, share, std::move(settings))) {}
 
 void CellProcess::read() {
   const std::string text = child_.read();

@@ -14,8 +14,13 @@ namespace glint {
 
 class CellProcess {
  public:
+  // `settings` join its environment.
   CellProcess(
-      const CellTry& what, const RunnerOptions& options, const ExecutorOptions& how, int threads
+      const CellTry& what,
+      const RunnerOptions& options,
+      const ExecutorOptions& how,
+      const ProcessShare& share,
+      ChildProcess::Words settings
   );
 
   const CellTry& what() const { return what_; }

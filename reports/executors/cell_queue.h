@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/bench/runner.h"
+#include "reports/executors/executor.h"
 
 namespace glint {
 
@@ -22,10 +22,9 @@ struct CellTry {
 
 class CellQueue {
  public:
-  // Of `plan`, which must outlive it, those cells that are not done: in its order where one runs at
-  // a time, else the longest first. Errors: as SceneIdentifier, but for data that cannot be had:
-  // their cells will say so.
-  CellQueue(const std::vector<PlanCell>& plan, const RunnerOptions& options, int jobs);
+  // Of `plan`, which must outlive it, those cells that are not done. Errors: as SceneIdentifier,
+  // but for data that cannot be had: their cells will say so.
+  CellQueue(const std::vector<PlanCell>& plan, const RunnerOptions& options, CellOrder order);
 
   bool empty() const { return waiting_.empty(); }
   std::size_t size() const { return waiting_.size(); }
@@ -35,25 +34,38 @@ class CellQueue {
 
   CellTry take();
   void put_back(const CellTry& what);  // to be the next
+  void put_last(const CellTry& what);  // behind all others
   bool postpone(const CellTry& what);  // to the end, once; false: it was there already
-  void learn(const Record& record);    // for estimates
+  // Those that are known to take longer wait no more; they come back in no way.
+  void set_aside_longer_than(double seconds);
+  const std::vector<CellTry>& set_aside() const { return set_aside_; }
+  std::optional<CellTry> shortest_set_aside() const;  // nothing: there is none
+  void learn(const Record& record);                   // for estimates
 
-  // "[3/34, 12m 10s left behind it] room_1/glint/0".
-  std::string place_of(const CellTry& what) const;
+  // "[3/34, 12m 10s left behind it] room_1/glint/0", where `jobs` run at a time.
+  std::string place_of(const CellTry& what, int jobs) const;
   // What the cell takes by what its method took before; 0: unknown.
   double bytes_of(const PlanCell& cell) const;
-  // All stages of it; nothing: unknown.
+  // Of the card's memory, all that its process has there; 0: unknown.
+  double card_bytes_of(const PlanCell& cell) const;
+  // All stages of it that are to be done, less what a checkpoint has of its training; nothing:
+  // unknown.
   std::optional<double> seconds_of(const PlanCell& cell) const;
 
  private:
   void sort_longest_first();
-  std::string time_left() const;
+  void sort_as_given(const std::vector<std::string>& cells);
+  CellTry again(const CellTry& what) const;
+  std::string time_left(int jobs) const;
 
   std::size_t num_cells_;
-  int jobs_, num_done_ = 0;
+  int num_done_ = 0;
   fs::path out_;
+  const Profile& profile_;
   std::deque<CellTry> waiting_;
+  std::vector<CellTry> set_aside_;
   std::map<const PlanCell*, std::vector<std::string>> stages_;  // to be done
+  std::map<const PlanCell*, double> trained_;                   // how much of the training is done
   std::set<const PlanCell*> postponed_;
   std::vector<Record> records_;
 };

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,20 +15,41 @@
 
 namespace glint {
 
+// In which order cells begin.
+enum class CellOrder {
+  kGiven,    // of the filter's cells; where it names none, the plan's
+  kLongest,  // those first that are expected to take longest
+};
+
+// What a process of a pool gets.
+struct ProcessShare {
+  int threads = 1;
+  bool gpu = false;  // there is one: no other device will do
+};
+
 struct ExecutorOptions {
-  int jobs = 1;           // processes at a time
-  double time_limit = 0;  // seconds that a cell may take; 0: any
-  int max_failures = 0;   // no cell begins after so many have failed; 0: any
-  int threads = 1;        // of all processes together
+  int jobs = 1;                    // processes at a time
+  double time_limit = 0;           // seconds that a cell may take; 0: any
+  double time_for_all = 0;         // seconds after which no cell runs any more; 0: any
+  int max_failures = 0;            // no cell begins after so many have failed; 0: any
+  int threads = 1;                 // of all processes together
+  std::optional<CellOrder> order;  // nothing: the longest first where several run at a time
 
   // The words that run one cell in a process of its own, with this program first.
-  std::function<std::vector<std::string>(const CellKey& cell, bool force, int threads)> command;
+  std::function<std::vector<std::string>(const CellKey& cell, bool force, const ProcessShare&)>
+      command;
+  // Those that print what the GPU is like (card_share.h); empty: the cells run on the CPU.
+  std::vector<std::string> look_at_card;
 
   // For engines that start this program elsewhere: what every verb has to be told so that it is
   // about this profile, and what `run` has to be told beside that.
   std::vector<std::string> profile_words, run_words;
   std::vector<std::string> sbatch;  // options for sbatch, as "--partition=gpu"
   bool on_gpu = false;              // asked for by --device cuda
+
+  CellOrder cell_order() const {
+    return order.value_or(jobs > 1 ? CellOrder::kLongest : CellOrder::kGiven);
+  }
 };
 
 // How often a cell fails before it is given up is a matter of its failures' kinds

@@ -6,9 +6,10 @@ namespace {
 
 RunSummary run_inline(const RunnerOptions& options, const ExecutorOptions& how) {
   GLINT_CHECK(
-      how.jobs == 1 && how.time_limit == 0,
+      how.jobs == 1 && how.time_limit == 0 && how.time_for_all == 0 && !how.order,
       kUsage,
-      "--executor inline: --jobs and --time-limit need processes; take --executor local"
+      "--executor inline: --jobs, --time-limit, --for and --order need processes; take --executor "
+      "local"
   );
   RunnerOptions limited = options;
   limited.max_failures = how.max_failures;

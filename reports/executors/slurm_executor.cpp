@@ -86,7 +86,7 @@ class Submission {
       : options_(options),
         how_(how),
         plan_(make_plan(options.profile, options.filter, options.assignments)),
-        queue_(plan_, options, 2),
+        queue_(plan_, options, how.order.value_or(CellOrder::kLongest)),
         folder_(fs::absolute(slurm_folder(options.out))),
         program_(fs::read_symlink(kThisProgram)) {}
 
@@ -218,6 +218,11 @@ class Submission {
 };
 
 RunSummary run_slurm(const RunnerOptions& options, const ExecutorOptions& how) {
+  GLINT_CHECK(
+      how.time_for_all == 0,
+      kUsage,
+      "--executor slurm: --for is of cells that this command waits for; take --time-limit"
+  );
   return Submission(options, how).run();
 }
 

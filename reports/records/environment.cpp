@@ -3,6 +3,8 @@
 
 #include <sys/utsname.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <string>
@@ -12,6 +14,7 @@
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "glint/cuda/backend.h"
+#include "glint/cuda/card_lock.h"
 #include "metrics/metric.h"
 #include "reports/records/build_info.h"
 #include "reports/records/revision.h"
@@ -55,10 +58,18 @@ Json weights_json() try {
   return {{"unusable", error.what()}};  // scoring says so, too
 }
 
-// Of the GPU in use; empty: on the CPU.
+// Of the GPU in use; empty: on the CPU, from where no GPU is looked at: that would take a part of
+// it.
 std::string compute_capability() {
+  if (!on_gpu()) return "";
   const int capability = gpu::cuda_device().compute_capability;
-  return on_gpu() ? fmt::format("{}.{}", capability / 10, capability % 10) : "";
+  return fmt::format("{}.{}", capability / 10, capability % 10);
+}
+
+// Those of a pool that have the GPU together, this one among them; 0: on the CPU.
+int cells_on_card() {
+  const char* together = std::getenv(gpu::kCardJobs);
+  return !on_gpu() ? 0 : together == nullptr ? 1 : std::max(1, std::atoi(together));
 }
 
 }  // namespace
@@ -71,6 +82,7 @@ Json environment_json() {
       {"device", device_name()},
       {"driver", on_gpu() ? "CUDA " + gpu::cuda_device().driver : ""},
       {"compute_capability", compute_capability()},
+      {"cells_on_card", cells_on_card()},
       {"machine", system.nodename},
       {"os", operating_system()},
       {"kernel", fmt::format("{} {}", system.sysname, system.release)},
@@ -88,13 +100,18 @@ Json environment_json() {
       {"date", utc_now()}};
 }
 
-void choose_device(const std::string& requested, bool say_why) {
+void check_device_name(const std::string& requested) {
   GLINT_CHECK(
       requested == "auto" || requested == "cpu" || requested == "cuda",
       kUsage,
       "--device {}: expected auto, cpu or cuda",
       requested
   );
+}
+
+void choose_device(const std::string& requested, bool say_why) {
+  check_device_name(requested);
+  if (requested == "cpu") return use_cpu();
   const gpu::CudaDevice& device = gpu::cuda_device();
   GLINT_CHECK(
       requested != "cuda" || device.usable,
@@ -102,7 +119,6 @@ void choose_device(const std::string& requested, bool say_why) {
       "--device cuda: {}; use --device cpu",
       device.why_not
   );
-  if (requested == "cpu") return use_cpu();
   if (device.usable)
     gpu::use_cuda();
   else if (say_why)

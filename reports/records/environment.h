@@ -12,6 +12,9 @@ namespace glint {
 // part of every record (docs/RECORDS.md).
 Json environment_json();
 
+// Errors (kUsage): none of "auto", "cpu" and "cuda".
+void check_device_name(const std::string& requested);
+
 // Where ops run from now on: "cpu", "cuda", or "auto": the GPU where one is usable, else the CPU,
 // with one line that says why if `say_why`. Call before the first scene is loaded. Errors:
 // kEnvironment ("cuda" without a usable device), kUsage (others).

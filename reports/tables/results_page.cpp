@@ -34,6 +34,14 @@ Texts trained_by(const std::vector<Record>& records) {
   return texts;
 }
 
+// Of cells that ran side by side on a GPU.
+std::string shared_card_text(const std::vector<Record>& records) {
+  double most = 1;
+  for (const Record& record : records)
+    most = std::max(most, number_or(record.environment, "cells_on_card", 1));
+  return most > 1 ? fmt::format(", which up to {:.0f} cells shared: times are too long", most) : "";
+}
+
 std::string joined(const Texts& texts) { return fmt::format("{}", fmt::join(texts, ", ")); }
 
 std::string facts(const ResultsInfo& info, const std::vector<Record>& records) {
@@ -56,10 +64,11 @@ std::string facts(const ResultsInfo& info, const std::vector<Record>& records) {
       dates.empty() ? "" : *dates.rbegin()
   );
   text += fmt::format(
-      "- Machine: {}, {} threads, device {}\n",
+      "- Machine: {}, {} threads, device {}{}\n",
       environment("cpu"),
       environment("threads"),
-      environment("device")
+      environment("device"),
+      shared_card_text(records)
   );
   if (!info.remarks.empty()) text += fmt::format("- {}\n", info.remarks);
   return text;

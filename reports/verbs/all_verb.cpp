@@ -66,7 +66,8 @@ void add_all_verb(CommandLine& line) {
       line.app,
       "all",
       "run every cell of a profile, print the tables and write the report",
-      [&line, how] { return run_all(line.common, *how); }
+      [&line, how] { return run_all(line.common, *how); },
+      kAllOptions | kDeviceLater
   );
   add_cell_run_options(*verb, *how);
 }

@@ -187,7 +187,8 @@ Profile CommonOptions::resolved_profile() const {
 void CommonOptions::apply(CommonOption uses) const {
   set_quiet(quiet);
   if (threads > 0) set_num_threads(threads);
-  if (uses & kDeviceOption) choose_device(device, (uses & kDeviceMatters) != 0);
+  if ((uses & kDeviceOption) && !(uses & kDeviceLater))
+    choose_device(device, (uses & kDeviceMatters) != 0);
 }
 
 CommandLine::CommandLine() {

@@ -8,8 +8,6 @@
 #include "glint/core/error.h"
 #include "glint/core/machine.h"
 #include "glint/core/parallel.h"
-#include "glint/cuda/backend.h"
-#include "glint/cuda/require_gpu.h"
 #include "glint/drawing/canvas.h"
 #include "metrics/feature_net.h"
 #include "metrics/fusion/tsdf_volume.h"
@@ -19,6 +17,7 @@
 #include "reports/provenance/examine_profile.h"
 #include "reports/records/environment.h"
 #include "reports/records/revision.h"
+#include "reports/verbs/doctor_card.h"
 #include "reports/verbs/listing.h"
 #include "reports/verbs/verb.h"
 
@@ -41,24 +40,6 @@ Checked good(std::string name, std::string value) {
 Checked needed(std::string name, std::string value, bool there, const char* advice) {
   const CheckState state = there ? CheckState::kOk : CheckState::kBad;
   return {std::move(name), state, std::move(value), there ? "" : advice};
-}
-
-// No device is no failure, but where there has to be one.
-Checked cuda() {
-  const gpu::CudaDevice& device = gpu::cuda_device();
-  if (!device.usable)
-    return needed(
-        "cuda",
-        "no: " + device.why_not,
-        !gpu::gpu_required(),
-        "GLINT_REQUIRE_GPU is set; unset it to work on the CPU"
-    );
-  return good(
-      "cuda",
-      fmt::format(
-          "{}, {}, driver for CUDA {}", device.name, gib(device.memory_bytes), device.driver
-      )
-  );
 }
 
 // Which networks LPIPS has weights of, and whether they are those that were published.
@@ -112,7 +93,7 @@ Checked font() {
       "install fonts-inter"};
 }
 
-std::vector<Checked> examine(const CommonOptions& common) {
+std::vector<Checked> examine_machine(const CommonOptions& common) {
   const Machine machine = this_machine();
   const std::uint64_t disk = free_disk_bytes(common.out);
   return {
@@ -138,8 +119,11 @@ std::vector<Checked> examine(const CommonOptions& common) {
       ),
       examine_folder("out", common.out, "--out"),
       examine_clock(std::time(nullptr), git_time()),
-      examine_open_files(),
-      cuda(),
+      examine_open_files()};
+}
+
+std::vector<Checked> examine_program() {
+  return {
       good("networks", feature_net_libraries()),
       lpips_weights(),
       meshes(),
@@ -180,14 +164,29 @@ std::string doctor_text(const std::vector<Checked>& rows) {
   return listing(lines);
 }
 
-int run_doctor(const CommonOptions& common, bool with_profile) {
-  std::vector<Checked> rows = examine(common);
-  if (with_profile) {
-    const auto of_profile = examine_plan(common);
-    rows.insert(rows.end(), of_profile.begin(), of_profile.end());
-  }
+struct DoctorOptions {
+  std::function<bool()> with_profile;
+  bool card = false;
+};
+
+std::vector<Checked> rows_of(const CommonOptions& common, const DoctorOptions& options) {
+  if (options.card) return examine_card(common.device);
+  std::vector<Checked> rows = examine_machine(common);
+  const auto add = [&](const std::vector<Checked>& more) {
+    rows.insert(rows.end(), more.begin(), more.end());
+  };
+  add(examine_card(common.device));
+  add(examine_program());
+  if (options.with_profile()) add(examine_plan(common));
+  return rows;
+}
+
+int run_doctor(const CommonOptions& common, const DoctorOptions& options) {
+  const std::vector<Checked> rows = rows_of(common, options);
+  Json json = doctor_json(rows);
+  if (options.card) json["cuda"].update(card_json());
   if (common.json)
-    print_json(doctor_json(rows));
+    print_json(json);
   else
     print_text(doctor_text(rows));
   const bool fit = std::none_of(rows.begin(), rows.end(), [](const Checked& row) {
@@ -197,15 +196,16 @@ int run_doctor(const CommonOptions& common, bool with_profile) {
 }
 
 void add_doctor_verb(CommandLine& line) {
-  auto with_profile = std::make_shared<std::function<bool()>>();
+  auto options = std::make_shared<DoctorOptions>();
   CLI::App* verb = line.add_verb(
       line.app,
       "doctor",
       "is this machine fit for it; with --profile: is all there that the profile needs",
-      [&line, with_profile] { return run_doctor(line.common, (*with_profile)()); },
-      kPlanOptions | kThreadsOption
+      [&line, options] { return run_doctor(line.common, *options); },
+      kPlanOptions | kThreadsOption | kDeviceLater
   );
-  *with_profile = [verb] { return verb->get_option("--profile")->count() > 0; };
+  verb->add_flag("--card", options->card, "the GPU alone");
+  options->with_profile = [verb] { return verb->get_option("--profile")->count() > 0; };
 }
 
 }  // namespace

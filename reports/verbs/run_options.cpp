@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "reports/verbs/run_options.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <set>
 
 #include "glint/core/interrupt.h"
+#include "glint/core/nearest.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "metrics/tools/numeric_options.h"
 #include "reports/bench/child_process.h"
+#include "reports/executors/task_file.h"
+#include "reports/records/environment.h"
 #include "reports/records/manifest.h"
 
 namespace glint {
@@ -24,12 +28,12 @@ Words profile_words(const CommonOptions& common) {
   return words;
 }
 
-Words run_words(const CommonOptions& common) {
+Words run_words(const CommonOptions& common, const std::string& device) {
   Words words = {
       "--data",
       common.data,
       "--device",
-      common.device,
+      device,
       "--checkpoint-seconds",
       fmt::format("{}", common.checkpoint_seconds)};
   const auto add = [&](const char* option, const std::string& value) {
@@ -46,14 +50,14 @@ Words words_of_cell(
     const CellRunOptions& how,
     const CellKey& cell,
     bool force,
-    int threads
+    const ProcessShare& share
 ) {
   Words words = {kThisProgram, "run", "--executor", "inline"};
   for (const Words& more :
        {profile_words(common),
-        run_words(common),
+        run_words(common, share.gpu ? "cuda" : common.device),
         Words{"--cell", cell.text(), "--methods", cell.method},
-        Words{"--seed", std::to_string(cell.seed), "--threads", std::to_string(threads)}})
+        Words{"--seed", std::to_string(cell.seed), "--threads", std::to_string(share.threads)}})
     words.insert(words.end(), more.begin(), more.end());
   if (force) words.emplace_back("--force");
   if (!common.quiet && how.jobs > 1) words.emplace_back("--quiet");
@@ -62,7 +66,7 @@ Words words_of_cell(
 
 // What an engine elsewhere has to be told beside the profile, so that it plans the same cells.
 Words words_of_choice(const CommonOptions& common, const CellRunOptions& how) {
-  Words words = run_words(common);
+  Words words = run_words(common, common.device);
   for (const std::string& method : common.methods) words.insert(words.end(), {"--methods", method});
   if (common.seed) words.insert(words.end(), {"--seed", std::to_string(*common.seed)});
   if (common.threads > 0) words.insert(words.end(), {"--threads", std::to_string(common.threads)});
@@ -71,20 +75,53 @@ Words words_of_choice(const CommonOptions& common, const CellRunOptions& how) {
   return words;
 }
 
+std::optional<CellOrder> order_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  GLINT_CHECK(
+      text == "longest" || text == "given", kUsage, "--order {}: expected longest or given", text
+  );
+  return text == "given" ? CellOrder::kGiven : CellOrder::kLongest;
+}
+
 ExecutorOptions executor_options(const CommonOptions& common, const CellRunOptions& how) {
   ExecutorOptions options;
   options.jobs = how.jobs;
   options.time_limit = parse_duration("--time-limit", how.time_limit);
+  options.time_for_all = parse_duration("--for", how.time_for_all);
   options.max_failures = how.max_failures;
+  options.order = order_of(how.order);
   options.threads = num_threads();
-  options.command = [common, how](const CellKey& cell, bool force, int threads) {
-    return words_of_cell(common, how, cell, force, threads);
+  options.command = [common, how](const CellKey& cell, bool force, const ProcessShare& share) {
+    return words_of_cell(common, how, cell, force, share);
   };
+  if (common.device != "cpu")
+    options.look_at_card = {
+        kThisProgram, "doctor", "--card", "--device", common.device, "--json", "--quiet"};
   options.profile_words = profile_words(common);
   options.run_words = words_of_choice(common, how);
   options.sbatch = how.sbatch;
   options.on_gpu = common.device == "cuda";
   return options;
+}
+
+// A misspelt cell of several would be left out without a word.
+void check_cells(const RunnerOptions& options) {
+  if (options.filter.cells.empty()) return;
+  CellFilter any = options.filter;
+  any.cells.clear();
+  std::vector<std::string> known;
+  for (const PlanCell& cell : make_plan(options.profile, any, options.assignments))
+    known.push_back(cell.cell.text());
+  for (const std::string& cell : options.filter.cells)
+    GLINT_CHECK(
+        std::find(known.begin(), known.end(), cell) != known.end(),
+        kUsage,
+        "cell {}: none of profile {} with these --methods, --only and --skip; {}`plan --tasks` "
+        "lists those to run",
+        cell,
+        options.profile.name,
+        did_you_mean(cell, known)
+    );
 }
 
 }  // namespace
@@ -99,6 +136,11 @@ RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& 
   options.checkpoint_seconds = common.checkpoint_seconds;
   options.identify = common.scene_identifier();
   options.load = common.scene_loader();
+  options.filter.cells = how.cells;
+  if (!how.cells_file.empty())
+    for (const std::string& cell : cells_of_tasks(how.cells_file))
+      options.filter.cells.push_back(cell);
+  check_cells(options);
   return options;
 }
 
@@ -109,11 +151,20 @@ void add_cell_run_options(CLI::App& verb, CellRunOptions& options) {
     executors += fmt::format(" {} ({});", id, executor.title);
   executors.pop_back();
   verb.add_option("--executor", options.executor, executors)->capture_default_str();
+  verb.add_option("--cell", options.cells, "only this scene/method/seed; may be given again");
+  verb.add_option("--cells", options.cells_file, "only those of a file, one a line");
+  const char* order =
+      "longest or given (by --cell and --cells, else the profile); else longest where --jobs > 1";
+  verb.add_option("--order", options.order, order);
   verb.add_option("--jobs", options.jobs, "cells at a time; they share --threads")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
   const char* time_limit = "of a cell: 90s, 30m, 4h; its checkpoint stays";
   verb.add_option("--time-limit", options.time_limit, time_limit);
+  const char* time_for_all =
+      "of all cells: none begins that would not end in it, those that run then stop with "
+      "checkpoints";
+  verb.add_option("--for", options.time_for_all, time_for_all);
   const char* failures = "no cell begins after so many have failed; 0: any number";
   verb.add_option("--max-failures", options.max_failures, failures)->check(at_least_zero());
   verb.add_option("--sbatch", options.sbatch, "option for sbatch, as --sbatch=--partition=gpu");
@@ -155,8 +206,11 @@ RunSummary run_cells(
 ) {
   install_interrupt_handler();
   RunnerOptions runnable = options;
+  const ExecutorOptions executor = executor_options(common, how);
+  check_device_name(common.device);
   const int without_data = leave_out_missing(common.data, runnable);
-  RunSummary summary = find_executor(how.executor).run(runnable, executor_options(common, how));
+  if (how.executor == "inline") choose_device(common.device);
+  RunSummary summary = find_executor(how.executor).run(runnable, executor);
   summary.without_data = without_data;
   return summary;
 }

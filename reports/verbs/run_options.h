@@ -14,7 +14,11 @@ struct CellRunOptions {
   bool force = false;
   std::string executor = "local";
   int jobs = 1;
-  std::string time_limit;  // "90s", "30m", "4h"; empty: none
+  std::string time_limit;          // of a cell: "90s", "30m", "4h"; empty: none
+  std::string time_for_all;        // likewise, of all of them
+  std::string order;               // "longest", "given"; empty: as ExecutorOptions has it
+  std::vector<std::string> cells;  // "scene/method/seed"
+  std::string cells_file;          // more of them, one a line; empty: none
   int max_failures = 0;
   std::vector<std::string> sbatch;
 };
@@ -22,6 +26,7 @@ struct CellRunOptions {
 // `options` must live as long as `verb`.
 void add_cell_run_options(CLI::App& verb, CellRunOptions& options);
 
+// Errors (kUsage): a cell of --cell or --cells that the profile does not have, no such file.
 RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& how);
 
 // Cells of published datasets whose scenes are not below `data_folder` are told once, not one by
@@ -29,7 +34,8 @@ RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& 
 int leave_out_missing(const fs::path& data_folder, RunnerOptions& options);
 
 // Runs the cells that `options` chooses and whose data are there, by the executor that is asked
-// for. Errors: run_profile()'s; kUsage: no such executor, no time.
+// for. Their processes take the device, this one does so only where they run in it. Errors:
+// run_profile()'s and choose_device()'s; kUsage: no such executor, order or time.
 RunSummary run_cells(
     const CommonOptions& common, const CellRunOptions& how, const RunnerOptions& options
 );

@@ -11,7 +11,6 @@ namespace glint {
 namespace {
 
 struct ChosenCells {
-  std::vector<std::string> cells;
   std::string tasks;
   std::size_t task = 0;
   bool data_only = false;
@@ -26,10 +25,9 @@ void make_data(const fs::path& data_folder, RunnerOptions options) {
     if (scenes.insert(cell.cell.scene).second) options.load(cell.source);
 }
 
-int run_chosen(const CommonOptions& common, const CellRunOptions& how, const ChosenCells& chosen) {
+int run_chosen(const CommonOptions& common, CellRunOptions how, const ChosenCells& chosen) {
+  if (!chosen.tasks.empty()) how.cells = {cell_of_task(chosen.tasks, chosen.task)};
   RunnerOptions options = runner_options(common, how);
-  options.filter.cells = chosen.cells;
-  if (!chosen.tasks.empty()) options.filter.cells = {cell_of_task(chosen.tasks, chosen.task)};
   // Whoever asks for one cell in this process knows which.
   options.announced = how.executor == "inline" && options.filter.cells.size() == 1;
   if (chosen.data_only) {
@@ -49,10 +47,10 @@ void add_run_verb(CommandLine& line) {
       line.app,
       "run",
       "run cells of a profile, without tables: what `all` and clusters start",
-      [&line, how, chosen] { return run_chosen(line.common, *how, *chosen); }
+      [&line, how, chosen] { return run_chosen(line.common, *how, *chosen); },
+      kAllOptions | kDeviceLater
   );
   add_cell_run_options(*verb, *how);
-  verb->add_option("--cell", chosen->cells, "scene/method/seed; may be given again");
   verb->add_option("--tasks", chosen->tasks, "file of cells, one a line (`plan --tasks`)");
   verb->add_option("--task", chosen->task, "which line of --tasks; the first is 0");
   verb->add_flag("--data-only", chosen->data_only, "make the data of the cells, no more");

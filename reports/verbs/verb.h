@@ -32,6 +32,7 @@ enum CommonOption : unsigned {
   kQuietOption = 1u << 10,
   kDeviceMatters = 1u << 11,     // says why it runs on the CPU where --device is auto
   kCheckpointOption = 1u << 12,  // verbs that train
+  kDeviceLater = 1u << 13,       // the verb takes the device itself, if it does
   // The cells of a profile, as `all` runs them.
   kPlanOptions = kOutOption | kDataOption | kProfileOption | kCellOptions | kSeedOption |
                  kIterationsOption | kSetOption | kDeviceOption | kJsonOption | kQuietOption,

@@ -32,7 +32,7 @@ struct FakeConfig {
 };
 
 // Renders one grey; `trainings` counts the runs that were really trained.
-class FakeMethod final : public Method {
+class FakeMethod : public Method {
  public:
   inline static int trainings = 0;
 

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kMemoryAllocation = 2, kInsufficientDriver = 35, kDevicesUnavailable = 46;
 constexpr int kInvalidValue = 1, kNoKernelImage = 209, kIllegalAddress = 700, kLaunchFailure = 719;
+constexpr int kMpsRpcFailure = 806, kMpsMaxClients = 808;
 constexpr std::size_t kGiB = std::size_t{1} << 30;
 
 }  // namespace
@@ -54,6 +55,17 @@ TEST_CASE("A card that is too small is told with what is needed and what is free
   CHECK_THAT(message, Catch::Contains("max_surfels") && Catch::Contains("nvidia-smi"));
 }
 
+TEST_CASE("A full card is want of memory, whoever finds it") {
+  CHECK_THROWS_AS(throw_out_of_memory(3 * kGiB, kGiB / 2, 8 * kGiB), OutOfMemory);
+  CHECK_THROWS_AS(throw_cuda_error("finding a device", kMemoryAllocation, "why"), OutOfMemory);
+}
+
+TEST_CASE("A device is lost with MPS, but not where MPS takes no one") {
+  CHECK(loses_device(kMpsRpcFailure));
+  CHECK_FALSE(loses_device(kMpsMaxClients));
+  CHECK_THAT(advice_for(kMpsMaxClients), Catch::Contains("--jobs"));
+}
+
 TEST_CASE("Versions of driver and program are told as people know them") {
   CHECK(driver_text(12020, 13000) == "driver for CUDA 12.2, program for CUDA 13.0");
 }
@@ -64,6 +76,15 @@ TEST_CASE("A card that a process has is not to be had by a second one") {
   CHECK(take_card("0000:18:00.0", place));
   CHECK_FALSE(take_card("0000:18:00.0", place)
   );  // another opening of the file is as another process
+  CHECK_FALSE(take_card("0000:18:00.0", place, true));
   CHECK(take_card("0000:3b:00.0", place));
   CHECK(take_card("0000:18:00.0", place + "/nowhere"));
+}
+
+TEST_CASE("A card that several take together is not to be had by others") {
+  const test::TempFolder folder;
+  const std::string place = folder.path().string();
+  CHECK(take_card("0000:18:00.0", place, true));
+  CHECK(take_card("0000:18:00.0", place, true));
+  CHECK_FALSE(take_card("0000:18:00.0", place));
 }

@@ -112,6 +112,15 @@ TEST_CASE("settings stand in for those of the environment") {
   CHECK(child.read() == fmt::format("new {}\n", std::getenv("HOME") ? std::getenv("HOME") : ""));
 }
 
+TEST_CASE("a program that takes longer than it may is killed, also one that others hold open") {
+  for (const char* script : {"echo begun; sleep 60", "echo begun; sleep 60 & sleep 60"}) {
+    const auto result = run_command({"sh", "-c", script}, {}, 0.3);
+    REQUIRE(result);
+    CHECK(result->output == "begun\n");
+    CHECK(result->end.signal == SIGKILL);
+  }
+}
+
 TEST_CASE("a signal reaches what a process has started, too") {
   const test::TempFolder folder;
   const std::string file = folder / "id";

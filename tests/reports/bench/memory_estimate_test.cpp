@@ -42,6 +42,13 @@ TEST_CASE("what cells of a method took goes before what images and surfels say")
   CHECK(estimate_memory({"fake", 1000, 0}, scene, {record}).bytes == unknown.bytes);
 }
 
+TEST_CASE("a process has more of a card than its training has in use") {
+  const SceneSize scene = size_of(fake_scene("room_1"));
+  const double few = estimate_device_bytes({"fake", 100, 0}, scene);
+  CHECK(few > scene.image_bytes);
+  CHECK(device_bytes_of_process(few) > few + 100e6);  // a context
+}
+
 TEST_CASE("more surfels and larger images take more, up to the limit of the method") {
   SceneSize scene = size_of(fake_scene("room_1"));
   const double few = estimate_memory({"fake", 1000000, 0}, scene, {}).bytes;

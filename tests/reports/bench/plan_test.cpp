@@ -75,6 +75,8 @@ TEST_CASE("time is estimated for the stages to do, from finished cells of the sa
   CHECK(estimated_seconds(cell, {a, b}, {"train", "render", "mesh", "score"}) == 16.0);
   CHECK(estimated_seconds(cell, {a, b}, {"mesh", "score"}) == 6.0);
   CHECK(!estimated_seconds(cell, {b}, {"train"}));
+  a.metrics["train-minutes"] = 0.5;  // of several processes, of which the last took 10 s
+  CHECK(estimated_seconds(cell, {a, b}, {"train", "score"}) == 32.0);
 }
 
 TEST_CASE("a profile may do without some of its cells, also when they are asked for") {

@@ -1,73 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Cells in processes of their own. The processes are this program, told by its environment to run
-// one cell: the hidden test case.
-#include <unistd.h>
+// Cells in processes of their own (pool.h).
 #include <catch2/catch.hpp>
 
-#include <csignal>
-#include <cstdlib>
-
-#include "glint/core/progress.h"
-#include "reports/executors/executor.h"
 #include "reports/records/failure_kinds.h"
-#include "reports/verbs/run_options.h"
-#include "tests/reports/fake_method.h"
-#include "tests/support/temp_folder.h"
+#include "tests/reports/executors/pool.h"
+#include "tests/reports/run_words.h"
 
 using namespace glint;
+using test::Pool;
 
-namespace {
-
-// A profile, and the way to run it: `fails` where room_1's "fake" does (fake_method.h).
-struct Pool {
-  test::TempFolder folder;
-  RunnerOptions options = fake_run(folder.path());
-  ExecutorOptions how;
-  std::string fails;
-
-  Pool() {
-    set_quiet(true);
-    how.command = [this](const CellKey& cell, bool, int) {
-      const bool fake = cell == CellKey{"room_1", "fake", 0};
-      return std::vector<std::string>{
-          "env",
-          "GLINT_TEST_CELL=" + cell.text(),
-          "GLINT_TEST_OUT=" + folder.path().string(),
-          "GLINT_TEST_FAILS=" + (fake ? fails : std::string()),
-          fmt::format("GLINT_TEST_ITERATIONS={}", options.profile.iterations),
-          fs::read_symlink("/proc/self/exe").string(),
-          "[.worker]"};
-    };
-  }
-  RunSummary run() {
-    options.assignments.clear();
-    if (!fails.empty()) options.assignments = {"fake.fails=" + fails};
-    return find_executor("local").run(options, how);
-  }
-  std::vector<Record> records() const { return read_records(folder.path() / "records.jsonl"); }
-  Failure failure() const {
-    const auto all = records();
-    const Record* record = find_record(all, {"room_1", "fake", 0});
-    REQUIRE(record);
-    REQUIRE_FALSE(record->ok());
-    return *record->failure;
-  }
-};
-
-}  // namespace
-
-TEST_CASE("the worker", "[.worker]") {
-  set_quiet(true);
-  CommonOptions common;
-  RunnerOptions options = fake_run(std::getenv("GLINT_TEST_OUT"));
-  options.filter.cells = {std::getenv("GLINT_TEST_CELL")};
-  options.profile.iterations = std::atoi(std::getenv("GLINT_TEST_ITERATIONS"));
-  if (const std::string fails = std::getenv("GLINT_TEST_FAILS"); !fails.empty())
-    options.assignments = {"fake.fails=" + fails};
-  CellRunOptions how;
-  how.executor = "inline";
-  std::_Exit(exit_code_of(run_cells(common, how, options)));
-}
+TEST_CASE("the worker", "[.worker]") { test::run_worker(); }
 
 TEST_CASE("cells in processes have the records that they have in one process") {
   Pool pool;
@@ -163,6 +105,102 @@ TEST_CASE("a failed cell is run again by the next run, the others are reused") {
   const RunSummary second = pool.run();
   CHECK(second.failed == 1);
   CHECK(second.reused == 3);
+}
+
+// A record of a cell of room_2 that took so long.
+void write_timed(const Pool& pool, const std::string& method, double seconds) {
+  Record record;
+  record.profile = "fake";
+  record.cell = {"room_9", method, 0};
+  record.timings = {{"train", seconds}};
+  append_record(pool.folder / "records.jsonl", record);
+}
+
+TEST_CASE("no cell begins that is known to take longer than the time for all") {
+  Pool pool;
+  pool.how.jobs = GENERATE(1, 2);
+  pool.how.time_for_all = 100;
+  write_timed(pool, "fake", 200);  // of fake/other nothing is known
+  const RunSummary summary = pool.run();
+  CHECK(summary.ran == 2);
+  CHECK(summary.not_begun == 2);
+  CHECK(summary.failed == 0);
+  CHECK(exit_code_of(summary) == 5);
+  for (const std::string& line : pool.begun()) CHECK_THAT(line, Catch::Contains("fake/other"));
+}
+
+TEST_CASE("a time too short for any cell is told with what the shortest takes") {
+  Pool pool;
+  pool.how.time_for_all = 60;
+  write_timed(pool, "fake", 200);
+  write_timed(pool, "fake/other", 130);
+  const std::string said = test::captured(2, [&] { CHECK(pool.run().not_begun == 4); });
+  CHECK(
+      said ==
+      "warning: --for 1m 00s is too short for any of 4 cells: room_1/fake/other/0 takes about 2m "
+      "10s\n"
+  );
+  CHECK(pool.begun().empty());
+}
+
+TEST_CASE("when the time is up, running cells stop, and no record says so") {
+  Pool pool;
+  pool.fails = "slow";
+  pool.options.profile.iterations = 10000;
+  pool.options.filter.only = {"room_1/fake/0"};
+  pool.how.time_for_all = 1.5;
+  const RunSummary summary = pool.run();
+  CHECK(summary.ran == 0);
+  CHECK(summary.failed == 0);
+  CHECK(summary.not_begun == 1);
+  CHECK_FALSE(summary.interrupted);
+  CHECK(exit_code_of(summary) == 5);
+  CHECK(pool.records().empty());
+  CHECK(pool.begun().size() == 1);
+}
+
+TEST_CASE("cells begin in the order that is given, the longest first, or as the profile has them") {
+  Pool pool;
+  write_timed(pool, "fake", 10);
+  write_timed(pool, "fake/other", 20);
+  const auto cells_of = [&] {
+    std::string cells;
+    for (const std::string& line : pool.begun()) cells += line.substr(0, line.find(' ')) + " ";
+    return cells;
+  };
+  SECTION("as given") {
+    pool.options.filter.cells = {"room_2/fake/0", "room_1/fake/other/0", "room_1/fake/0"};
+    pool.run();
+    CHECK(cells_of() == "room_2/fake/0 room_1/fake/other/0 room_1/fake/0 ");
+  }
+  SECTION("as the profile has them") {
+    pool.run();
+    CHECK(cells_of() == "room_1/fake/0 room_1/fake/other/0 room_2/fake/0 room_2/fake/other/0 ");
+  }
+  SECTION("the longest first") {
+    pool.how.order = CellOrder::kLongest;
+    pool.run();
+    CHECK(cells_of() == "room_1/fake/other/0 room_2/fake/other/0 room_1/fake/0 room_2/fake/0 ");
+  }
+}
+
+TEST_CASE("what ran out of memory is tried again alone, behind the others") {
+  Pool pool;
+  pool.fails = "memory";
+  pool.how.jobs = 2;
+  CHECK(pool.run().failed == 1);
+  CHECK(pool.failure().attempts == 2);
+  const auto begun = pool.begun();
+  REQUIRE(begun.size() == 5);
+  CHECK_THAT(begun.back(), Catch::StartsWith("room_1/fake/0 "));
+}
+
+TEST_CASE("in this process there is neither time nor order of cells") {
+  Pool pool;
+  pool.how.time_for_all = 5;
+  CHECK_THROWS_WITH(
+      find_executor("inline").run(pool.options, pool.how), Catch::Contains("--for and --order")
+  );
 }
 
 TEST_CASE("unknown executors and times are usage errors that say what there is") {

@@ -70,7 +70,8 @@ TEST_CASE("a verb shows the options that it uses, and takes the common ones of a
           "--set",
           "--skip"}
   );
-  Names of_doctor = options_of("status");  // of which profile, and --threads
+  Names of_doctor = options_of("status");  // of which profile, --card and --threads
+  of_doctor.insert(of_doctor.begin(), "--card");
   of_doctor.emplace_back("--threads");
   CHECK(options_of("doctor") == of_doctor);
   const std::string said = captured(2, [] {
