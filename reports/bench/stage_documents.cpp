@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "glint/core/device.h"
 #include "glint/core/machine.h"
 #include "glint/train/perceptual.h"
 #include "metrics/fusion/tsdf_volume.h"
 #include "metrics/metric.h"
+#include "reports/bench/device_of_cells.h"
 #include "reports/records/code_hashes.h"
 
 namespace glint {
@@ -15,7 +15,8 @@ namespace {
 
 constexpr const char* kMemoryLimit = "max_memory_mb";  // of TsdfOptions
 
-const char* device_kind() { return on_gpu() ? "cuda" : "cpu"; }
+bool cells_on_gpu() { return DeviceOfCells::now() != Device::kCpu; }
+const char* device_kind() { return cells_on_gpu() ? "cuda" : "cpu"; }
 
 // The code of the method (of none: renders of another program), of `stage`, and what a GPU adds.
 Json code_for(const std::string& method, const std::string& stage) {
@@ -25,7 +26,7 @@ Json code_for(const std::string& method, const std::string& stage) {
   const std::string own =
       found == Registry<MethodSpec>::all().end() ? "" : code_entry_of(found->second.source);
   if (!own.empty()) entries.push_back(own);
-  if (on_gpu()) entries.push_back("cuda");
+  if (cells_on_gpu()) entries.push_back("cuda");
   return code_json(entries);
 }
 

@@ -36,6 +36,7 @@ CardState state_in(const std::string& output) {
   return {
       card.value("usable", false),
       card.value("why_not", ""),
+      card.value("name", ""),
       card.value("free_bytes", 0.0),
       output.substr(0, begin)};
 }
@@ -48,16 +49,21 @@ CardState look_at_card(const std::vector<std::string>& words, const ChildProcess
 }
 
 CardShare::CardShare(const ExecutorOptions& how) : how_(how), jobs_(how.jobs) {
-  if (how.look_at_card.empty() || (jobs_ == 1 && !how.on_gpu)) return;
-  const CardState card = look_at_card(how.look_at_card);
+  if (how.look_at_card.empty()) return;
+  card_ = look_at_card(how.look_at_card);
   GLINT_CHECK(
-      card.usable || !how.on_gpu, kEnvironment, "--device cuda: {}; use --device cpu", card.why_not
+      card_.usable || !how.on_gpu,
+      kEnvironment,
+      "--device cuda: {}; use --device cpu",
+      card_.why_not
   );
-  if (!card.usable) log::info("on the CPU: " + card.why_not);
-  on_gpu_ = card.usable;
-  free_ = card.free_bytes;
-  if (!on_gpu_ || jobs_ == 1) return;
-  log::text(card.said);
+}
+
+void CardShare::begin() {
+  if (jobs_ == 1) return;  // the cell will say what there is to say
+  log::text(card_.said);
+  if (!on_gpu() && !card_.why_not.empty()) log::info("on the CPU: " + card_.why_not);
+  if (!on_gpu()) return;
   const std::string why = share_by_mps();
   if (!why.empty()) take_turns(why);
 }
@@ -71,7 +77,7 @@ std::string CardShare::share_by_mps() try {
   if (!card.usable) return "the first process of MPS found no card: " + card.why_not;
   const auto servers = mps_servers(settings());
   if (!servers || servers->empty()) return "MPS does not serve this card";
-  free_ = card.free_bytes;
+  card_.free_bytes = card.free_bytes;
   log::info(fmt::format(
       "{} cells at a time on one GPU, by MPS{}",
       jobs_,
@@ -91,7 +97,7 @@ void CardShare::take_turns(const std::string& why) {
 ChildProcess::Words CardShare::settings() const {
   ChildProcess::Words all;
   if (server_) all = server_->settings();
-  if (on_gpu_ && jobs_ > 1) all.push_back(fmt::format("{}={}", gpu::kCardJobs, jobs_));
+  if (on_gpu() && jobs_ > 1) all.push_back(fmt::format("{}={}", gpu::kCardJobs, jobs_));
   return all;
 }
 

@@ -15,6 +15,7 @@ namespace glint {
 struct CardState {
   bool usable = false;
   std::string why_not;    // one line
+  std::string name;       // "NVIDIA H100 80GB HBM3"
   double free_bytes = 0;  // of its memory; 0: not known
   std::string said;       // beside that, in lines: warnings
 };
@@ -25,24 +26,28 @@ CardState look_at_card(
 
 class CardShare {
  public:
-  // Looks where `how` asks for a GPU and it matters: more than one cell at a time, or --device
-  // cuda. Says in one line what came of it. Errors (kEnvironment): --device cuda without a GPU.
+  // Looks where `how` asks for a GPU (--device cuda, or auto). Errors (kEnvironment): --device cuda
+  // without one.
   explicit CardShare(const ExecutorOptions& how);
 
-  bool on_gpu() const { return on_gpu_; }      // known to be: cells that find no GPU fail
-  int jobs() const { return jobs_; }           // cells at a time
-  double free_bytes() const { return free_; }  // of the card, before the first cell; 0: not known
-  ChildProcess::Words settings() const;        // of the environment of cells
-  void heed_end_of_mps();                      // if its daemon has ended, cells take turns
+  // Before the first cell: by MPS, or in turn; one line says what came of it.
+  void begin();
+
+  bool on_gpu() const { return card_.usable; }  // cells that find no GPU then fail
+  const std::string& name() const { return card_.name; }
+  int jobs() const { return jobs_; }  // cells at a time
+  // Of the card, before the first cell; 0: not known.
+  double free_bytes() const { return card_.free_bytes; }
+  ChildProcess::Words settings() const;  // of the environment of cells
+  void heed_end_of_mps();                // if its daemon has ended, cells take turns
 
  private:
   std::string share_by_mps();
   void take_turns(const std::string& why);
 
   const ExecutorOptions& how_;
-  bool on_gpu_ = false;
+  CardState card_;
   int jobs_;
-  double free_ = 0;
   std::unique_ptr<MpsServer> server_;  // null: none, or one that was there already
 };
 

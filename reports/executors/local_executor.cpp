@@ -7,13 +7,13 @@
 #include <chrono>
 #include <csignal>
 #include <list>
-#include <optional>
 #include <utility>
 
 #include "glint/core/interrupt.h"
 #include "glint/core/left_behind.h"
 #include "glint/core/machine.h"
 #include "glint/core/progress.h"
+#include "reports/bench/device_of_cells.h"
 #include "reports/executors/card_share.h"
 #include "reports/executors/cell_process.h"
 #include "reports/executors/cell_queue.h"
@@ -47,6 +47,8 @@ class LocalPool {
       : options_(options),
         how_(how),
         plan_(make_plan(options.profile, options.filter, options.assignments)),
+        card_(how),
+        device_(card_.on_gpu() ? Device::kCuda : current_device()),
         queue_(plan_, options, how.cell_order()),
         memory_(static_cast<double>(available_memory_bytes())) {}
 
@@ -55,7 +57,7 @@ class LocalPool {
     remove_left_behind(options_.out / "tables");
     summary_.reused = queue_.num_done();
     leave_out_too_long();
-    if (!queue_.empty() && !ends()) card_.emplace(how_);
+    if (!queue_.empty() && !ends()) card_.begin();
     while (!running_.empty() || (!ends() && !queue_.empty())) {
       heed_signals_and_time();
       while (may_start()) start();
@@ -76,7 +78,7 @@ class LocalPool {
   }
 
   void heed_signals_and_time() {
-    card_->heed_end_of_mps();
+    card_.heed_end_of_mps();
     if (is_interrupted()) return stop_all(interrupted_exit() - 128);
     if (!time_.is_up() || running_.empty() || std::exchange(told_, true)) return;
     log::info(fmt::format(
@@ -88,7 +90,7 @@ class LocalPool {
   }
 
   bool may_start() {
-    if (ends() || running_.size() >= static_cast<std::size_t>(card_->jobs())) return false;
+    if (ends() || running_.size() >= static_cast<std::size_t>(card_.jobs())) return false;
     leave_out_too_long();
     if (queue_.empty()) return false;
     return running_.empty() || fits_beside_others();
@@ -108,15 +110,15 @@ class LocalPool {
       bytes += queue_.bytes_of(*process.what().cell);
       card_bytes += queue_.card_bytes_of(*process.what().cell);
     }
-    return bytes <= memory_ && (card_->free_bytes() == 0 || card_bytes <= card_->free_bytes());
+    return bytes <= memory_ && (card_.free_bytes() == 0 || card_bytes <= card_.free_bytes());
   }
 
   void start() {
     const CellTry what = queue_.take();
-    log::info(queue_.place_of(what, card_->jobs()));
+    log::info(queue_.place_of(what, card_.jobs()));
     began_ = true;
-    const ProcessShare share{std::max(1, how_.threads / card_->jobs()), card_->on_gpu()};
-    running_.emplace_back(what, options_, how_, share, card_->settings());
+    const ProcessShare share{std::max(1, how_.threads / card_.jobs()), card_.on_gpu()};
+    running_.emplace_back(what, options_, how_, share, card_.settings());
   }
 
   void stop_all(int signal) {
@@ -173,6 +175,7 @@ class LocalPool {
   void fail(const CellTry& what, Record record, bool written) {
     Failure& failure = *record.failure;
     failure.attempts = what.number;
+    if (!written && card_.on_gpu()) record.environment["device"] = card_.name();
     if (!written || what.number > 1) append_record(options_.out / "records.jsonl", record);
     const bool again = what.number <= failure_kind_of(failure.kind).retries && !is_interrupted();
     log::warn(fmt::format(
@@ -196,7 +199,7 @@ class LocalPool {
     CellTry next = what;
     next.number = what.number + 1;
     next.alone = kind == failure::kOutOfMemory ||
-                 (kind == failure::kEnvironment && card_->on_gpu() && card_->jobs() > 1);
+                 (kind == failure::kEnvironment && card_.on_gpu() && card_.jobs() > 1);
     if (next.alone)
       queue_.put_last(next);
     else
@@ -206,10 +209,11 @@ class LocalPool {
   const RunnerOptions& options_;
   const ExecutorOptions& how_;
   std::vector<PlanCell> plan_;
+  CardShare card_;  // outlives the cells
+  DeviceOfCells device_;
   CellQueue queue_;
   double memory_;  // bytes, when the pool began
   TimeForAll time_{how_.time_for_all};
-  std::optional<CardShare> card_;  // since there is a cell to run; outlives the cells
   std::list<CellProcess> running_;
   bool began_ = false;  // any cell did
   bool told_ = false;   // the cells, to stop

@@ -7,6 +7,7 @@
 
 #include "glint/core/progress.h"
 #include "reports/bench/child_process.h"
+#include "reports/bench/device_of_cells.h"
 #include "reports/executors/executor.h"
 #include "reports/executors/slurm_jobs.h"
 #include "reports/executors/task_file.h"
@@ -86,6 +87,7 @@ class Submission {
       : options_(options),
         how_(how),
         plan_(make_plan(options.profile, options.filter, options.assignments)),
+        device_(how.on_gpu ? Device::kCuda : current_device()),
         queue_(plan_, options, how.order.value_or(CellOrder::kLongest)),
         folder_(fs::absolute(slurm_folder(options.out))),
         program_(fs::read_symlink(kThisProgram)) {}
@@ -211,6 +213,7 @@ class Submission {
   const RunnerOptions& options_;
   const ExecutorOptions& how_;
   std::vector<PlanCell> plan_;
+  DeviceOfCells device_;
   CellQueue queue_;
   fs::path folder_, program_;
   std::size_t array_ = kUsualArray;

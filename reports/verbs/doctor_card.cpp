@@ -83,6 +83,7 @@ Json card_json() {
   return {
       {"usable", device.usable},
       {"why_not", device.why_not},
+      {"name", device.name},
       {"free_bytes", static_cast<double>(device_room())}};
 }
 

@@ -16,7 +16,7 @@ namespace glint {
 // none of --device.
 std::vector<Checked> examine_card(const std::string& device);
 
-// After it: "usable", "why_not", "free_bytes" (0: on the CPU).
+// After it: "usable", "why_not", "name", "free_bytes" (0: on the CPU).
 Json card_json();
 
 }  // namespace glint

@@ -13,6 +13,7 @@
 #include "metrics/tools/numeric_options.h"
 #include "reports/bench/child_process.h"
 #include "reports/executors/task_file.h"
+#include "reports/records/build_info.h"
 #include "reports/records/environment.h"
 #include "reports/records/manifest.h"
 
@@ -94,7 +95,7 @@ ExecutorOptions executor_options(const CommonOptions& common, const CellRunOptio
   options.command = [common, how](const CellKey& cell, bool force, const ProcessShare& share) {
     return words_of_cell(common, how, cell, force, share);
   };
-  if (common.device != "cpu")
+  if (common.device == "cuda" || (common.device == "auto" && !build_info().cuda.empty()))
     options.look_at_card = {
         kThisProgram, "doctor", "--card", "--device", common.device, "--json", "--quiet"};
   options.profile_words = profile_words(common);
@@ -209,7 +210,9 @@ RunSummary run_cells(
   const ExecutorOptions executor = executor_options(common, how);
   check_device_name(common.device);
   const int without_data = leave_out_missing(common.data, runnable);
-  if (how.executor == "inline") choose_device(common.device);
+  // Jobs of a cluster may have a GPU where this machine has none.
+  const bool by_others = how.executor == "local" || (executor.on_gpu && how.executor != "inline");
+  if (!by_others) choose_device(common.device);
   RunSummary summary = find_executor(how.executor).run(runnable, executor);
   summary.without_data = without_data;
   return summary;

@@ -34,7 +34,7 @@ RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& 
 int leave_out_missing(const fs::path& data_folder, RunnerOptions& options);
 
 // Runs the cells that `options` chooses and whose data are there, by the executor that is asked
-// for. Their processes take the device, this one does so only where they run in it. Errors:
+// for. Where other processes run them, those take the device, and this one does not. Errors:
 // run_profile()'s and choose_device()'s; kUsage: no such executor, order or time.
 RunSummary run_cells(
     const CommonOptions& common, const CellRunOptions& how, const RunnerOptions& options

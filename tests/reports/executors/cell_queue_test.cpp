@@ -6,6 +6,7 @@
 
 #include "glint/train/checkpoint.h"
 #include "reports/bench/cell_stages.h"
+#include "reports/bench/device_of_cells.h"
 #include "reports/bench/memory_estimate.h"
 #include "reports/records/run_folder.h"
 #include "tests/reports/fake_method.h"
@@ -85,4 +86,19 @@ TEST_CASE("what a checkpoint has of a training is not waited for again") {
   anew.options.out = queued.options.out;
   anew.options.force = true;
   CHECK(anew.queue().seconds_of(anew.plan[0]) == 104.0);
+}
+
+TEST_CASE("keys are of the device that cells run on, wherever they are planned") {
+  const Queued queued;
+  const PlanCell& cell = queued.plan[0];
+  const auto train_key = [&] {
+    const SceneIdentity scene = fake_identity(cell.source);
+    return cell_stages(cell, queued.options.profile, scene, nullptr, {})[Stage::kTrain].key();
+  };
+  const std::string here = train_key();
+  {
+    const DeviceOfCells elsewhere(Device::kCuda);
+    CHECK(train_key() != here);
+  }
+  CHECK(train_key() == here);
 }

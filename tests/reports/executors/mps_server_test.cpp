@@ -149,17 +149,16 @@ TEST_CASE("a daemon that answers where the environment says is used, and goes on
 
 TEST_CASE("one cell at a time, the CPU, or no GPU need no MPS") {
   const FakeMps mps;
-  test::captured(2, [&] {
-    CHECK(CardShare(on_card(1)).jobs() == 1);
-    ExecutorOptions cpu;
-    cpu.jobs = 3;
-    CHECK(CardShare(cpu).jobs() == 3);
-    cpu.look_at_card = test::look_at_no_card();
-    const CardShare none(cpu);
-    CHECK(none.jobs() == 3);
-    CHECK_FALSE(none.on_gpu());
-    CHECK(none.settings().empty());
-  });
+  ExecutorOptions no_card;
+  no_card.jobs = 3;
+  no_card.look_at_card = test::look_at_no_card();
+  for (const ExecutorOptions& how : {on_card(1), no_card, ExecutorOptions{.jobs = 3}}) {
+    CardShare share(how);
+    test::captured(2, [&] { share.begin(); });
+    CHECK(share.jobs() == how.jobs);
+    CHECK(share.on_gpu() == (how.jobs == 1));
+    CHECK(share.settings().empty());
+  }
   CHECK(mps.asked().empty());
 }
 
@@ -205,6 +204,7 @@ TEST_CASE("when the daemon ends by itself, cells that begin later take turns") {
   ExecutorOptions how = on_card(2);
   set_quiet(true);
   CardShare share(how);
+  share.begin();
   CHECK(share.jobs() == 2);
   CHECK(share.free_bytes() == kCardBytes);
   run_command({"sh", "-c", "echo quit | nvidia-cuda-mps-control"}, share.settings());
