@@ -34,6 +34,7 @@ source ./environment.sh
 PATH=$PWD/bin:$PATH:/usr/local/cuda/bin
 profile=${profile:-$(echo profile/*.toml)}
 [ -f "$profile" ] || { echo "card_evidence: $profile: no such profile; bundle.sh --evidence packs one, or name it with --profile" >&2; exit 6; }
+name=$(basename "$profile" .toml)  # of the profile
 [ -s cells.txt ] || { echo "card_evidence: cells.txt has no cell: all of them have records" >&2; exit 6; }
 work=$(mktemp -d)
 parcels=$work/parcels
@@ -64,15 +65,15 @@ spare() {
 declare -A packed=()
 archive=1 num_packed=0 no_room=()
 pack() {
-  local file name stamp size used
+  local file parcel stamp size used
   for file in "$parcels"/*.parcel; do
     [ -f "$file" ] || continue
-    name=$(basename "$file") stamp=$(stat -c %Y.%s "$file") size=$(stat -c %s "$file")
-    [ "${packed[$name]:-}" != "$stamp" ] || continue
+    parcel=$(basename "$file") stamp=$(stat -c %Y.%s "$file") size=$(stat -c %s "$file")
+    [ "${packed[$parcel]:-}" != "$stamp" ] || continue
     used=$(stat -c %s "$out/parcels_$archive.tar" 2>/dev/null || echo 0)
     if [ "$used" -gt 0 ] && [ $((used + size + 2048)) -gt $most_bytes ]; then archive=$((archive + 1)); fi
-    if [ $archive -gt $most_archives ]; then archive=$most_archives; no_room+=("$name"); packed[$name]=$stamp; continue; fi
-    tar -rf "$out/parcels_$archive.tar" -C "$parcels" "$name" && packed[$name]=$stamp && num_packed=$((num_packed + 1))
+    if [ $archive -gt $most_archives ]; then archive=$most_archives; no_room+=("$parcel"); packed[$parcel]=$stamp; continue; fi
+    tar -rf "$out/parcels_$archive.tar" -C "$parcels" "$parcel" && packed[$parcel]=$stamp && num_packed=$((num_packed + 1))
   done
 }
 
@@ -107,12 +108,11 @@ say "glint-bench run: exit code $code; $num_packed parcels in $(find "$out" -nam
 [ ${#no_room[@]} -eq 0 ] || say "No room in $most_archives archives for: ${no_room[*]}"
 [ "$code" = 0 ] || say "$(grep -v '^==' "$log" | tail -n 3)"
 say ""
-glint-bench table --out "$work/out" --table summary >>"$summary" 2>>"$log" || true
+glint-bench table --out "$work/out/$name" --table summary >>"$summary" 2>>"$log" || true
 
 # What else only a card can tell.
 say ""
 say "## Beside that"
-name=$(basename "$profile" .toml)
 mapfile -t runs < <(find "$work/out/$name/runs" -name record.json -printf '%h\n' 2>/dev/null | sort)
 seen=()
 for run in "${runs[@]}"; do

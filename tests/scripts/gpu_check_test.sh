@@ -21,7 +21,7 @@ new_bundle() {
   echo 'unxz_to_output() { xz -dc "$1"; }' >"$bundle/environment.sh"
   echo "Commit 123" >"$bundle/BUNDLE.md"
   echo kernels >"$bundle/resources.txt"
-  echo scene | xz >"$bundle/scene.safetensors.xz"
+  echo scene >"$bundle/scene.safetensors"
   stand_in gpu-probe 'echo kernel ran'
   stand_in nvidia-smi 'echo a card'
   stand_in gpu_tests \
