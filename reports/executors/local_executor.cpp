@@ -208,12 +208,12 @@ class LocalPool {
 
   const RunnerOptions& options_;
   const ExecutorOptions& how_;
+  TimeForAll time_{how_.time_for_all};
   std::vector<PlanCell> plan_;
   CardShare card_;  // outlives the cells
   DeviceOfCells device_;
   CellQueue queue_;
   double memory_;  // bytes, when the pool began
-  TimeForAll time_{how_.time_for_all};
   std::list<CellProcess> running_;
   bool began_ = false;  // any cell did
   bool told_ = false;   // the cells, to stop

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "reports/verbs/run_options.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -105,23 +104,28 @@ ExecutorOptions executor_options(const CommonOptions& common, const CellRunOptio
   return options;
 }
 
-// A misspelt cell of several would be left out without a word.
+// All cells of the profile, and those of methods that are asked for beyond it.
+std::set<std::string> cells_there_are(const RunnerOptions& options) {
+  std::set<std::string> cells;
+  for (const auto& methods : {std::vector<std::string>(), options.filter.methods})
+    for (const PlanCell& cell : make_plan(options.profile, {.methods = methods}, {}))
+      cells.insert(cell.cell.text());
+  return cells;
+}
+
+// A misspelt one of several would be left out without a word.
 void check_cells(const RunnerOptions& options) {
   if (options.filter.cells.empty()) return;
-  CellFilter any = options.filter;
-  any.cells.clear();
-  std::vector<std::string> known;
-  for (const PlanCell& cell : make_plan(options.profile, any, options.assignments))
-    known.push_back(cell.cell.text());
+  const std::set<std::string> known = cells_there_are(options);
   for (const std::string& cell : options.filter.cells)
     GLINT_CHECK(
-        std::find(known.begin(), known.end(), cell) != known.end(),
+        known.contains(cell),
         kUsage,
-        "cell {}: none of profile {} with these --methods, --only and --skip; {}`plan --tasks` "
-        "lists those to run",
+        "cell {}: profile {} has none of that name; {}`plan` lists them; a method that the profile "
+        "does not name is run by --methods",
         cell,
         options.profile.name,
-        did_you_mean(cell, known)
+        did_you_mean(cell, {known.begin(), known.end()})
     );
 }
 
@@ -140,7 +144,7 @@ RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& 
   options.filter.cells = how.cells;
   if (!how.cells_file.empty())
     for (const std::string& cell : cells_of_tasks(how.cells_file))
-      options.filter.cells.push_back(cell);
+      if (!cell.empty()) options.filter.cells.push_back(cell);
   check_cells(options);
   return options;
 }

@@ -195,6 +195,28 @@ TEST_CASE("what ran out of memory is tried again alone, behind the others") {
   CHECK_THAT(begun.back(), Catch::StartsWith("room_1/fake/0 "));
 }
 
+TEST_CASE("cells that are named are the profile's, or of methods that are asked for") {
+  register_fake_methods();
+  const test::TempFolder folder;
+  CommonOptions common;
+  common.profile = (folder / "named.toml").string();
+  write_file(
+      common.profile,
+      "methods = [\"fake\"]\nscenes = [{scene = \"room_1\", dataset = \"a\", folder = \"b\"}]\n"
+  );
+  CellRunOptions how;
+  how.cells = {"room_1/fake/0"};
+  CHECK(runner_options(common, how).filter.cells == how.cells);
+  how.cells_file = (folder / "cells").string();
+  write_file(how.cells_file, "room_1/fake/other/0\t12\n\n");
+  CHECK_THROWS_WITH(runner_options(common, how), Catch::Contains("cell room_1/fake/other/0: "));
+  common.methods = {"fake/*"};
+  common.only = {"*/fake/other/*"};
+  CHECK(runner_options(common, how).filter.cells.size() == 2);
+  how.cells = {"rom_1/fake/0"};
+  CHECK_THROWS_WITH(runner_options(common, how), Catch::Contains("did you mean 'room_1/fake/0'?"));
+}
+
 TEST_CASE("in this process there is neither time nor order of cells") {
   Pool pool;
   pool.how.time_for_all = 5;

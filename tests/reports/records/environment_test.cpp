@@ -21,6 +21,7 @@ TEST_CASE("the environment names machine, build and libraries") {
     INFO(name << " " << version);
     CHECK(std::isdigit(static_cast<unsigned char>(version.get<std::string>().at(0))) != 0);
   }
+  CHECK(environment["cells_on_card"] == 0);  // on the CPU
   CHECK(environment["libraries"].contains("libpng"));
   CHECK(environment["libraries"].contains("OpenEXR"));
 }

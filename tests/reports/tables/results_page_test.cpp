@@ -35,6 +35,18 @@ TEST_CASE("The page says which revision trained and which scored") {
   for (const char* text :
        {"abc1234", "def5678", "2026-01-01", "glint-bench all", "a remark", "30.00"})
     CHECK_THAT(page, Catch::Contains(text));
+  CHECK_THAT(page, !Catch::Contains("cells shared"));
+}
+
+TEST_CASE("The page says that cells shared a card") {
+  Record record;
+  record.cell = {"room_1", "glint", 0};
+  record.metrics = {{"psnr", 30.0}};
+  record.environment = {{"device", "a card"}, {"cells_on_card", 6}};
+  CHECK_THAT(
+      results_part({"r.jsonl", "glint-bench all", ""}, {record}),
+      Catch::Contains("device a card, which up to 6 cells shared: times are too long\n")
+  );
 }
 
 TEST_CASE("A part of the page may have a title and some tables alone") {
