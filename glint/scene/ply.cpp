@@ -57,13 +57,16 @@ std::vector<std::string> numbered(const std::string& stem, int count) {
   return names;
 }
 
+// A cloud without them is written without their fields, which are most of a file.
+bool has_rest(const SurfelCloud& cloud) { return cloud.size() == 0 || !cloud.sh_rest.empty(); }
+
 std::vector<std::string> surfel_fields(const SurfelCloud& cloud) {
   std::vector<std::string> fields{"x", "y", "z", "nx", "ny", "nz"};
   const auto add = [&](const std::vector<std::string>& names) {
     fields.insert(fields.end(), names.begin(), names.end());
   };
   add(numbered("f_dc_", 3));
-  add(numbered("f_rest_", 3 * kRestPerColor));
+  if (has_rest(cloud)) add(numbered("f_rest_", 3 * kRestPerColor));
   add({"opacity"});
   add(numbered("scale_", 3));
   add(numbered("rot_", 4));
@@ -93,7 +96,7 @@ void append_surfel(std::string& bytes, const SurfelCloud& cloud, std::size_t i) 
   append_row(cloud.means, 3);
   append(bytes, surfel_normal(&cloud.rotations[4 * i]));
   append_row(cloud.sh_dc, 3);
-  for (std::size_t color = 0; color < 3; ++color)
+  for (std::size_t color = 0; has_rest(cloud) && color < 3; ++color)
     for (std::size_t k = 0; k < kRestPerColor; ++k)
       append(bytes, cloud.sh_rest[(i * kRestPerColor + k) * 3 + color]);
   append_row(cloud.opacity_logits, 1);

@@ -14,7 +14,7 @@ namespace glint {
 
 // Fields: x y z nx ny nz f_dc_0..2 f_rest_0..44 (all R, all G, all B) opacity scale_0 scale_1
 // scale_2 rot_0..3 then extra channels by name, all raw. scale_2 = log(1e-6) so that 3DGS viewers
-// accept it.
+// accept it. Of a cloud whose sh_rest is empty: no f_rest.
 void write_surfel_ply(const fs::path& path, const SurfelCloud& cloud);
 // scale_2 may be absent; extra float properties become extra channels.
 SurfelCloud read_surfel_ply(const fs::path& path);

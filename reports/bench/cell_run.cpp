@@ -6,8 +6,6 @@
 #include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/machine.h"
-#include "glint/core/progress.h"
-#include "metrics/fusion/tsdf_volume.h"
 #include "reports/bench/memory_estimate.h"
 #include "reports/bench/mesh_stage.h"
 #include "reports/bench/run_record.h"
@@ -84,22 +82,6 @@ Failure failure_of(const std::exception& error, const std::string& stage, const 
       error.what(),
       log_tail(run),
       run.empty() ? -1 : last_iteration(run)};
-}
-
-// Makes the meshes. A run whose depth gives none has its other numbers all the same; empty: made.
-std::string why_no_mesh(
-    const RunSpec& spec, const Scene& scene, Method& method, const TsdfOptions& options
-) {
-  remove_meshes(spec.folder);
-  if (!has_tsdf_volume()) return "no Open3D";
-  try {
-    mesh_stage(spec, scene, method, options);
-    return {};
-  } catch (const Error& error) {
-    if (error.code() == ExitCode::kEnvironment) throw;  // nothing that another run would lack
-    log::warn(fmt::format("{}: no mesh: {}", spec.folder.string(), error.what()));
-    return fmt::format("no mesh: {}", error.what());
-  }
 }
 
 class CellRun {
@@ -185,7 +167,7 @@ class CellRun {
   // Without a mesh, the stage and the scores behind it also go by the memory that was allowed.
   std::string make_meshes() {
     const TsdfOptions options = profile_.tsdf_options();
-    std::string why = why_no_mesh(spec_, scene_, *method_, options);
+    std::string why = try_mesh_stage(spec_, scene_, *method_, options);
     if (why.empty()) return why;
     Json& document = stages_[Stage::kMesh].document;
     document = document_without_mesh(document, options);

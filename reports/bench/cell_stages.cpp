@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "reports/bench/stage_documents.h"
+#include "reports/records/parcel_run.h"
 
 namespace glint {
 namespace {
@@ -97,6 +98,17 @@ void heed_record(CellStages& stages, const Record* record) {
   }
 }
 
+// What came in a parcel has neither colours nor renders to go on from.
+void heed_parcel(CellStages& stages, const fs::path& run) {
+  const bool whole = stages[Stage::kRender].done && stages[Stage::kScore].done;
+  if (whole || !stages[Stage::kTrain].done || !parcel_of_run(run)) return;
+  StageState& train = stages[Stage::kTrain];
+  train = {false, "its run came in a parcel, without colours", train.document};
+  follow(stages, Stage::kRender, {Stage::kTrain});
+  follow(stages, Stage::kMesh, {Stage::kTrain});
+  follow(stages, Stage::kScore, {Stage::kRender, Stage::kMesh});
+}
+
 }  // namespace
 
 bool CellStages::done() const {
@@ -153,6 +165,7 @@ CellStages cell_stages(
   );
   follow(stages, Stage::kScore, {Stage::kRender, Stage::kMesh});
   heed_record(stages, record);
+  heed_parcel(stages, run);
   return stages;
 }
 

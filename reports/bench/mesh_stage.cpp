@@ -4,22 +4,12 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
+#include "metrics/fusion/tsdf_volume.h"
 #include "reports/bench/run_stage.h"
 #include "reports/records/earlier_run.h"
 
 namespace glint {
 namespace {
-
-// Depth of what is seen through the glass; the first surface where there is none (t of at most a
-// half). Empty: the method does not look behind glass.
-Image depth_through_glass(const MapSet& output) {
-  const Image &behind = output["behind_depth"], &transparency = output["transparency"];
-  if (behind.empty() || transparency.empty()) return {};
-  Image depth = output["depth"];
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
-    if (transparency.data()[i] > 0.5f) depth.data()[i] = behind.data()[i];
-  return depth;
-}
 
 // Do the renders have what depth_through_glass() goes by?
 bool looks_behind_glass(const fs::path& run) {
@@ -34,6 +24,15 @@ bool looks_behind_glass(const fs::path& run) {
 }
 
 }  // namespace
+
+Image depth_through_glass(const MapSet& rendered) {
+  const Image &behind = rendered["behind_depth"], &transparency = rendered["transparency"];
+  if (behind.empty() || transparency.empty()) return {};
+  Image depth = rendered["depth"];
+  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
+    if (transparency.data()[i] > 0.5f) depth.data()[i] = behind.data()[i];
+  return depth;
+}
 
 fs::path mesh_of(const fs::path& run, const MeshLayer& layer) {
   const fs::path path = run / layer.mesh;
@@ -89,6 +88,21 @@ Json mesh_stage(
     remove_meshes(spec.folder);  // one layer without the other would be scored as both
     drop_renders();
     throw;
+  }
+}
+
+std::string try_mesh_stage(
+    const RunSpec& spec, const Scene& scene, Method& method, const TsdfOptions& options
+) {
+  remove_meshes(spec.folder);
+  if (!has_tsdf_volume()) return "no Open3D";
+  try {
+    mesh_stage(spec, scene, method, options);
+    return {};
+  } catch (const Error& error) {
+    if (error.code() == ExitCode::kEnvironment) throw;  // nothing that another run would lack
+    log::warn(fmt::format("{}: no mesh: {}", spec.folder.string(), error.what()));
+    return fmt::format("no mesh: {}", error.what());
   }
 }
 

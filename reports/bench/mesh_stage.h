@@ -27,6 +27,10 @@ inline constexpr MeshLayer kMeshLayers[] = {
 // its renders say, has its mesh.ply there: a single layer may lie behind the glass.
 fs::path mesh_of(const fs::path& run, const MeshLayer& layer);
 
+// Depth of what is seen through the glass; the first surface where there is none (t of at most a
+// half). Empty: the method does not look behind glass.
+Image depth_through_glass(const MapSet& rendered);
+
 // Where a training view is rendered to.
 fs::path train_view_folder(const fs::path& run, const View& view);
 
@@ -52,6 +56,12 @@ Json mesh_stage(
     Method& method,
     const TsdfOptions& options,
     bool keep_renders = false
+);
+
+// The same, for a cell whose depth may give no mesh and which has its other numbers all the same:
+// why it has none. Empty: made. Errors: kEnvironment alone, which is nothing of the cell's.
+std::string try_mesh_stage(
+    const RunSpec& spec, const Scene& scene, Method& method, const TsdfOptions& options
 );
 
 }  // namespace glint

@@ -29,6 +29,14 @@ void add_training(Record& record, const TrainCost& cost) {
 // without a true mesh.
 std::vector<std::string> without_truth(const Record& record, const RunSpec& spec) {
   std::vector<std::string> ids = not_applicable(record.metrics, record.not_measured);
+  for (std::string& id : meshes_without_truth(record, spec)) ids.push_back(std::move(id));
+  return ids;
+}
+
+}  // namespace
+
+std::vector<std::string> meshes_without_truth(const Record& record, const RunSpec& spec) {
+  std::vector<std::string> ids;
   for (const MeshLayer& layer : kMeshLayers) {
     if (fs::exists(true_mesh(spec.dataset_folder, layer.truth))) continue;
     for (const Metric& metric : mesh_metric_list()) {
@@ -40,8 +48,6 @@ std::vector<std::string> without_truth(const Record& record, const RunSpec& spec
   }
   return ids;
 }
-
-}  // namespace
 
 Scores training_cost(const RunSpec& spec) {
   const auto cost = trained_cost(spec);

@@ -18,4 +18,8 @@ Scores training_cost(const RunSpec& spec);
 // test views. Errors: training_cost()'s.
 void describe_run(Record& record, const RunSpec& spec, const Scene& scene);
 
+// Metrics of meshes that have neither a value nor a reason in the record, because the data have no
+// true mesh of the layer.
+std::vector<std::string> meshes_without_truth(const Record& record, const RunSpec& spec);
+
 }  // namespace glint

@@ -80,10 +80,10 @@ class Runner {
     } catch (const Interrupted&) {
       throw;
     } catch (const std::exception& error) {
-      return finish(record_without_data(cell, options_, error));
+      return finish(cell, record_without_data(cell, options_, error));
     }
     log::info("  " + stages.why());
-    finish(run_cell(cell, options_, loaded_, stages, records_));
+    finish(cell, run_cell(cell, options_, loaded_, stages, records_));
   }
 
   CellStages stages_of(const PlanCell& cell) const {
@@ -116,12 +116,20 @@ class Runner {
     loaded_name_ = cell.cell.scene;
   }
 
-  void finish(const Record& record) {
+  void finish(const PlanCell& cell, const Record& record) {
+    const fs::path run = run_folder(options_.out, record.cell);
     append_record(records_file_, record);
+    if (record.ok()) write_file(run / kRecordFile, record_to_json(record).dump() + "\n");
+    count(record);
+    if (!options_.ended) return;
+    options_.ended({record, run, [&]() -> const LoadedScene& {
+                      load_scene_of(cell);
+                      return loaded_;
+                    }});
+  }
+
+  void count(const Record& record) {
     if (record.ok()) {
-      write_file(
-          run_folder(options_.out, record.cell) / kRecordFile, record_to_json(record).dump() + "\n"
-      );
       ++summary_.ran;
       return;
     }

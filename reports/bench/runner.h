@@ -8,6 +8,13 @@
 
 namespace glint {
 
+// A cell that has ended, finished or failed, and is recorded.
+struct EndedCell {
+  const Record& record;
+  fs::path run;                               // its folder; may be missing where it failed
+  std::function<const LoadedScene&()> scene;  // loaded when asked for. Errors: SceneLoader's
+};
+
 struct RunnerOptions {
   Profile profile;
   CellFilter filter;
@@ -19,6 +26,7 @@ struct RunnerOptions {
   bool announced = false;                // somebody else has named the cell: no line about that
   SceneIdentifier identify;
   SceneLoader load;
+  std::function<void(const EndedCell&)> ended;  // told of each cell that this process ran
 };
 
 struct RunSummary {

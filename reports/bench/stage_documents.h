@@ -38,4 +38,17 @@ Json score_document(
     const std::optional<TimingOptions>& timing
 );
 
+// Options as a document has them under that name; fields that this version does not know any more
+// are left out. Errors: kUsage, and nlohmann::json::exception where there are none.
+template <class Options>
+Options options_in(const Json& document, const char* name) {
+  Options options;
+  Json fields = Json::object();
+  const Json known = config_to_json(options);
+  for (const auto& [field, value] : document.at(name).items())
+    if (known.contains(field)) fields[field] = value;
+  config_from_json(options, fields, name);
+  return options;
+}
+
 }  // namespace glint

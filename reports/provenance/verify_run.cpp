@@ -11,6 +11,7 @@
 #include "reports/bench/stage_documents.h"
 #include "reports/provenance/compare_scores.h"
 #include "reports/records/earlier_run.h"
+#include "reports/records/parcel_run.h"
 
 namespace glint {
 namespace {
@@ -24,18 +25,6 @@ std::string some_of(const std::vector<std::string>& lines, const char* between =
     text += (i > 0 ? between : "") + lines[i];
   if (lines.size() > kNamed) text += fmt::format(" and {} more", lines.size() - kNamed);
   return text;
-}
-
-// Options as a document has them; fields that this version does not know any more are left out.
-template <class Options>
-Options options_in(const Json& document, const char* name) {
-  Options options;
-  Json fields = Json::object();
-  const Json known = config_to_json(options);
-  for (const auto& [field, value] : document.at(name).items())
-    if (known.contains(field)) fields[field] = value;
-  config_from_json(options, fields, name);
-  return options;
 }
 
 std::string text_of(const Json& json, const char* name) {
@@ -96,6 +85,7 @@ class RunExamination {
   RunExamination(RunVerifier& verifier, const RunToVerify& run)
       : verifier_(verifier), run_(run), spec_(read_run_spec(run.folder)) {
     if (!run.dataset.empty()) spec_.dataset_folder = fs::absolute(run.dataset);
+    parcel_ = parcel_of_run(run.folder).has_value();
     for (const Stage stage : kRunStages)
       if (const auto done = read_stage(run.folder, stage)) done_.emplace(stage, *done);
     imported_ = !fs::exists(run.folder / "keys/train.json") &&
@@ -170,12 +160,12 @@ class RunExamination {
     if (!fs::exists(spec_.dataset_folder, code))
       return add(
           "data",
-          CheckState::kBad,
+          parcel_ ? CheckState::kNote : CheckState::kBad,
           spec_.dataset_folder.string() + ": not there; if the data have moved, give --dataset"
       );
     std::vector<std::string> wrong;
     const StageFile* trained = done(Stage::kTrain);
-    if (trained) compare_data(trained->document.at("data"), wrong);
+    if (trained && !parcel_) compare_data(trained->document.at("data"), wrong);
     if (!verifier_.fast_) {
       scene_ = &verifier_.scene_of(spec_, run_.loader);
       if (!spec_.dataset_hash.empty() && scene_->spec_hash != spec_.dataset_hash)
@@ -185,6 +175,12 @@ class RunExamination {
     } else if (!trained) {
       return add("data", CheckState::kNote, "not looked at: --fast");
     }
+    if (parcel_ && wrong.empty())
+      return add(
+          "data",
+          CheckState::kNote,
+          "the run came in a parcel: trained on the same scene, in files of another machine"
+      );
     add("data", wrong, spec_.dataset_folder.string());
   }
 
@@ -329,6 +325,12 @@ class RunExamination {
     const StageFile* scored = done(Stage::kScore);
     if (!scored) return;
     if (verifier_.fast_) return add("metrics", CheckState::kNote, "not computed again: --fast");
+    if (parcel_)
+      return add(
+          "metrics",
+          CheckState::kNote,
+          "not computed again: the run came in a parcel, without its renders"
+      );
     if (!scene_)
       return add("metrics", CheckState::kBad, "cannot be computed again without the data");
     const RunScores now = score_run(
@@ -364,6 +366,7 @@ class RunExamination {
   RunSpec spec_;
   std::map<Stage, StageFile> done_;
   bool imported_ = false;
+  bool parcel_ = false;  // what did not come along is no damage
   Json data_now_;
   const Scene* scene_ = nullptr;
   std::vector<Checked> rows_;

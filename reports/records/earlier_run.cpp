@@ -11,6 +11,7 @@
 #include "glint/core/progress.h"
 #include "glint/scene/maps.h"
 #include "glint/train/checkpoint.h"
+#include "reports/records/parcel_run.h"
 #include "reports/records/stage_files.h"
 
 namespace glint {
@@ -25,6 +26,7 @@ constexpr std::array kTopFiles = {
     "mesh.json",
     "mesh.ply",
     "mesh_transmission.ply",
+    kParcelFile,
     "record.json",
     "strip.png"};
 constexpr std::array kRenderFolders = {"renders", "renders_train"};
@@ -57,6 +59,14 @@ void add_render_files(const fs::path& renders, std::vector<fs::path>& ours) {
   for (const fs::path& view : folders_in(renders))
     for (const fs::path& file : files_in(view))
       if (is_map_file(file.filename().string())) ours.push_back(file);
+}
+
+// pictures/VIEW/MAP.png.
+void add_parcel_pictures(const fs::path& pictures, std::vector<fs::path>& ours) {
+  for (const fs::path& view : folders_in(pictures))
+    for (const fs::path& file : files_in(view))
+      if (file.extension() == ".png" && find_map(file.stem().string()) != nullptr)
+        ours.push_back(file);
 }
 
 // paths/NAME/path.json, layers.mp4 and LAYER/NNNN.png or .exr.
@@ -98,6 +108,7 @@ std::vector<fs::path> files_of_run(const fs::path& run) {
   for (const Stage stage : kStages)
     ours.push_back(run / "keys" / fmt::format("{}.json", stage_name(stage)));
   for (const char* renders : kRenderFolders) add_render_files(run / renders, ours);
+  add_parcel_pictures(run / kParcelPictures, ours);
   add_path_files(run / "paths", ours);
   std::error_code code;
   std::erase_if(ours, [&](const fs::path& file) {

@@ -56,21 +56,23 @@ void copy_run(const fs::path& from, const fs::path& to) {
   );
 }
 
-MergedCell verdict_on(const Record& theirs, const Record* ours, const fs::path& from) {
-  const auto is = [&](MergeVerdict verdict, const std::string& why = "") {
-    return MergedCell{theirs.cell, verdict, from.string(), why};
-  };
-  if (ours == nullptr || (!ours->ok() && theirs.ok())) return is(MergeVerdict::kTaken);
-  if (!theirs.ok())
-    return is(MergeVerdict::kLeft, fmt::format("failed there ({})", theirs.failure->kind));
-  const std::string differences = score_differences(*ours, theirs);
-  if (differences.empty()) return is(MergeVerdict::kReplicate);
-  return is(
-      MergeVerdict::kConflict,
-      fmt::format(
-          "{}; kept: that of {}, not of {}", differences, machine_of(*ours), machine_of(theirs)
-      )
-  );
+// The keys of its scores: also of those that came without meshes, before these were made.
+std::set<std::string> score_keys(const Record& record) {
+  std::set<std::string> keys{record.score_key};
+  if (record.meshes_made.is_object() && record.meshes_made.value("score_key", Json()).is_string())
+    keys.insert(record.meshes_made["score_key"].get<std::string>());
+  return keys;
+}
+
+bool is_scored_alike(const Record& a, const Record& b) {
+  const auto of_a = score_keys(a), of_b = score_keys(b);
+  return std::any_of(of_a.begin(), of_a.end(), [&](const std::string& key) {
+    return of_b.contains(key);
+  });
+}
+
+bool is_of_meshes(const std::string& id) {
+  return id.starts_with("mesh-") || id.starts_with("behind-mesh-");
 }
 
 // run folder -> the record that it holds, of those below `runs`.
@@ -110,11 +112,12 @@ std::string_view merge_verdict_name(MergeVerdict verdict) {
 
 std::string score_differences(const Record& a, const Record& b) {
   if (a.train_key != b.train_key) return training_differences(a, b);
-  if (a.score_key != b.score_key) return "scored by other settings or code";
+  if (!is_scored_alike(a, b)) return "scored by other settings or code";
+  const bool without_meshes = a.meshes_made.is_null() != b.meshes_made.is_null();
   std::set<std::string> ids;
   for (const Record* record : {&a, &b})
     for (const auto& [id, value] : record->metrics)
-      if (!is_cost(id)) ids.insert(id);
+      if (!is_cost(id) && !(without_meshes && is_of_meshes(id))) ids.insert(id);
   std::string text;
   for (const std::string& id : ids) {
     const auto in_a = a.metrics.find(id), in_b = b.metrics.find(id);
@@ -128,12 +131,29 @@ std::string score_differences(const Record& a, const Record& b) {
   return text;
 }
 
+MergedCell judge_merge(const Record& theirs, const Record* ours, const std::string& from) {
+  const auto is = [&](MergeVerdict verdict, const std::string& why = "") {
+    return MergedCell{theirs.cell, verdict, from, why};
+  };
+  if (ours == nullptr || (!ours->ok() && theirs.ok())) return is(MergeVerdict::kTaken);
+  if (!theirs.ok())
+    return is(MergeVerdict::kLeft, fmt::format("failed there ({})", theirs.failure->kind));
+  const std::string differences = score_differences(*ours, theirs);
+  if (differences.empty()) return is(MergeVerdict::kReplicate);
+  return is(
+      MergeVerdict::kConflict,
+      fmt::format(
+          "{}; kept: that of {}, not of {}", differences, machine_of(*ours), machine_of(theirs)
+      )
+  );
+}
+
 std::vector<MergedCell> merge_runs(const fs::path& into, const fs::path& from, bool write) {
   std::vector<MergedCell> merged;
   const fs::path records_file = into / "records.jsonl";
   const auto ours = read_records(records_file);
   for (const Record& theirs : read_records(from / "records.jsonl")) {
-    merged.push_back(verdict_on(theirs, find_record(ours, theirs.cell), from));
+    merged.push_back(judge_merge(theirs, find_record(ours, theirs.cell), from.string()));
     if (merged.back().verdict != MergeVerdict::kTaken || !write) continue;
     copy_run(run_folder(from, theirs.cell), run_folder(into, theirs.cell));
     append_record(records_file, theirs);
@@ -147,7 +167,7 @@ std::vector<MergedCell> adopt_runs(const fs::path& folder, bool write) {
   const auto ours = read_records(records_file);
   for (const Record& found : records_beside_runs(folder / "runs")) {
     const Record* known = find_record(ours, found.cell);
-    merged.push_back(verdict_on(found, known, run_folder(folder, found.cell)));
+    merged.push_back(judge_merge(found, known, run_folder(folder, found.cell).string()));
     if (merged.back().verdict == MergeVerdict::kTaken && write) append_record(records_file, found);
   }
   return merged;

@@ -30,6 +30,10 @@ struct MergedCell {
 
 std::string_view merge_verdict_name(MergeVerdict verdict);
 
+// What would become of a record of another machine, `from` where it lies; `ours`: the one that is
+// there, or null.
+MergedCell judge_merge(const Record& theirs, const Record* ours, const std::string& from);
+
 // Takes over from the profile's folder `from` into `into` what is not there; nothing that is there
 // is changed. `write`: false: only says what would be. Errors: as read_records; kEnvironment: a
 // folder cannot be copied.
@@ -39,7 +43,8 @@ std::vector<MergedCell> merge_runs(const fs::path& into, const fs::path& from, b
 std::vector<MergedCell> adopt_runs(const fs::path& folder, bool write);
 
 // What differs between two records of a cell that should be the same; empty: nothing that is not
-// the machine's (speed, time, memory).
+// the machine's (speed, time, memory). Where meshes of only one were made apart from its training
+// (Record::meshes_made), those of neither are looked at.
 std::string score_differences(const Record& a, const Record& b);
 
 }  // namespace glint

@@ -78,6 +78,8 @@ Record fields_of(const Json& json) {
   for (const auto& [stage, value] : seconds.items())
     if (value.is_number()) record.timings[stage] = value;
   if (!record.environment.is_object()) record.environment = Json::object();
+  if (const Json made = json.value("meshes_made", Json()); made.is_object())
+    record.meshes_made = made;
   const Json metrics = json.value("metrics", Json::object());
   for (const auto& [id, value] : metrics.items())
     if (value.is_number()) record.metrics[id] = value.get<double>();
@@ -130,6 +132,7 @@ std::string CellKey::text() const { return fmt::format("{}/{}/{}", scene, method
 Json record_to_json(const Record& record) {
   Json json = Json::object();
   visit_fields(record, writer_to(json));
+  if (!record.meshes_made.is_null()) json["meshes_made"] = record.meshes_made;
   json["status"] = record.ok() ? "ok" : "failed";
   if (!record.ok()) visit_failure(*record.failure, writer_to(json["failure"] = Json::object()));
   json["metrics"] = Json::object();

@@ -56,6 +56,7 @@ struct Record {
   std::vector<std::string> notes;     // of the method, for readers of tables: which masks it got
   std::vector<std::string> data_notes;  // of the scene it was trained on: how priors were read
   Json void_steps;                      // of its training (run_folder.h); null: not known
+  Json meshes_made;                     // where meshes of a parcel were made; null: with the rest
   Json timings = Json::object();        // stage -> seconds
   Json environment = Json::object();    // machine, build, date
 

@@ -12,6 +12,7 @@
 #include "reports/import/import_predictions.h"
 #include "reports/records/earlier_run.h"
 #include "reports/records/environment.h"
+#include "reports/records/parcel_run.h"
 #include "reports/verbs/headline_scores.h"
 #include "reports/verbs/single_run.h"
 
@@ -177,6 +178,7 @@ void check_same_scene(const SingleRun& single, const std::string& run) {
 
 int eval_run(const CommonOptions& common, const EvalArguments& arguments) {
   const std::string& folder = arguments.run;
+  refuse_parcel_run(folder, "eval");
   const SingleRun single = open_single_run(folder, arguments.dataset);
   check_same_scene(single, folder);
   check_test_views(single.scene, single.spec.dataset_folder);

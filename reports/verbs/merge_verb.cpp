@@ -3,8 +3,11 @@
 #include <map>
 #include <memory>
 
+#include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
-#include "reports/records/merge_runs.h"
+#include "reports/parcels/complete_meshes.h"
+#include "reports/parcels/find_parcels.h"
+#include "reports/parcels/take_parcel.h"
 #include "reports/verbs/listing.h"
 #include "reports/verbs/verb.h"
 
@@ -16,67 +19,130 @@ struct MergeOptions {
   bool dry_run = false;
 };
 
-std::vector<MergedCell> merge_all(
-    const fs::path& into, const std::string& profile, const MergeOptions& options
+struct MergeResult {
+  fs::path into;
+  std::vector<MergedCell> cells;
+  std::vector<LostParcel> lost;
+  std::vector<CompletedCell> completed;
+};
+
+void merge_folder(
+    const std::string& from, const std::string& profile, bool write, MergeResult& result
 ) {
-  std::vector<MergedCell> merged = adopt_runs(into, !options.dry_run);
-  std::erase_if(merged, [](const MergedCell& cell) {
-    return cell.verdict == MergeVerdict::kReplicate;  // its own
-  });
-  for (const std::string& from : options.from) {
-    const fs::path folder = folder_with_records(from, profile);
-    std::error_code code;
-    GLINT_CHECK(
-        !fs::equivalent(folder, into, code),
-        kUsage,
-        "merge: {} is the folder that it would be merged into; --out names another",
-        folder.string()
-    );
-    const auto cells = merge_runs(into, folder, !options.dry_run);
-    merged.insert(merged.end(), cells.begin(), cells.end());
-  }
-  return merged;
+  const fs::path folder = folder_with_records(from, profile);
+  std::error_code code;
+  GLINT_CHECK(
+      !fs::equivalent(folder, result.into, code),
+      kUsage,
+      "merge: {} is the folder that it would be merged into; --out names another",
+      folder.string()
+  );
+  const auto cells = merge_runs(result.into, folder, write);
+  result.cells.insert(result.cells.end(), cells.begin(), cells.end());
 }
 
-std::string merged_text(const std::vector<MergedCell>& merged, const fs::path& into) {
-  std::vector<std::vector<std::string>> rows;
+void merge_parcels(const std::string& from, bool write, MergeResult& result) {
+  auto lost = for_each_parcel(from, [&](const Parcel& parcel, const std::string& place) {
+    result.cells.push_back(take_parcel(result.into, parcel, place, write));
+    if (!write && result.cells.back().verdict == MergeVerdict::kTaken && wants_meshes(parcel))
+      result.completed.push_back({parcel.record.cell, true, ""});
+  });
+  for (LostParcel& parcel : lost) {
+    log::warn(fmt::format("{}: {}", parcel.file, parcel.why));
+    result.lost.push_back(std::move(parcel));
+  }
+}
+
+MergeResult merge_all(const CommonOptions& common, const MergeOptions& options) {
+  const Profile profile = load_profile(common.profile);
+  const bool write = !options.dry_run;
+  MergeResult result{own_profile_folder(common.out, profile.name)};
+  result.cells = adopt_runs(result.into, write);
+  std::erase_if(result.cells, [](const MergedCell& cell) {
+    return cell.verdict == MergeVerdict::kReplicate;  // its own
+  });
+  for (const std::string& from : options.from)
+    if (holds_parcels(from))
+      merge_parcels(from, write, result);
+    else
+      merge_folder(from, common.profile, write, result);
+  for (CompletedCell& cell : complete_meshes({profile, result.into, common.scene_loader(), write}))
+    result.completed.push_back(std::move(cell));
+  return result;
+}
+
+std::string counts_text(const MergeResult& result) {
   std::map<std::string_view, int> counts;
-  for (const MergedCell& cell : merged) {
-    ++counts[merge_verdict_name(cell.verdict)];
+  for (const MergedCell& cell : result.cells) ++counts[merge_verdict_name(cell.verdict)];
+  std::string text;
+  for (const auto& [verdict, count] : counts) text += fmt::format("{} {}, ", count, verdict);
+  text += (result.cells.empty() ? "nothing to merge into " : "into ") + result.into.string() + "\n";
+  if (!result.lost.empty())
+    text += fmt::format("{} parcels or archives could not be used\n", result.lost.size());
+  return text;
+}
+
+std::string merged_text(const MergeResult& result, bool dry_run) {
+  std::vector<std::vector<std::string>> rows;
+  for (const MergedCell& cell : result.cells)
     rows.push_back(
         {cell.cell.text(), std::string(merge_verdict_name(cell.verdict)), cell.from, cell.why}
     );
-  }
-  std::string text = listing(rows);
-  for (const auto& [verdict, count] : counts) text += fmt::format("{} {}, ", count, verdict);
-  return text + (merged.empty() ? "nothing to merge into " : "into ") + into.string() + "\n";
+  for (const LostParcel& parcel : result.lost)
+    rows.push_back({"-", "lost", parcel.file, parcel.why});
+  for (const CompletedCell& cell : result.completed)
+    rows.push_back(
+        {cell.cell.text(),
+         !cell.made ? "no meshes" : (dry_run ? "would be meshed" : "meshed"),
+         "",
+         cell.why_not}
+    );
+  return listing(rows) + counts_text(result);
 }
 
-Json merged_json(const std::vector<MergedCell>& merged, const fs::path& into) {
-  Json json = {{"folder", into.string()}, {"cells", Json::array()}};
-  for (const MergedCell& cell : merged)
-    json["cells"].push_back(
-        {{"scene", cell.cell.scene},
-         {"method", cell.cell.method},
-         {"seed", cell.cell.seed},
-         {"verdict", merge_verdict_name(cell.verdict)},
-         {"from", cell.from},
-         {"why", cell.why}}
+Json merged_json(const MergeResult& result) {
+  Json json = {
+      {"folder", result.into.string()},
+      {"cells", Json::array()},
+      {"lost", Json::array()},
+      {"meshes", Json::array()}};
+  const auto cell_json = [](const CellKey& cell) {
+    return Json{{"scene", cell.scene}, {"method", cell.method}, {"seed", cell.seed}};
+  };
+  for (const MergedCell& cell : result.cells) {
+    Json entry = cell_json(cell.cell);
+    entry.update(
+        {{"verdict", merge_verdict_name(cell.verdict)}, {"from", cell.from}, {"why", cell.why}}
     );
+    json["cells"].push_back(entry);
+  }
+  for (const LostParcel& parcel : result.lost)
+    json["lost"].push_back({{"file", parcel.file}, {"why", parcel.why}});
+  for (const CompletedCell& cell : result.completed) {
+    Json entry = cell_json(cell.cell);
+    entry.update({{"made", cell.made}, {"why_not", cell.why_not}});
+    json["meshes"].push_back(entry);
+  }
   return json;
 }
 
+int exit_code_of(const MergeResult& result) {
+  const bool conflict =
+      std::any_of(result.cells.begin(), result.cells.end(), [](const MergedCell& cell) {
+        return cell.verdict == MergeVerdict::kConflict;
+      });
+  if (conflict) return static_cast<int>(ExitCode::kCheckFailed);
+  return static_cast<int>(result.lost.empty() ? ExitCode::kSuccess : ExitCode::kPartial);
+}
+
 int run_merge(const CommonOptions& common, const MergeOptions& options) {
-  const fs::path into = own_profile_folder(common.out, load_profile(common.profile).name);
-  const auto merged = merge_all(into, common.profile, options);
+  install_interrupt_handler();
+  const MergeResult result = merge_all(common, options);
   if (common.json)
-    print_json(merged_json(merged, into));
+    print_json(merged_json(result));
   else
-    print_text(merged_text(merged, into));
-  const bool conflict = std::any_of(merged.begin(), merged.end(), [](const MergedCell& cell) {
-    return cell.verdict == MergeVerdict::kConflict;
-  });
-  return static_cast<int>(conflict ? ExitCode::kCheckFailed : ExitCode::kSuccess);
+    print_text(merged_text(result, options.dry_run));
+  return exit_code_of(result);
 }
 
 void add_merge_verb(CommandLine& line) {
@@ -86,10 +152,14 @@ void add_merge_verb(CommandLine& line) {
       "merge",
       "results of other machines into OUT/PROFILE; exits with 4 where scores differ",
       [&line, options] { return run_merge(line.common, *options); },
-      kOutOption | kProfileOption | kJsonOption | kQuietOption
+      kOutOption | kDataOption | kProfileOption | kDeviceOption | kThreadsOption | kJsonOption |
+          kQuietOption
   );
   verb->add_option(
-      "from", options->from, "folders of other machines; none: run folders copied into OUT/PROFILE"
+      "from",
+      options->from,
+      "folders of other machines; parcels (run --parcels), folders or tar archives of them; none: "
+      "run folders copied into OUT/PROFILE"
   );
   verb->add_flag("--dry-run", options->dry_run, "say what would be done, and do nothing");
 }

@@ -10,6 +10,7 @@
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
 #include "reports/bench/video.h"
+#include "reports/records/parcel_run.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {
@@ -162,6 +163,7 @@ int run_render(const CommonOptions& common, const RenderArguments& arguments) {
       kUsage,
       "give --run FOLDER, or --model PLY --dataset FOLDER"
   );
+  if (arguments.model.empty()) refuse_parcel_run(arguments.run, "render");
   const SingleRun single = arguments.model.empty()
                                ? open_single_run(arguments.run, arguments.dataset)
                                : new_model_run(common, arguments);

@@ -12,6 +12,7 @@
 #include "metrics/tools/numeric_options.h"
 #include "reports/bench/child_process.h"
 #include "reports/executors/task_file.h"
+#include "reports/parcels/make_parcel.h"
 #include "reports/records/build_info.h"
 #include "reports/records/environment.h"
 #include "reports/records/manifest.h"
@@ -59,6 +60,7 @@ Words words_of_cell(
         Words{"--cell", cell.text(), "--methods", cell.method},
         Words{"--seed", std::to_string(cell.seed), "--threads", std::to_string(share.threads)}})
     words.insert(words.end(), more.begin(), more.end());
+  if (!how.parcels.empty()) words.insert(words.end(), {"--parcels", how.parcels});
   if (force) words.emplace_back("--force");
   if (!common.quiet && how.jobs > 1) words.emplace_back("--quiet");
   return words;
@@ -71,6 +73,7 @@ Words words_of_choice(const CommonOptions& common, const CellRunOptions& how) {
   if (common.seed) words.insert(words.end(), {"--seed", std::to_string(*common.seed)});
   if (common.threads > 0) words.insert(words.end(), {"--threads", std::to_string(common.threads)});
   if (!how.time_limit.empty()) words.insert(words.end(), {"--time-limit", how.time_limit});
+  if (!how.parcels.empty()) words.insert(words.end(), {"--parcels", how.parcels});
   if (how.force) words.emplace_back("--force");
   return words;
 }
@@ -141,6 +144,7 @@ RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& 
   options.checkpoint_seconds = common.checkpoint_seconds;
   options.identify = common.scene_identifier();
   options.load = common.scene_loader();
+  if (!how.parcels.empty()) options.ended = parcel_writer(how.parcels);
   options.filter.cells = how.cells;
   if (!how.cells_file.empty())
     for (const std::string& cell : cells_of_tasks(how.cells_file))
@@ -172,6 +176,9 @@ void add_cell_run_options(CLI::App& verb, CellRunOptions& options) {
   verb.add_option("--for", options.time_for_all, time_for_all);
   const char* failures = "no cell begins after so many have failed; 0: any number";
   verb.add_option("--max-failures", options.max_failures, failures)->check(at_least_zero());
+  const char* parcels =
+      "folder for a small file of each cell that ended, which `merge` takes over at home";
+  verb.add_option("--parcels", options.parcels, parcels);
   verb.add_option("--sbatch", options.sbatch, "option for sbatch, as --sbatch=--partition=gpu");
 }
 
@@ -219,6 +226,8 @@ RunSummary run_cells(
   if (!by_others) choose_device(common.device);
   RunSummary summary = find_executor(how.executor).run(runnable, executor);
   summary.without_data = without_data;
+  if (!how.parcels.empty() && !summary.interrupted && summary.submitted == 0)
+    write_missing_parcels(runnable, how.parcels, !how.time_for_all.empty());
   return summary;
 }
 

@@ -19,6 +19,7 @@ struct CellRunOptions {
   std::string order;               // "longest", "given"; empty: as ExecutorOptions has it
   std::vector<std::string> cells;  // "scene/method/seed"
   std::string cells_file;          // more of them, one a line; empty: none
+  std::string parcels;             // folder for parcels of cells that ended; empty: none
   int max_failures = 0;
   std::vector<std::string> sbatch;
 };
