@@ -115,13 +115,13 @@ say ""
 say "## Beside that"
 mapfile -t runs < <(find "$work/out/$name/runs" -name record.json -printf '%h\n' 2>/dev/null | sort)
 seen=()
-frames=50
-[ "$device" = cuda ] || frames=2  # a rehearsal
+how=()
+[ "$device" = cuda ] || how=(--frames 1 --sizes 64x36)  # a rehearsal
 for run in "${runs[@]}"; do
   method=$(dirname "${run#"$work/out/$name/runs/"*/}")
   [[ " ${seen[*]} " != *" $method "* ]] || continue
   seen+=("$method")
-  spare "frames a second of $method" 10 glint-bench perf --quiet --run "$run" --frames $frames --device "$device" && { cat "$work/last"; echo; } >>"$summary"
+  spare "frames a second of $method" 10 glint-bench perf --quiet --run "$run" "${how[@]}" --device "$device" && { cat "$work/last"; echo; } >>"$summary"
 done
 if [ -f scenes/speed.safetensors ]; then
   spare "60,000 steps of glint on speed.safetensors" 120 glint-bench train --quiet --dataset scenes/speed.safetensors --method glint \

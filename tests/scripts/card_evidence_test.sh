@@ -87,7 +87,7 @@ new_bundle
 rm -rf "$OUT"
 SLOW=60 setsid "$bundle/card_evidence.sh" --device cpu 2>/dev/null &
 killed=$!
-for _ in $(seq 50); do [ -f "$OUT/parcels_1.tar" ] && break; sleep 0.2; done
+for _ in $(seq 100); do came_home 1 room_1+2dgs+0.parcel && break; sleep 0.2; done
 kill -KILL -- "-$killed"
 wait "$killed" 2>/dev/null
 expect "after a kill: what was done" came_home 1 room_1+2dgs+0.parcel

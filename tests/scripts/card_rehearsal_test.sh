@@ -38,7 +38,7 @@ cp "$scripts/card_evidence.sh" bundle/
 : >bundle/environment.sh
 echo "Commit of a rehearsal" >bundle/BUNDLE.md
 
-OUT=$folder/card_out bundle/card_evidence.sh --device cpu --jobs 2 --seconds 110 2>/dev/null || fail "card_evidence.sh: exit code $?"
+OUT=$folder/card_out bundle/card_evidence.sh --device cpu --jobs 2 --seconds 150 2>/dev/null || fail "card_evidence.sh: exit code $?"
 grep -q 'GLINT' card_out/summary.md || fail "no table in summary.md"
 grep -q 'frames a second of glint: ok' card_out/summary.md || fail "no frames a second"
 
