@@ -32,11 +32,26 @@ void add_files(const fs::path& run, Parcel& parcel) {
     log->second = thinned_log(log->second, kLogLines);
 }
 
+// Of the renders' files those that come along: hashes are what packs least.
+void shorten_render_key(Parcel& parcel) {
+  const auto found = parcel.files.find("keys/render.json");
+  Json json = found == parcel.files.end() ? Json() : parse_json(found->second);
+  if (!json.is_object()) return;
+  for (const char* list : {"files", "sha256"}) {
+    const Json all = json.value(list, Json::object());
+    json[list] = Json::object();
+    for (const auto& [name, value] : all.items())
+      if (parcel.files.contains(name)) json[list][name] = value;
+  }
+  found->second = json.dump(1) + "\n";
+}
+
 void add_results(const EndedCell& cell, Parcel& parcel) {
   RunSpec spec = read_run_spec(cell.run);
   const Scene& scene = cell.scene().scene;
   parcel.model = compact_model(spec, scene);
   parcel.files.merge(parcel_pictures(spec, scene));
+  shorten_render_key(parcel);
 }
 
 Parcel parcel_of(const EndedCell& cell) {

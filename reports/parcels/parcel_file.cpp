@@ -9,6 +9,7 @@
 #include "glint/scene/safetensors.h"
 #include "glint/scene/scene.h"
 #include "reports/parcels/byte_pack.h"
+#include "reports/parcels/picture_code.h"
 
 namespace glint {
 namespace {
@@ -17,6 +18,9 @@ constexpr const char* kFormat = "glint-parcel";
 constexpr int kVersion = 1;
 constexpr std::size_t kMostFiles = 4096, kMostBytes = std::size_t{1} << 28, kMostName = 400;
 constexpr std::size_t kHashDigits = 20;
+constexpr const char* kPackedNot = "not";
+constexpr const char* kPackedZlib = "zlib";
+constexpr const char* kPackedPixels = "pixels";  // of a PNG file
 
 // ---------------------------------------------------------------- writing
 
@@ -48,13 +52,23 @@ class ParcelWriter {
   }
 
  private:
-  // Packed where that makes it smaller.
   void add_file(const std::string& name, const std::string& bytes) {
+    if (name.ends_with(".png"))
+      if (const auto picture = code_picture(bytes)) return add_picture(name, *picture);
     const std::string packed = pack_bytes(bytes);
     const bool smaller = packed.size() < bytes.size();
     add("file " + name, smaller ? packed : bytes);
     about_["files"][name] = {
-        {"bytes", bytes.size()}, {"packed", smaller}, {"sha256", parcel_hash(bytes)}};
+        {"bytes", bytes.size()},
+        {"packed", smaller ? kPackedZlib : kPackedNot},
+        {"sha256", parcel_hash(bytes)}};
+  }
+  void add_picture(const std::string& name, const PictureCode& picture) {
+    add("file " + name, picture.coded);
+    about_["files"][name] = {
+        {"packed", kPackedPixels},
+        {"size", {picture.width, picture.height, picture.channels}},
+        {"sha256", parcel_hash(picture.pixels)}};
   }
   void add_model_file(const CompactFile& file) {
     add_file(file.name, file.bytes);
@@ -196,24 +210,47 @@ class ParcelReader {
   std::string file(const std::string& name) {
     const Json& files = entries("files");
     if (!files.contains(name)) fail(fmt::format("no {}", name));
-    const Json& entry = files[name];
-    std::size_t size = 0;
-    bool packed = false;
-    std::string hash;
     try {
+      const Json& entry = files[name];
+      const std::string packed = entry.at("packed").get<std::string>(),
+                        hash = entry.at("sha256").get<std::string>();
+      if (packed == kPackedPixels) return picture(name, entry.at("size"), hash);
+      if (packed != kPackedZlib && packed != kPackedNot)
+        fail(fmt::format("{} is packed as '{}'", name, packed));
+      std::size_t size = 0;
       read_field(entry.at("bytes"), size);
-      read_field(entry.at("packed"), packed);
-      read_field(entry.at("sha256"), hash);
+      return content(name, size, packed == kPackedZlib, hash);
     } catch (const nlohmann::json::exception& error) {
       fail(fmt::format("{}: {}", name, json_error(error)));
     }
+  }
+
+  std::string content(
+      const std::string& name, std::size_t size, bool packed, const std::string& hash
+  ) {
     if (size > kMostBytes - bytes_) fail(fmt::format("{} is said to have {} bytes", name, size));
     bytes_ += size;
     std::string content = bytes("file " + name);
     if (packed) content = unpack_bytes(content, size, path_.string() + ": " + name);
-    if (content.size() != size || parcel_hash(content) != hash)
-      fail(fmt::format("{} has other bytes than it was sent with", name));
+    check_hash(name, content, hash);
+    if (content.size() != size) fail(fmt::format("{} has {} bytes", name, content.size()));
     return content;
+  }
+
+  std::string picture(const std::string& name, const Json& size, const std::string& hash) {
+    PictureCode picture{.coded = bytes("file " + name)};
+    read_field(size.at(0), picture.width);
+    read_field(size.at(1), picture.height);
+    read_field(size.at(2), picture.channels);
+    std::string png = picture_of_code(picture, path_.string() + ": " + name);
+    check_hash(name, picture.pixels, hash);
+    return png;
+  }
+
+  void check_hash(const std::string& name, const std::string& bytes, const std::string& hash)
+      const {
+    if (parcel_hash(bytes) != hash)
+      fail(fmt::format("{} has other bytes than it was sent with", name));
   }
 
   CompactFile surfels(const std::string& name, const Json& entry) {

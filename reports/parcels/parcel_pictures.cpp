@@ -4,6 +4,7 @@
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "reports/parcels/depth_check.h"
+#include "reports/parcels/picture_code.h"
 #include "reports/pictures/layers.h"
 
 namespace glint {
@@ -12,11 +13,11 @@ namespace {
 // In the order in which they are taken; those that a method does not render are passed over.
 constexpr const char* kSmallMaps[] = {
     "depth",
-    "behind_depth",
-    "transparency",
-    "normal",
     "transmission",
     "reflection",
+    "transparency",
+    "behind_depth",
+    "normal",
     "interface",
     "specularity"};
 
@@ -77,12 +78,15 @@ class PictureTaker {
     const PageLayer layer = layer_of(*find_map(map));
     Image picture = halved(layer_picture(layer, values, scale_));
     const fs::path name = fs::path("pictures") / folder.filename() / (map + ".png");
+    if (view.name != scene_.test[views_.front()].name) picture = halved(picture);
     if (!add(name, png_of(picture))) add(name, png_of(halved(picture)));
   }
 
   bool add(const fs::path& name, const std::string& bytes) {
-    if (bytes_ + bytes.size() > kPictureBytes) return false;
-    bytes_ += bytes.size();
+    const auto code = code_picture(bytes);
+    const std::size_t size = code ? code->coded.size() : bytes.size();  // as it is sent
+    if (bytes_ + size > kPictureBytes) return false;
+    bytes_ += size;
     taken_[name.generic_string()] = bytes;
     return true;
   }

@@ -11,7 +11,7 @@
 namespace glint {
 
 inline constexpr std::size_t kPictureViews = 3;
-inline constexpr std::size_t kPictureBytes = std::size_t{192} << 10;  // of all, about
+inline constexpr std::size_t kPictureBytes = std::size_t{160} << 10;  // of all
 
 // Name in the run's folder -> PNG file: "renders/VIEW/rgb.png" as it is, "pictures/VIEW/depth.png"
 // and other maps smaller. What does not fit is left out, the least telling first.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reports/parcels/take_parcel.h"
 
+#include <set>
+
 #include "glint/core/left_behind.h"
 #include "metrics/metric.h"
 #include "reports/bench/run_stage.h"
@@ -55,14 +57,16 @@ Json parcel_json(const Parcel& parcel, const std::string& from) {
 }
 
 // The stages that ended there, with what came along of their files.
-void rewrite_keys(const fs::path& run) {
+void rewrite_keys(const Parcel& parcel, const fs::path& run) {
+  std::set<std::string> brought;
+  for (const auto& [name, bytes] : parcel.files) brought.insert(name);
+  for (const CompactFile& file : parcel.model.files) brought.insert(file.name);
   for (const Stage stage : kStages) {
     const auto done = read_stage(run, stage);
     if (!done) continue;
     std::vector<std::string> here;
-    std::error_code code;
     for (const auto& [name, bytes] : done->files)
-      if (fs::is_regular_file(run / name, code)) here.push_back(name);
+      if (brought.contains(name)) here.push_back(name);
     write_stage(run, stage, done->document, here, done->note);
   }
 }
@@ -70,7 +74,7 @@ void rewrite_keys(const fs::path& run) {
 void write_run(const Parcel& parcel, const std::string& from, const fs::path& run) {
   for (const auto& [name, bytes] : parcel.files) write_file(run / name, bytes);
   for (const CompactFile& file : parcel.model.files) write_compact_file(file, run);
-  rewrite_keys(run);
+  rewrite_keys(parcel, run);
   write_file(run / kParcelFile, parcel_json(parcel, from).dump(2) + "\n");
 }
 

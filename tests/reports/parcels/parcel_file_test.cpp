@@ -5,10 +5,12 @@
 #include <cstdlib>
 
 #include "glint/core/rng.h"
+#include "glint/scene/image_files.h"
 #include "glint/scene/safetensors.h"
 #include "reports/parcels/find_parcels.h"
 #include "reports/parcels/make_parcel.h"
 #include "reports/parcels/model_files.h"
+#include "reports/parcels/picture_code.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -199,6 +201,42 @@ TEST_CASE("counts, sizes and hashes that do not fit are refused, field by field"
       about([](Json& json) { json["depth"]["mean_m"] = -1; }), Catch::Contains("error of its depth")
   );
   CHECK_THAT(about([](Json& json) { json["files"] = 7; }), Catch::Contains("no list of files"));
+}
+
+TEST_CASE("pictures come back pixel by pixel, in fewer bytes than PNG has") {
+  const test::TempFolder folder;
+  Rng rng(7, 8);
+  Image picture(160, 90, 3);
+  for (int y = 0; y < 90; ++y)
+    for (int x = 0; x < 160; ++x)
+      for (int c = 0; c < 3; ++c)
+        picture.at(x, y, c) = 0.003f * static_cast<float>(x + y + c) + 0.02f * rng.uniform();
+  write_png(folder / "a.png", picture);
+  Parcel parcel = some_parcel();
+  parcel.files["renders/0001/rgb.png"] = read_file(folder / "a.png");
+  write_parcel(folder / "x.parcel", parcel);
+  write_file(folder / "b.png", read_parcel(folder / "x.parcel").files.at("renders/0001/rgb.png"));
+  const Image before = read_image(folder / "a.png"), after = read_image(folder / "b.png");
+  REQUIRE(after.size() == before.size());
+  CHECK(std::equal(before.values().begin(), before.values().end(), after.values().begin()));
+  const auto code = code_picture(read_file(folder / "a.png"));
+  REQUIRE(code);
+  CHECK(code->coded.size() < fs::file_size(folder / "a.png"));
+  CHECK(!code_picture("no picture"));
+
+  const auto refused = [&](const Json& size) {
+    write_parcel(folder / "x.parcel", parcel);
+    Edited edited(folder / "x.parcel");
+    edited.edit_about([&](Json& about) { about["files"]["renders/0001/rgb.png"]["size"] = size; });
+    edited.write();
+    return refusal(folder / "x.parcel");
+  };
+  CHECK_THAT(refused({160, 91, 3}), Catch::Contains("no picture of 160x91"));
+  CHECK_THAT(refused({160, 89, 3}), Catch::Contains("no picture of 160x89"));
+  CHECK_THAT(refused({90, 160, 3}), Catch::Contains("rgb.png"));
+  CHECK_THAT(refused({1 << 20, 1 << 20, 3}), Catch::Contains("with 3 channels"));
+  CHECK_THAT(refused({160, 90, 2}), Catch::Contains("with 2 channels"));
+  CHECK_THAT(refused({160, 90}), Catch::Contains("rgb.png"));
 }
 
 TEST_CASE("other files and newer versions are told apart") {
