@@ -81,6 +81,7 @@ struct MethodSpec {
   Json overrides = Json::object();  // config fields that make this variant
   // From a config with all overrides. Call create_method(), which adds the variant's own.
   std::function<std::unique_ptr<Method>(const Json& config)> create;
+  bool rival = true;        // false: is given the truth of test views, and has no rank
   std::string source = {};  // the file that registers it (GLINT_REGISTER fills it in)
 };
 
