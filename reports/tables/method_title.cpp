@@ -15,4 +15,9 @@ std::string method_title(const std::string& id) {
   return base->second.title + ", " + title;
 }
 
+bool is_rival(const std::string& id) {
+  const auto method = Registry<MethodSpec>::all().find(id);
+  return method == Registry<MethodSpec>::all().end() || method->second.rival;
+}
+
 }  // namespace glint

@@ -10,4 +10,7 @@ namespace glint {
 // imported renders, which no registry knows, their id.
 std::string method_title(const std::string& id);
 
+// False: it is given the truth of test views. Renders from elsewhere are rivals.
+bool is_rival(const std::string& id);
+
 }  // namespace glint

@@ -35,11 +35,13 @@ Interval middle_95(std::vector<double> values) {
   return {values[tail], values[values.size() - 1 - tail]};
 }
 
-std::optional<Interval> bootstrap_interval(std::span<const std::vector<double>> values) {
+std::optional<Interval> bootstrap_interval(
+    std::span<const std::vector<double>> values, std::size_t resamples
+) {
   const std::vector<std::size_t> counts = bootstrap_counts<double>(values);
   if (counts.empty()) return std::nullopt;
   Rng rng(kSeed);
-  std::vector<double> means(kBootstrapResamples);
+  std::vector<double> means(resamples);
   for (double& mean : means)
     draw_resample(counts, rng, [&](std::size_t scene, std::size_t seed, double weight) {
       mean += weight * values[scene][seed];

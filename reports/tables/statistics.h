@@ -24,6 +24,9 @@ struct Interval {
 };
 
 inline constexpr std::size_t kMinBootstrapPairs = 3, kBootstrapResamples = 10'000;
+// Of means, which are many: the ends of an interval are off by a sixtieth of its width. Where there
+// are many pairs, fewer resamples, so that all together draw no more than kMeanDraws of them.
+inline constexpr std::size_t kMeanResamples = 2000, kMeanDraws = 500'000;
 
 // One resample of results that belong to scenes: as many scenes as there are, drawn with
 // replacement, and of each drawn one as many of its seeds. Seeds of one scene are more alike than
@@ -60,6 +63,8 @@ Interval middle_95(std::vector<double> values);
 // on the same scenes and seeds it is the paired interval. The seed is fixed, so the same values
 // have the same interval. values: of each scene those of its seeds. Nothing: fewer than
 // kMinBootstrapPairs values, which say nothing. Few scenes make it too narrow (docs/REPORT.md).
-std::optional<Interval> bootstrap_interval(std::span<const std::vector<double>> values);
+std::optional<Interval> bootstrap_interval(
+    std::span<const std::vector<double>> values, std::size_t resamples = kBootstrapResamples
+);
 
 }  // namespace glint

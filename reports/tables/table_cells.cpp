@@ -80,6 +80,17 @@ MeasuredRecords records_with(
   return found.records.empty() ? all : found;
 }
 
+std::optional<Interval> interval_of(
+    const std::map<std::pair<std::string, std::uint64_t>, double>& values
+) {
+  std::map<std::string, std::vector<double>> by_scene;
+  for (const auto& [key, value] : values) by_scene[key.first].push_back(value);
+  std::vector<std::vector<double>> scenes;
+  for (auto& [scene, of_seeds] : by_scene) scenes.push_back(std::move(of_seeds));
+  const std::size_t pairs = std::max(values.size(), kMinBootstrapPairs);
+  return bootstrap_interval(scenes, std::min(kMeanResamples, kMeanDraws / pairs + 1));
+}
+
 // Means over scenes of each seed, then over seeds: of those that have the most scenes, since a seed
 // of a single hard one would weigh as much as a seed of all.
 void fill_means(
@@ -102,6 +113,7 @@ void fill_means(
     }
     seed_means.push_back(mean_of(values));
   }
+  cell.interval = interval_of(cell.values);
   cell.value = mean_of(seed_means);
   cell.spread = spread_of(seed_means);
   cell.num_scenes = static_cast<int>(most);

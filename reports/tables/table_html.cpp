@@ -17,7 +17,8 @@ constexpr std::string_view kStyle =
     "thead tr:last-child th{border-bottom:1px solid}\n"
     "tbody th{font-weight:normal}\n"
     "thead tr:first-child th{text-align:center}\n"
-    ".published{color:#444}\n.none{color:#666;font-style:italic}\n";
+    ".others>*{border-top:1px "
+    "solid}\n.published{color:#444}\n.none{color:#666;font-style:italic}\n";
 
 std::string rank_styles() {
   std::string styles;
@@ -52,11 +53,13 @@ std::string cell_html(const TableCell& cell, const TableColumn& column) {
   std::string classes = column.published ? "published" : "";
   if (cell.rank > 0) classes = fmt::format("rank{}", cell.rank);
   if (!cell.has_value()) classes = "none";
+  const std::string interval = interval_text(cell, column);
   return fmt::format(
-      "<td class=\"{}\" title=\"{}\">{}</td>",
+      "<td class=\"{}\" title=\"{}\">{}{}</td>",
       classes,
       html_text(cell.note),
-      html_text(shown_text(cell, column))
+      html_text(shown_text(cell, column)),
+      interval.empty() ? "" : fmt::format("<br><small>{}</small>", html_text(interval))
   );
 }
 
@@ -67,7 +70,8 @@ std::string table_element(const Table& table) {
     html += fmt::format("<th scope=\"col\">{}</th>", html_text(shown_title(column)));
   html += "</tr>\n</thead>\n<tbody>\n";
   for (const TableRow& row : table.rows) {
-    html += fmt::format("<tr><th scope=\"row\">{}</th>", html_text(row.title));
+    html += begins_others(table, row) ? "<tr class=\"others\">" : "<tr>";
+    html += fmt::format("<th scope=\"row\">{}</th>", html_text(row.title));
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       html += cell_html(row.cells[i], table.columns[i]);
     html += "</tr>\n";

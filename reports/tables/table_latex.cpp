@@ -10,7 +10,7 @@ namespace glint {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 21> kLatexForms{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kLatexForms{{
     {"\\", "\\textbackslash{}"},
     {"&", "\\&"},
     {"%", "\\%"},
@@ -26,6 +26,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 21> kLatexFo
     {"°", "$^\\circ$"},
     {"±", "$\\pm$"},
     {"†", "$^\\dagger$"},
+    {"‡", "$^\\ddagger$"},
     {"↑", "$\\uparrow$"},
     {"↓", "$\\downarrow$"},
     {"≈", "$^\\approx$"},
@@ -70,7 +71,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::string latex_cell(const TableCell& cell, const TableColumn& column) {
+std::string latex_value(const TableCell& cell, const TableColumn& column) {
   const std::string text =
       cell.status == CellStatus::kNotApplicable ? "--" : latex_text(shown_text(cell, column));
   if (cell.rank < 1) return text;
@@ -79,6 +80,12 @@ std::string latex_cell(const TableCell& cell, const TableColumn& column) {
   const std::string marked = cell.rank < 3 ? fmt::format("{}{{{}}}", form, text) : text;
   const auto& shade = kRankShades[cell.rank - 1];
   return fmt::format("\\cellcolor[RGB]{{{},{},{}}}{}", shade[0], shade[1], shade[2], marked);
+}
+
+std::string latex_cell(const TableCell& cell, const TableColumn& column) {
+  const std::string interval = interval_text(cell, column);
+  return latex_value(cell, column) +
+         (interval.empty() ? "" : fmt::format(" {{\\scriptsize {}}}", latex_text(interval)));
 }
 
 struct ColumnGroup {
@@ -122,6 +129,7 @@ std::string table_latex(const Table& table) {
   text += fmt::format("\\begin{{tabular}}{{l{}}}\n", std::string(table.columns.size(), 'c'));
   text += "\\toprule\n" + latex_header(table) + "\\midrule\n";
   for (const TableRow& row : table.rows) {
+    if (begins_others(table, row)) text += "\\midrule\n";
     text += latex_text(row.title);
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       text += " & " + latex_cell(row.cells[i], table.columns[i]);

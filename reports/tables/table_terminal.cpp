@@ -61,9 +61,22 @@ struct TextRows {
 
 std::vector<std::string> row_texts(const Table& table, const TableRow& row) {
   std::vector<std::string> texts{row.title};
-  for (std::size_t i = 0; i < row.cells.size(); ++i)
-    texts.push_back(shown_text(row.cells[i], table.columns[i]));
+  for (std::size_t i = 0; i < row.cells.size(); ++i) {
+    const std::string interval = interval_text(row.cells[i], table.columns[i]);
+    texts.push_back(
+        shown_text(row.cells[i], table.columns[i]) + (interval.empty() ? "" : " ") + interval
+    );
+  }
   return texts;
+}
+
+Table without_intervals(Table table) {
+  for (TableRow& row : table.rows)
+    for (TableCell& cell : row.cells) cell.interval.reset();
+  std::erase_if(table.notes, [](const std::string& note) {
+    return note.starts_with(kIntervalNote);
+  });
+  return table;
 }
 
 // Names from files are in all texts. Escapes are put in later, for colours.
@@ -216,8 +229,13 @@ Layout layout_of(const Table& table, TerminalStyle style) {
     layout.rows = folded(texts_of(layout.table));
     return fits(layout.rows, style.width);
   };
-  if (refill(table)) return layout;
-  const Table filled = without_empty_columns(table);
+  const Table plain = without_intervals(table);
+  if (plain.notes.size() < table.notes.size())
+    layout.notes.emplace_back("Intervals are left out: the terminal is too narrow.");
+  layout.table = plain;
+  layout.rows = texts_of(plain);
+  if (fits(layout.rows, style.width) || refill(plain)) return layout;
+  const Table filled = without_empty_columns(plain);
   if (filled.columns.size() < table.columns.size())
     layout.notes.emplace_back("Columns without a value are left out.");
   if (refill(filled)) return layout;
@@ -276,7 +294,7 @@ std::vector<std::string> brief_notes(const Table& table) {
     return !note.starts_with("Mean over") && !note.starts_with("GlassRoom: ") &&
            !note.starts_with("Not in these") && !note.starts_with("Trained for") &&
            !note.starts_with("Not run") && !note.starts_with("Failed: ") &&
-           !note.starts_with("* ") && !note.starts_with("≈");
+           !note.starts_with("* ") && !note.starts_with("≈") && !note.starts_with("‡");
   });
   return notes;
 }
@@ -306,7 +324,8 @@ std::string aligned_rows(
 
 std::string table_terminal(const Table& any_table, TerminalStyle style) {
   const Table table = printable_table(any_table);
-  const Layout layout = layout_of(style.brief ? brief_table(table) : table, style);
+  const Layout layout =
+      layout_of(style.brief ? without_intervals(brief_table(table)) : table, style);
   const std::string& group = layout.rows.only_group;
   std::string text = table.title + (group.empty() ? "" : ", " + group) + "\n";
   const auto blocks = blocks_of(layout.table, widths_of(layout.rows.lines), style.width);

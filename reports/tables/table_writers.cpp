@@ -67,6 +67,7 @@ Json cell_json(const TableCell& cell, const TableColumn& column) {
     json["spread"] = cell.spread;
     json["spread_kind"] = cell.num_seeds > 2 ? "std" : (cell.num_seeds == 2 ? "range" : "none");
   }
+  if (cell.interval) json["interval"] = {cell.interval->low, cell.interval->high};
   if (cell.rank > 0) json["rank"] = cell.rank;
   if (cell.tied) json["tied_with_first"] = true;
   if (!cell.note.empty()) json["note"] = cell.note;
@@ -103,7 +104,10 @@ std::string markdown_rows(const Table& table) {
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       const char* mark = row.cells[i].rank == 1 ? "**" : (row.cells[i].rank == 2 ? "_" : "");
       const std::string shown = markdown_text(shown_text(row.cells[i], table.columns[i]));
-      cells.push_back(fmt::format("{0}{1}{0}", mark, shown));
+      const std::string interval = interval_text(row.cells[i], table.columns[i]);
+      cells.push_back(fmt::format(
+          "{0}{1}{0}{2}", mark, shown, interval.empty() ? "" : "<br>" + markdown_text(interval)
+      ));
     }
     text += fmt::format("| {} |\n", join(cells, " | "));
   }
@@ -144,11 +148,24 @@ std::string shown_text(const TableCell& cell, const TableColumn& column) {
   return cell.status == CellStatus::kPartial ? text + "*" : text;
 }
 
+std::string interval_text(const TableCell& cell, const TableColumn& column) {
+  if (!cell.interval) return "";
+  return fmt::format(
+      "[{}, {}]",
+      format_value(cell.interval->low, column.decimals),
+      format_value(cell.interval->high, column.decimals)
+  );
+}
+
 std::string shown_title(const TableColumn& column) {
   std::string title = column.title;
   if (!column.unit.empty()) title += fmt::format(" ({})", column.unit);
   if (column.order != RankOrder::kNone) title += fmt::format(" {}", order_arrow(column.order));
   return title;
+}
+
+bool begins_others(const Table& table, const TableRow& row) {
+  return !row.rival && &row != table.rows.data() && (&row - 1)->rival;
 }
 
 std::vector<std::string> table_notes(const Table& table) {
@@ -171,11 +188,12 @@ std::string table_markdown(const Table& table) {
   return text;
 }
 
-// Ids of the columns whose value cannot be compared with the others'.
+// Ids of the columns whose value is not ranked: it cannot be compared with the others'.
 std::vector<std::string> partial_columns(const TableRow& row, const Table& table) {
   std::vector<std::string> ids;
   for (std::size_t i = 0; i < row.cells.size(); ++i)
-    if (row.cells[i].status == CellStatus::kPartial) ids.push_back(table.columns[i].id);
+    if (row.cells[i].has_value() && (!row.rival || row.cells[i].status == CellStatus::kPartial))
+      ids.push_back(table.columns[i].id);
   return ids;
 }
 
@@ -222,6 +240,7 @@ Json table_json(const Table& table) {
     json["rows"].push_back(
         {{"method", row.method}, {"title", row.title}, {"cells", std::move(cells)}}
     );
+    if (!row.rival) json["rows"].back()["rival"] = false;
   }
   json["differences"] = differences_json(difference_table(table));
   json["order_agreement"] = Json::array();

@@ -14,7 +14,12 @@ namespace glint {
 
 // What a reader sees in a cell: "31.24", "31.24 ± 0.10" (several seeds), "31.24*", "missing".
 std::string shown_text(const TableCell& cell, const TableColumn& column);
+// Behind it: "[30.1, 32.4]"; empty: the cell has no interval.
+std::string interval_text(const TableCell& cell, const TableColumn& column);
 std::string shown_title(const TableColumn& column);  // "RMSE (m) ↓"
+
+// Is it the first row below the rivals, where a rule stands?
+bool begins_others(const Table& table, const TableRow& row);
 
 // The table's notes and what its marks mean, a line each.
 std::vector<std::string> table_notes(const Table& table);

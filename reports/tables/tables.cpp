@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "glint/method.h"
 #include "reports/records/manifest.h"
 #include "reports/tables/method_title.h"
 #include "reports/tables/published.h"
@@ -16,6 +17,9 @@
 namespace glint {
 
 namespace {
+
+// Behind the title of a row that is no rival.
+constexpr std::string_view kNoRival = "‡";
 
 std::string dataset_title_of(const TableDefinition& definition, const std::string& dataset) {
   if (dataset == definition.dataset) return definition.dataset_title;
@@ -101,8 +105,10 @@ std::vector<TableRowDefinition> rows_of(
   for (const Record& record : records)
     if (!listed.contains(record.cell.method)) extra.insert(record.cell.method);
   for (const std::string& method : extra) rows.push_back({method, method_title(method), ""});
-  for (TableRowDefinition& row : rows)
+  for (TableRowDefinition& row : rows) {
     if (is_imported(records, row.method)) row.title += " (renders imported)";
+    if (!is_rival(row.method)) row.title += kNoRival;
+  }
   return rows;
 }
 
@@ -124,11 +130,18 @@ std::vector<Record> records_of(
   return found;
 }
 
+// Those that decide what is compared; of a table without any, all.
+std::vector<Record> records_of_rivals(const std::vector<Record>& records) {
+  std::vector<Record> rivals = records;
+  std::erase_if(rivals, [](const Record& record) { return !is_rival(record.cell.method); });
+  return rivals.empty() ? records : rivals;
+}
+
 // The scenes of each column's means: those common to the methods, where any has the metric.
 std::vector<SizedScenes> scenes_of_columns(
     const std::vector<TableColumn>& columns, const std::vector<Record>& records
 ) {
-  const auto common = common_scenes(records);
+  const auto common = common_scenes(records_of_rivals(records));
   std::vector<SizedScenes> scenes(columns.size());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto of_dataset = common.find(columns[i].dataset);
@@ -148,7 +161,7 @@ TableRow build_row(
     const std::vector<SizedScenes>& scenes,
     const std::vector<Record>& records
 ) {
-  TableRow result{row.method, row.title, row.paper_row, {}};
+  TableRow result{row.method, row.title, row.paper_row, {}, is_rival(row.method)};
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const TableColumn& column = table.columns[i];
     if (column.published) {
@@ -179,17 +192,21 @@ bool is_apart(const TableRow& row, const Table& table) {
   return apart;
 }
 
+bool can_rank(const TableRow& row, std::size_t column) {
+  return row.rival && row.cells[column].status == CellStatus::kOk;
+}
+
 // 1 for the best; equal values share a rank and the next one is skipped. Methods beyond the paper's
 // rows (controls, variants) are ranked too: they are results like any other.
 void rank_column(Table& table, std::size_t column) {
   const RankOrder order = table.columns[column].order;
   std::vector<double> values;
   for (const TableRow& row : table.rows)
-    if (row.cells[column].status == CellStatus::kOk) values.push_back(row.cells[column].value);
+    if (can_rank(row, column)) values.push_back(row.cells[column].value);
   if (order == RankOrder::kNone || values.size() < 2) return;
   for (TableRow& row : table.rows) {
     TableCell& cell = row.cells[column];
-    if (cell.status != CellStatus::kOk) continue;
+    if (!can_rank(row, column)) continue;
     const auto better = std::count_if(values.begin(), values.end(), [&](double other) {
       return order == RankOrder::kHigherFirst ? other > cell.value : other < cell.value;
     });
@@ -243,8 +260,7 @@ void add_agreement(Table& table, std::size_t measured, const std::string& paper_
   const auto published = static_cast<std::size_t>(it - table.columns.begin());
   std::vector<ComparedMethod> methods;
   for (const TableRow& row : table.rows)
-    if (row.cells[measured].status == CellStatus::kOk &&
-        row.cells[published].status == CellStatus::kOk)
+    if (can_rank(row, measured) && row.cells[published].status == CellStatus::kOk)
       methods.push_back(
           {row.cells[measured].value, row.cells[published].value, row.cells[measured].values}
       );
@@ -335,6 +351,38 @@ void add_failures(Table& table, const std::vector<Record>& records) {
   table.notes.insert(table.notes.end(), failures.begin(), failures.end());
 }
 
+void add_no_rival_notes(Table& table) {
+  for (const TableRow& row : table.rows)
+    if (!row.rival)
+      table.notes.push_back(fmt::format(
+          "{} {}: {}; not ranked.",
+          kNoRival,
+          row.title.substr(0, row.title.size() - kNoRival.size()),
+          find_method(row.method).description
+      ));
+}
+
+// What was drawn anew for the intervals of means.
+void add_interval_note(Table& table) {
+  int scenes = 0, seeds = 0;
+  for (const TableRow& row : table.rows)
+    for (const TableCell& cell : row.cells)
+      if (cell.interval) {
+        scenes = std::max(scenes, cell.num_scenes);
+        seeds = std::max(seeds, cell.num_seeds);
+      }
+  if (scenes == 0) return;
+  std::vector<const char*> drawn;
+  if (scenes > 1) drawn.push_back("scenes");
+  if (seeds > 1) drawn.push_back("seeds");
+  table.notes.push_back(fmt::format(
+      "{} 95 % by bootstrap over {}, too narrow where they are few. Rows share scenes: two methods "
+      "may differ although these overlap.",
+      kIntervalNote,
+      fmt::join(drawn, " and ")
+  ));
+}
+
 // What the cells with an asterisk are means of.
 void add_partial_notes(Table& table) {
   RowNotes reasons;
@@ -361,7 +409,7 @@ void add_scenes_note(
 ) {
   std::set<std::uint64_t> seeds;
   for (const Record& record : records) seeds.insert(record.cell.seed);
-  const SizedScenes common = common_scenes(records)[definition.dataset];
+  const SizedScenes common = common_scenes(records_of_rivals(records))[definition.dataset];
   const SizedScenes others = left_out(records, definition.dataset, common);
   const std::string scenes = scenes_text(common, !others.empty());
   table.notes.push_back(fmt::format(
@@ -439,6 +487,7 @@ void add_notes(
     Table& table, const TableDefinition& definition, const std::vector<Record>& records
 ) {
   add_scenes_note(table, definition, records);
+  add_interval_note(table);
   add_priors_note(table, records);
   add_seeds_notes(table);
   add_steps_note(table, records);
@@ -461,6 +510,9 @@ Table build_table(const TableDefinition& definition, const std::vector<Record>& 
   std::stable_partition(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
     return !is_apart(row, table);
   });
+  std::stable_partition(table.rows.begin(), table.rows.end(), [](const TableRow& row) {
+    return row.rival;
+  });
   TieTests ties;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     if (table.columns[i].published) continue;
@@ -472,6 +524,7 @@ Table build_table(const TableDefinition& definition, const std::vector<Record>& 
   }
   add_notes(table, definition, records);
   add_tie_notes(table, ties);
+  add_no_rival_notes(table);
   add_partial_notes(table);
   return table;
 }

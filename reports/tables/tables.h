@@ -4,13 +4,16 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "glint/core/config.h"
 #include "reports/records/records.h"
 #include "reports/tables/agreement.h"
+#include "reports/tables/statistics.h"
 
 namespace glint {
 
@@ -63,6 +66,7 @@ struct TableCell {
   CellStatus status = CellStatus::kMissing;
   double value = 0;   // in the column's unit, unrounded
   double spread = 0;  // over seeds: sample standard deviation (>= 3 seeds) or range (2)
+  std::optional<Interval> interval;  // of the mean, by bootstrap over scenes and seeds
   int num_scenes = 0, num_seeds = 0;
   std::map<std::pair<std::string, std::uint64_t>, double> values;  // of each scene and seed
   int rank = 0;        // 1, 2, 3; 0: not among them or nothing to rank against
@@ -77,7 +81,11 @@ struct TableCell {
 struct TableRow {
   std::string method, title, paper_row;
   std::vector<TableCell> cells;  // one a column
+  bool rival = true;  // false: was given the truth (MethodSpec); never ranked, stands last
 };
+
+// Opens the note that says what the intervals are.
+inline constexpr std::string_view kIntervalNote = "[low, high]:";
 
 struct Table {
   std::string id, title, caption;
@@ -97,7 +105,8 @@ std::vector<TableDefinition> table_definitions();
 
 // Means over views are in the records; here over the scenes that most methods have at one size
 // (common_scenes.h), then over seeds. Ranks on unrounded values. Every method with records has a
-// row, unless the definition leaves it out; rows of other scenes or sizes come last.
+// row, unless the definition leaves it out; rows of other scenes or sizes come last, and behind
+// them those that are no rivals, which have no say in scenes and ranks.
 Table build_table(const TableDefinition& definition, const std::vector<Record>& records);
 
 // For tables of a choice: no row for a method that has no record among the chosen.

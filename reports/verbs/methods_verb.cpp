@@ -16,6 +16,11 @@ std::string inputs_text(const Method& method) {
   return inputs.empty() ? "-" : comma_list(inputs);
 }
 
+// Beside what a method is.
+std::string description_of(const MethodSpec& spec) {
+  return spec.description + (spec.rival ? "" : "; not ranked in tables");
+}
+
 // "glint" of "glint/no-trans".
 std::string base_of(const std::string& id) { return id.substr(0, id.find('/')); }
 
@@ -36,6 +41,7 @@ Json spec_json(const MethodSpec& spec) {
       {"citation", spec.citation},
       {"inputs", method->inputs()},
       {"overrides", spec.overrides},
+      {"rival", spec.rival},
       {"source", spec.source}};
 }
 
@@ -61,7 +67,7 @@ Json method_json(const MethodSpec& spec) {
 std::string list_text() {
   std::vector<std::vector<std::string>> rows = {{"id", "title", "wants", "what it is"}};
   for (const auto& [id, spec] : Registry<MethodSpec>::all())
-    rows.push_back({id, spec.title, inputs_text(*create_method(id)), spec.description});
+    rows.push_back({id, spec.title, inputs_text(*create_method(id)), description_of(spec)});
   return listing(rows, terminal_width()) +
          "\nwants: what training looks at beside photos, cameras and points; where it is missing, "
          "its "
@@ -77,7 +83,7 @@ std::string value_text(const Json& value) {
 std::string method_text(const MethodSpec& spec) {
   const Json json = method_json(spec);
   const std::vector<std::string> variants = json["variants"];
-  std::string text = fmt::format("{} ({}): {}\n", spec.id, spec.title, spec.description);
+  std::string text = fmt::format("{} ({}): {}\n", spec.id, spec.title, description_of(spec));
   text += fmt::format(
       "trained on: photos, cameras, points; wants {}\n", inputs_text(*create_method(spec.id))
   );

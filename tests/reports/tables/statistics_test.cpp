@@ -75,6 +75,23 @@ TEST_CASE("the weights of a resample sum to 1, whatever the seeds") {
   }
 }
 
+TEST_CASE("scenes far apart make the interval, seeds alone do not: drawing both is wider") {
+  const Values values{{10, 10.2}, {20, 20.2}, {30, 30.2}};
+  const Interval both = *bootstrap_interval(values, kMeanResamples);
+  CHECK(both.low < 13);  // the means of three draws of three scenes: 10 in one of 27
+  CHECK(both.high > 27);
+  const Values one{{10, 10.1, 10.2}};  // of one scene: seeds alone
+  const Interval seeds = *bootstrap_interval(one, kMeanResamples);
+  CHECK(seeds.low >= 10);
+  CHECK(seeds.high <= 10.2);
+}
+
+TEST_CASE("of two scenes whose seeds agree the resampled mean is one of three values") {
+  const Interval interval = *bootstrap_interval(Values{{0, 0}, {1, 1}}, kMeanResamples);
+  CHECK(interval.low == 0);  // each end in a quarter of the resamples
+  CHECK(interval.high == 1);
+}
+
 TEST_CASE("the interval is the same every time") {
   const Values values = scenes_of({0.3, -0.1, 0.4, 0.2});
   CHECK(bootstrap_interval(values)->low == bootstrap_interval(values)->low);
