@@ -16,6 +16,7 @@
 #include "glint/core/rng.h"
 #include "glint/render/void_steps.h"
 #include "glint/train/checkpoint.h"
+#include "glint/train/test_psnr.h"
 
 namespace glint {
 
@@ -93,7 +94,8 @@ class Training {
         options_(options),
         checkpoint_(options.folder / kCheckpointFile),
         log_(options.folder / "log.jsonl"),
-        on_disk_(!options.folder.empty()) {}
+        on_disk_(!options.folder.empty()),
+        test_psnr_(scene, options.test_psnr_every) {}
 
   TrainReport run() {
     begin();
@@ -153,8 +155,9 @@ class Training {
 
   // Of these the host looks at what a step computed.
   bool is_logged(int i) const {
-    return (i + 1) % options_.log_interval == 0 || i + 1 == options_.run.iterations;
+    return (i + 1) % options_.log_interval == 0 || i + 1 == options_.run.iterations || is_tested(i);
   }
+  bool is_tested(int i) const { return on_disk_ && test_psnr_.is_due(i, options_.run.iterations); }
   bool is_told(int i) const { return !on_gpu() || is_logged(i) || i % kToldInterval == 0; }
 
   void take_step(int i, const ImagesOnDevice& images) {
@@ -193,6 +196,8 @@ class Training {
   void append_log(const StepStats& stats) {
     Json line = log_line(stats, done_);
     if (!events_.empty()) line["events"] = std::exchange(events_, Json::array());
+    if (is_tested(stats.iteration))
+      line["test_psnr"] = on_device(stats.iteration, [&] { return test_psnr_.measure(method_); });
     append_line(log_, line.dump());
   }
   std::string progress_text() const {
@@ -281,6 +286,7 @@ class Training {
   const TrainOptions& options_;
   fs::path checkpoint_, log_;
   bool on_disk_, resumable_ = true;
+  TestPsnr test_psnr_;
   TrainingProgress done_;
   int first_ = 0;                // iteration of this process
   StepStats last_;               // that the host was told

@@ -15,6 +15,7 @@ struct TrainOptions {
   RunOptions run;
   fs::path folder;                  // log.jsonl and the checkpoint go here; empty: neither
   int log_interval = 100;           // iterations between lines of log.jsonl
+  int test_psnr_every = 0;          // steps between lines with the PSNR of test views; 0: none
   double checkpoint_seconds = 300;  // between checkpoints, at least; 0: one after every step
   std::string identity;             // of the run: only its own checkpoint is gone on from
   std::string title = "train";      // of the progress line

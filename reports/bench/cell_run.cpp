@@ -62,6 +62,7 @@ RunSpec spec_of(
   spec.dataset_hash = loaded.scene.spec_hash;
   spec.train_document = stages[Stage::kTrain].document;
   spec.checkpoint_seconds = options.checkpoint_seconds;
+  spec.test_psnr_every = options.profile.test_psnr_every;
   spec.anew = options.force;
   return spec;
 }

@@ -21,6 +21,7 @@ TrainOptions train_options(const RunSpec& spec) {
   options.run = spec.options;
   options.folder = spec.folder;
   options.log_interval = std::max(1, spec.options.iterations / kLogLines);
+  options.test_psnr_every = spec.test_psnr_every;
   options.checkpoint_seconds = spec.checkpoint_seconds;
   options.identity = stage_key(spec.train_document);
   options.title = fmt::format("{} {}", spec.scene, spec.method);

@@ -92,6 +92,7 @@ void check_least(const std::string& where, const char* field, double value, doub
 
 void check_numbers(const Profile& profile, const std::string& where) {
   check_least(where, "iterations", profile.iterations, 1);
+  check_least(where, "test_psnr_every", profile.test_psnr_every, 0);
   check_least(where, "timing_frames", profile.timing_frames, 1);
   check_least(where, "timing_warmup", profile.timing_warmup, 0);
 }

@@ -68,6 +68,7 @@ struct Profile {
   std::vector<std::string> leave_out;  // globs of cells, as of --skip, that are none of its
   std::vector<std::uint64_t> seeds{0};
   int timing_frames = 50, timing_warmup = 5;
+  int test_psnr_every = 0;             // steps between looks at test views, for figures; 0: none
   int gpus = 0;                        // that a cell asks a cluster for
   Json defaults = Json::object();      // SceneSource fields shared by all scenes
   Json scenes = Json::array();         // names, or objects with SceneSource fields
@@ -85,6 +86,7 @@ struct Profile {
     v("seeds", seeds, "seeds of training");
     v("timing_frames", timing_frames, "frames timed for FPS");
     v("timing_warmup", timing_warmup, "frames before the clock starts");
+    v("test_psnr_every", test_psnr_every, "steps between looks at test views, for figures");
     v("gpus", gpus, "that a cell asks a cluster for");
     v("defaults", defaults, "scene fields shared by all scenes");
     v("scenes", scenes, "names, or tables of scene fields");

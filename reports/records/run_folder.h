@@ -27,6 +27,7 @@ struct RunSpec {
   // Not in config.json:
   Json train_document;              // what the training goes by (stage_documents.h)
   double checkpoint_seconds = 300;  // between checkpoints, at least
+  int test_psnr_every = 0;          // TrainOptions
   bool anew = false;                // an unfinished training does not go on
 
   CellKey cell() const { return {scene, row.empty() ? method : row, options.seed}; }

@@ -73,6 +73,9 @@ void add_training_options(const CommonOptionAdder& add, CommonOptions& common) {
   add.option(kCheckpointOption, "--checkpoint-seconds", common.checkpoint_seconds, checkpoint)
       ->capture_default_str()
       ->check(at_least_zero());
+  const char* test = "steps between looks at test views, for figures; 0: none";
+  add.option(kCheckpointOption, "--test-psnr-every", common.test_psnr_every, test)
+      ->check(at_least_zero());
 }
 
 void add_machine_options(const CommonOptionAdder& add, CommonOptions& common) {
@@ -181,6 +184,7 @@ Profile CommonOptions::resolved_profile() const {
   Profile resolved = load_profile(profile);
   if (seed) resolved.seeds = {*seed};
   if (iterations > 0) resolved.iterations = iterations;
+  if (test_psnr_every) resolved.test_psnr_every = *test_psnr_every;
   return resolved;
 }
 

@@ -41,6 +41,7 @@ Words run_words(const CommonOptions& common, const std::string& device) {
     words.insert(words.end(), {option, value});
   };
   if (common.iterations > 0) add("--iterations", std::to_string(common.iterations));
+  if (common.test_psnr_every) add("--test-psnr-every", std::to_string(*common.test_psnr_every));
   for (const std::string& assignment : common.set) add("--set", assignment);
   return words;
 }

@@ -98,6 +98,7 @@ SingleRun new_single_run(const CommonOptions& common, const SingleRunOptions& op
   open_data(common, options.dataset, shrinking, single);
   take_folder(common, options.run, single);
   spec.checkpoint_seconds = common.checkpoint_seconds;
+  spec.test_psnr_every = common.test_psnr_every.value_or(0);
   spec.anew = options.force;
   check_new_run(spec.folder, options.force, stage_key(spec.train_document));
   return single;

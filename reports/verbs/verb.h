@@ -57,6 +57,7 @@ struct CommonOptions {
   std::string device = "auto";
   int threads = 0;  // 0: all cores
   double checkpoint_seconds = 300;
+  std::optional<int> test_psnr_every;  // else as the profile says
   bool json = false, quiet = false;
 
   fs::path own_folder(const Profile& p) const { return own_profile_folder(out, p.name); }
@@ -64,7 +65,7 @@ struct CommonOptions {
   CellFilter filter() const { return {only, skip, methods}; }
   SceneLoader scene_loader() const;
   SceneIdentifier scene_identifier() const;
-  // The profile with --seed and --iterations applied.
+  // The profile with --seed, --iterations and --test-psnr-every applied.
   Profile resolved_profile() const;
   // --threads, --quiet and, of verbs that have it, --device take effect. Errors: as choose_device.
   void apply(CommonOption uses) const;

@@ -326,3 +326,61 @@ TEST_CASE("Events between a line of the log and a checkpoint stand in the next l
   REQUIRE(line.at("events").size() == 1);
   CHECK(line.at("events")[0].at("iteration") == 3);
 }
+
+namespace {
+
+// Renders white; counts how often.
+class White final : public Exploding {
+ public:
+  White() : Exploding(-1) {}
+  MapSet render(const Camera& camera) override {
+    ++renders;
+    MapSet maps;
+    maps["rgb"] = Image(camera.width, camera.height, 3, 1.0f);
+    return maps;
+  }
+  int renders = 0;
+};
+
+// Ten black test views but the last, which is white.
+Scene with_test_views() {
+  Scene scene = one_view();
+  for (int i = 0; i < 10; ++i) {
+    View view;
+    view.camera.width = view.camera.height = 2;
+    view.rgb = Image(2, 2, 3, i == 9 ? 1.0f : 0.0f);
+    scene.test.push_back(std::move(view));
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("The PSNR of at most eight test views is in the log where it is asked for, else nowhere"
+) {
+  set_quiet(true);
+  const test::TempFolder temporary;
+  const Scene scene = with_test_views();
+  TrainOptions options;
+  options.run.iterations = 20;
+  options.log_interval = 10;
+  for (const int every : {0, 8}) {
+    White method;
+    options.folder = temporary / std::to_string(every);
+    fs::create_directories(options.folder);
+    options.test_psnr_every = every;
+    train(method, scene, options);
+    std::vector<int> iterations, tested;
+    std::istringstream log(read_file(options.folder / "log.jsonl"));
+    for (std::string line; std::getline(log, line);) {
+      const Json json = Json::parse(line);
+      iterations.push_back(json["iteration"]);
+      if (!json.contains("test_psnr")) continue;
+      tested.push_back(json["iteration"]);
+      CHECK(json["test_psnr"] == 100.0 / 8);  // seven black views, 0 dB, and the white one
+    }
+    CHECK(method.renders == (every == 0 ? 0 : 3 * 8));
+    CHECK(tested == (every == 0 ? std::vector<int>{} : std::vector<int>{7, 15, 19}));
+    CHECK(iterations == (every == 0 ? std::vector<int>{9, 19} : std::vector<int>{7, 9, 15, 19}));
+  }
+}
