@@ -33,9 +33,14 @@ Range with_room(Range range) {
   return {range.low - room, range.high + room};
 }
 
+bool is_logarithmic(const Chart& chart, bool x) {
+  return chart.logarithmic || (!x && chart.logarithmic_y);
+}
+
 bool is_point(const Chart& chart, const ChartSeries& series, std::size_t i) {
   const double x = series.x[i], y = series.y[i];
-  return std::isfinite(x) && std::isfinite(y) && (!chart.logarithmic || (x > 0 && y > 0));
+  return std::isfinite(x) && std::isfinite(y) && (x > 0 || !is_logarithmic(chart, true)) &&
+         (y > 0 || !is_logarithmic(chart, false));
 }
 
 bool has_bars(const ChartSeries& series) { return !series.low.empty(); }
@@ -77,7 +82,7 @@ Axis axis_of(const Chart& chart, std::vector<double> ChartSeries::*values) {
   const bool is_x = values == &ChartSeries::x;
   if (is_x && !chart.x_names.empty()) return named_axis(chart.x_names);
   Axis axis;
-  axis.logarithmic = chart.logarithmic;
+  axis.logarithmic = is_logarithmic(chart, is_x);
   for (const ChartSeries& series : chart.series)
     for (std::size_t i = 0; i < series.x.size(); ++i) {
       if (!is_point(chart, series, i)) continue;
@@ -88,8 +93,8 @@ Axis axis_of(const Chart& chart, std::vector<double> ChartSeries::*values) {
   axis.range = with_room(axis.range);
   const double low = axis.range.low, high = axis.range.high;
   axis.ticks =
-      chart.logarithmic ? log_ticks(std::pow(10, low), std::pow(10, high)) : round_ticks(low, high);
-  axis.labels = chart.logarithmic ? log_labels(axis.ticks) : tick_labels(axis.ticks);
+      axis.logarithmic ? log_ticks(std::pow(10, low), std::pow(10, high)) : round_ticks(low, high);
+  axis.labels = axis.logarithmic ? log_labels(axis.ticks) : tick_labels(axis.ticks);
   return axis;
 }
 

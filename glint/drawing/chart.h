@@ -22,6 +22,7 @@ struct Chart {
   std::string x_label, y_label;
   std::vector<ChartSeries> series;
   bool logarithmic = false;               // both axes; values that are not above 0 are left out
+  bool logarithmic_y = false;             // that axis, likewise
   std::vector<std::string> x_names = {};  // of the places 0, 1, ... along x, in place of numbers
 };
 

@@ -5,6 +5,7 @@
 
 #include "reports/figures/curve_figures.h"
 #include "reports/figures/figure_methods.h"
+#include "reports/figures/growth_figure.h"
 #include "reports/figures/map_figures.h"
 #include "reports/figures/mesh_figure.h"
 #include "reports/figures/priors_figure.h"
@@ -57,6 +58,7 @@ std::vector<fs::path> draw_figures(const FigureOptions& options) {
   keep(folder / "radiance.png", draw_grid(radiance_figure(scenes)), written);
   keep(folder / "ablation.png", draw_grid(ablation_figure(all_scenes)), written);
   keep(folder / "curves.png", curves_figure(records, options.folder, choice), written);
+  keep(folder / "growth.png", growth_figure(growth_runs(options, records)), written);
   keep(folder / "f1.png", f1_figure(records, choice), written);
   keep(folder / "priors.png", priors_figure(records, choice), written);
   keep_numbers(folder / "priors.json", priors_table(records, choice));

@@ -27,14 +27,24 @@ struct FigureOptions {
   FigureView shown = {};
 };
 
-// FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves, f1,
-// priors, meshes}.png, each with a PDF beside it; returns the PNGs of those that have something to
-// show. Beside priors.png lie its numbers, priors.json.
-// What is absent inside a figure says "missing"; scenes without data are left out of figures with
-// maps, with a warning.
-// Errors: those of read_records(), kUsage (no such scene or test view, a crop outside the view),
+// FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves,
+// growth, f1, priors, meshes}.png, each with a PDF beside it; returns the PNGs of those that have
+// something to show. Beside priors.png lie its numbers, priors.json. What is absent inside a figure
+// says "missing"; scenes without data are left out of figures with maps, with a warning. Errors:
+// those of read_records(), kUsage (no such scene or test view, a crop outside the view),
 // kEnvironment (disk).
 inline constinit Service<std::vector<fs::path>(const FigureOptions&)> write_figures{
+    "drawing figures", "use the full build"};
+
+// growth.png of runs that are named, not of records.
+struct GrowthOptions {
+  std::vector<std::string> runs;     // folders of runs, or folders above them
+  fs::path folder;                   // where it goes
+  std::vector<std::string> methods;  // globs; none: all
+  std::vector<std::string> scenes;   // likewise
+};
+// Errors (kUsage): no folder, or no run there; those of read_run_spec(); kEnvironment (disk).
+inline constinit Service<std::vector<fs::path>(const GrowthOptions&)> write_growth{
     "drawing figures", "use the full build"};
 
 // What is found here of kFontFamily (glint/drawing/canvas.h).

@@ -6,10 +6,19 @@ namespace glint {
 
 namespace {
 
-int run_figures(const CommonOptions& common, const FigureView& shown) {
-  const fs::path folder = folder_with_records(common);
+std::vector<fs::path> written_figures(
+    const CommonOptions& common, const FigureView& shown, const std::vector<std::string>& runs
+) {
+  if (runs.empty())
+    return write_figures({folder_with_records(common), load_run_data, common.methods, shown});
+  return write_growth({runs, fs::path(common.out) / "figures", common.methods, shown.scenes});
+}
+
+int run_figures(
+    const CommonOptions& common, const FigureView& shown, const std::vector<std::string>& runs
+) {
   Json json = {{"figures", Json::array()}};
-  for (const fs::path& path : write_figures({folder, load_run_data, common.methods, shown})) {
+  for (const fs::path& path : written_figures(common, shown, runs)) {
     json["figures"].push_back(path.string());
     if (!common.json) print_text(path.string() + "\n");
   }
@@ -19,12 +28,16 @@ int run_figures(const CommonOptions& common, const FigureView& shown) {
 
 void add_figures_verb(CommandLine& line) {
   const auto shown = std::make_shared<FigureView>();
+  const auto runs = std::make_shared<std::vector<std::string>>();
   CLI::App* verb = line.add_verb(
       line.app,
       "figures",
       "write OUT/PROFILE/figures/*.png and *.pdf",
-      [&line, shown] { return run_figures(line.common, *shown); },
+      [&line, shown, runs] { return run_figures(line.common, *shown, *runs); },
       kFolderOptions | kThreadsOption
+  );
+  verb->add_option(
+      "--runs", *runs, "run folders, or folders above: only OUT/figures/growth.png, of their logs"
   );
   verb->add_option("--scene", shown->scenes, "globs of the scenes to show")->delimiter(',');
   verb->add_option("--view", shown->view, "name of the test view to show");

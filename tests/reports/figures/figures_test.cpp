@@ -135,6 +135,63 @@ TEST_CASE("figures have what the runs rendered and nothing else") {
   }
 }
 
+namespace {
+
+// A log of so many steps beside a run's settings; GLINT's has sets.
+void add_log(const fs::path& folder, const std::string& method, int steps) {
+  RunSpec spec;
+  spec.folder = folder;
+  spec.method = method;
+  spec.scene = "room_1";
+  spec.options.iterations = steps;
+  write_run_spec(spec, Json::object());
+  for (int i = steps / 10; i <= steps; i += steps / 10) {
+    Json line = {{"iteration", i - 1}, {"psnr", 20 + i / 1e3}, {"num_surfels", 100 + i}};
+    if (method == "glint") line["sets"] = {{"interface", 90 + i}, {"transmission", 10}};
+    append_line(folder / "log.jsonl", line.dump());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the figure of growth has a row for each length, and rows for sets") {
+  const test::TempFolder folder;
+  const auto height = [&](std::vector<std::string> methods) {
+    const auto written =
+        write_growth({{(folder / "runs").string()}, folder / "figures", std::move(methods), {}});
+    REQUIRE(written == std::vector<fs::path>{folder / "figures/growth.png"});
+    CHECK(fs::exists(folder / "figures/growth.pdf"));
+    return read_image(written.front(), 3).height();
+  };
+  add_log(folder / "runs/a", "2dgs", 3000);
+  const int one = height({});
+  add_log(folder / "runs/b", "2dgs/prior", 3000);
+  CHECK(height({}) == one);
+  add_log(folder / "runs/c/0", "2dgs", 8000);
+  const int two = height({});
+  CHECK(two > one * 3 / 2);
+  add_log(folder / "runs/d", "glint", 3000);
+  CHECK(height({}) > two * 5 / 4);
+  CHECK(height({"2dgs"}) == two);
+  CHECK_THROWS_WITH(
+      write_growth({{(folder / "none").string()}, folder.path(), {}, {}}),
+      Catch::Contains("no such folder")
+  );
+  fs::create_directories(folder / "empty");
+  CHECK_THROWS_WITH(
+      write_growth({{(folder / "empty").string()}, folder.path(), {}, {}}),
+      Catch::Contains("no run with a log")
+  );
+}
+
+TEST_CASE("records and logs give a figure of growth") {
+  const test::TempFolder folder;
+  add_run(folder.path(), "2dgs", 0.4f);
+  add_log(run_folder(folder.path(), {"room_1", "2dgs", 0}), "2dgs", 3000);
+  const auto names = names_of(write_figures({folder.path(), load_fake}));
+  CHECK(std::find(names.begin(), names.end(), "growth") != names.end());
+}
+
 TEST_CASE("by default pictures show methods and curves no ablations; globs choose instead") {
   const MethodChoice usual;
   CHECK(usual.in_pictures("glint"));
