@@ -122,6 +122,7 @@ class TwoDgs final : public Method {
     result["depth"] = depth_of(out);
     result["normal"] = unit_normals(out.normal);
     add_depth_estimates(out, result);
+    add_depth_modes(set_.pass().rasterizer, result);
     result["rgb"] = out.features;
     return result;
   }

@@ -209,6 +209,7 @@ class EnvGs final : public Method {
     out["depth"] = buffer.depth;
     out["normal"] = buffer.normal;
     add_depth_estimates(*base_output_, out);
+    add_depth_modes(base_.pass().rasterizer, out);
     out["specularity"] = buffer.specularity;
     out["interface"] = layers_.interface;
     if (!with_environment_) return out;

@@ -39,7 +39,11 @@ class Pgsr final : public Method {
     return stats;
   }
 
-  MapSet render(const Camera& camera) override { return model_.render(camera); }
+  MapSet render(const Camera& camera) override {
+    MapSet maps = model_.render(camera);
+    add_depth_modes(model_.set().pass().rasterizer, maps);
+    return maps;
+  }
   void draw(const Camera& camera) override { model_.draw(camera); }
   void save(const std::string& folder) const override { model_.save(folder); }
   void load(const std::string& folder) override { model_.load(folder); }

@@ -170,6 +170,7 @@ class RefGs final : public Method {
     expected_depth_map(*output_, out["depth"]);
     out["normal"] = unit_normals(output_->normal);
     add_depth_estimates(*output_, out);
+    add_depth_modes(set_.pass().rasterizer, out);
     if (!deferred_) return out;
     fit(out["interface"], camera.size(), 3);
     fit(out["reflection"], camera.size(), 3);

@@ -195,7 +195,9 @@ class RtSplatting final : public Method {
     MapSet out;
     out["rgb"] = forward(camera);
     add_depth_estimates(*volume_output_, out);
-    if (stage_ == RtStage::kTransmission) {
+    const bool one = stage_ == RtStage::kTransmission;  // one pass, which is all there is
+    add_depth_modes((one ? volume_ : surface_).rasterizer, out);
+    if (one) {
       expected_depth_map(*volume_output_, out["depth"]);
       out["normal"] = unit_normals(volume_output_->normal);
       return out;

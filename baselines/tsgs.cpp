@@ -286,6 +286,7 @@ class Tsgs final : public Method {
   // Without a mask no pixel sees through glass.
   MapSet rendered(const Camera& camera, const Image& mask) {
     MapSet maps = model_.render(camera);
+    add_depth_modes(model_.set().pass().rasterizer, maps);
     if (mask.empty()) {
       maps["depth"] = model_.output().depth_median;
       return maps;

@@ -8,20 +8,23 @@
 // traced (thin glass does not bend the ray; `transmission=trace` traces). z_trans is the depth of
 // the transmission set seen from the camera on its own. In training, pixels that mirror little
 // share mirrored rays (`mirror_share_below`; docs/PERFORMANCE.md has its price). LPIPS needs
-// weights that the user has, and is off without. What the paper leaves open (weights, initial t and
-// s, windows) is in GlintConfig.
+// weights that the user has, and is off without. Where the paper is silent, values are those of the
+// official code's second release (V2) but for L_trans' weight: V2's is of means over each mask, an
+// L1 over the picture is as strong with 0.1; L_depth is halved there. Left out of it, as mistakes:
+// the loss on the opacity of the traced set (its gradient has the wrong sign) and plausibility on
+// glass (its mask holds the set to the pane nearly everywhere; here it is the labels). The holiday
+// of pruning after resets is ours. Neighbours of multi-view losses are near views, drawn at random
+// (V2: the fifth before).
 //
-// `glint/release` follows the official code instead where both differ: the weights of its second
-// state, the clone start of its first, the geometry freeze of its third. Not in it: the second
-// reflection at the transmission set, multi-view consistency, the variance of depth patches, the
-// weights of guidance by explained error; of the third also t's gradients kept from geometry, soft
-// confidence of depth, a gate that rises, late cleanup of t, limits of scale and of growth.
-// Nor what one scene's file overrides, or plausibility's care for pixels without a depth prior.
-// Deviations: reflections start in random colours (there black); scenes without points with 30,000
-// of them (there 100,000); its loss on the opacity of the transmission set has the gradient that
-// the first release forgot; until reflections begin, the mirrored share is not taken from the rest;
-// positions of secondary sets slow down by their own steps, at the interface's rate (there by the
-// run's, at rates times powers of the extent).
+// `glint/release` is V2 also where it contradicts the paper, as far as its mechanisms exist. Not in
+// it: the second reflection at the transmission set, the transmission set traced, soft labels and
+// weights by explained error, a gate that rises, the depth loss masked by normals, t divided by
+// alpha.
+// Deviations: reflections start in random colours; scenes without points with 30,000 of them; until
+// reflections begin, the mirrored share is not taken from the rest.
+//
+// `glint/text` is the paper with our own values where it is silent, which was the row until V2 was
+// read; `glint/oracle` is given the true pane.
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +33,9 @@
 #include "glint/method.h"
 #include "glint/render/map_ops.h"
 #include "glint/scene/ply.h"
+#include "glint/train/clipped_photo.h"
 #include "glint/train/photometric.h"
+#include "glint/train/planar_losses.h"
 #include "glint/train/trainer.h"
 #include "glint/train/training_state.h"
 
@@ -46,6 +51,17 @@ SurfelCloud without_extra(SurfelCloud cloud) {
   return cloud;
 }
 
+// Multi-view consistency alone, in the run's windows.
+PlanarLossConfig planar_losses(const MultiViewConfig& config) {
+  PlanarLossConfig planar;
+  planar.lambda_plane = 0;
+  planar.lambda_geometric = config.lambda * config.geometric;
+  planar.lambda_photometric = config.lambda * config.photometric;
+  planar.from = config.from;
+  planar.neighbors = config.neighbors;
+  return planar;
+}
+
 class Glint final : public Method {
  public:
   explicit Glint(const Json& overrides) {
@@ -56,60 +72,76 @@ class Glint final : public Method {
   void initialize(const Scene& scene, const RunOptions& options) override {
     scene_ = &scene;
     windows_ = config_.scaled_to(options.iterations);
+    check_oracle();
     set_up_losses();
+    if (windows_.multi_view.lambda > 0) set_up_planes(options.seed);
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
     InitialSurfels initial;
     initial.seed = options.seed + 1;
-    model_.transmission = new_set(points, initial, windows_.transmission_densify());
+    model_.transmission = new_set(
+        points,
+        initial,
+        windows_.transmission_densify(),
+        windows_.secondary_rates(windows_.transmission_from)
+    );
     initial.seed = options.seed + 2;
     initial.opacity = config_.reflection_opacity;
     model_.reflection = new_set(
         config_.grid.points(scene, options.seed),
         initial,
-        windows_.reflection_densify(scene.train.front().camera.size())
+        windows_.reflection_densify(scene.train.front().camera.size()),
+        windows_.reflection_rates()
     );
     initial = {};
     initial.seed = options.seed;
     initial.extra = {
         {kTransparency, config_.initial_transparency, config_.rate_transparency},
         {kSpecular, config_.initial_specular, config_.rate_specular}};
-    model_.interface = new_set(points, initial, windows_.interface_densify(scene.train.size()));
+    model_.interface =
+        new_set(points, initial, windows_.interface_densify(scene.train.size()), windows_.rates);
     bootstrap_ = ReflectionBootstrap(windows_.bootstrap, options.seed);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
 
   StepStats step(int iteration) override {
-    const View& view = scene_->train[views_.next()];
+    const std::size_t index = views_.next();
+    const View& view = scene_->train[index];
     StepStats stats;
     stats.iteration = iteration;
     set_phase(iteration);
     phase_.step = iteration;
+    phase_.planes = !frozen_ && windows_.multi_view.at(iteration);
+    if (config_.oracle) phase_.truth = &view.truth;
     const Image& image = model_.forward(view.camera, config_, phase_);
     phase_.step.reset();
+    phase_.truth = nullptr;
     clear_gradients(view.camera.size());
-    const PhotometricWeights weights{config_.l1_weight, config_.ssim_weight};
-    const PhotometricTerms photo = photometric_.evaluate(image, view, weights, dL_dimage_);
-    stats.terms["photometric"] = photo.weighted(weights);
-    stats.psnr = photo.psnr();
-    add_perceptual(
-        perceptual_.get(), windows_.perceptual, iteration, image, view, dL_dimage_, stats
-    );
-    add_map_losses(view, iteration, weights, stats);
+    add_picture_losses(view, iteration, image, stats);
+    add_map_losses(view, iteration, stats);
+    if (phase_.planes) {
+      clear_image(dL_dinterface_.plane_distance, view.camera.size(), 1);
+      planes_.add(
+          index, iteration, model_.interface, model_.interface_output(), dL_dinterface_, stats
+      );
+    }
     float dL_dalpha = 0;
     if (phase_.transmission)
       dL_dalpha = transmission_losses_.add_opacity(iteration, model_.transmission_alpha(), stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
     model_.backward(dL_dimage_, dL_dtransparency_, dL_dalpha, !frozen_, dL_dinterface_);
     update(iteration, stats);
-    stats.sets = {
-        {"interface", model_.interface.cloud().size()},
-        {"transmission", model_.transmission.cloud().size()},
-        {"reflection", model_.reflection.cloud().size()}};
+    phase_.planes = false;
+    stats.sets = sets();
     stats.num_surfels = num_surfels();
     return stats;
   }
 
   MapSet render(const Camera& camera) override { return model_.render(camera, config_, phase_); }
+  MapSet render_view(const View& view) override {
+    GlintPhase phase = phase_;
+    if (config_.oracle && GivenSurface::fits(view.truth)) phase.truth = &view.truth;
+    return model_.render(view.camera, config_, phase);
+  }
   void draw(const Camera& camera) override { model_.forward(camera, config_, phase_); }
 
   void save(const std::string& folder) const override {
@@ -159,16 +191,48 @@ class Glint final : public Method {
     return true;
   }
   std::size_t num_surfels() const override {
-    return model_.interface.cloud().size() + model_.transmission.cloud().size() +
-           model_.reflection.cloud().size();
+    std::size_t sum = 0;
+    for (const auto& [name, count] : sets()) sum += count;
+    return sum;
   }
   std::vector<std::string> warnings() const override { return warnings_; }
+  std::vector<std::string> notes() const override {
+    if (!config_.oracle) return {};
+    return {"given the true depth, normals and transparency of the first surface: no rival"};
+  }
 
  private:
   TrainableSet new_set(
-      const PointCloud& points, const InitialSurfels& initial, const DensifyConfig& densify
+      const PointCloud& points,
+      const InitialSurfels& initial,
+      const DensifyConfig& densify,
+      const SurfelRates& rates
   ) const {
-    return TrainableSet(points, initial, training_on(*scene_, windows_.rates, densify));
+    return TrainableSet(points, initial, training_on(*scene_, rates, densify));
+  }
+  // Surfels of the sets that take part in some step.
+  std::map<std::string, std::size_t> sets() const {
+    std::map<std::string, std::size_t> sets = {{"interface", model_.interface.cloud().size()}};
+    if (config_.with_transmission) sets["transmission"] = model_.transmission.cloud().size();
+    if (config_.with_reflection) sets["reflection"] = model_.reflection.cloud().size();
+    return sets;
+  }
+  void check_oracle() const {
+    if (!config_.oracle) return;
+    for (const View& view : scene_->train)
+      GLINT_CHECK(
+          GivenSurface::fits(view.truth),
+          kBadReference,
+          "glint/oracle: view {} of {} has no true depth, normals and glass mask, which it is "
+          "given; take a scene with ground truth, such as GlassRoom",
+          view.name,
+          scene_->name
+      );
+  }
+  void set_up_planes(std::uint64_t seed) {
+    const auto warnings =
+        planes_.set_up(planar_losses(windows_.multi_view), *scene_, seed, "glint");
+    warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
   }
   void set_up_losses() {
     warnings_.clear();
@@ -187,11 +251,17 @@ class Glint final : public Method {
     };
     phase_.transmission = config_.with_transmission && iteration >= windows_.transmission_from;
     phase_.reflection = config_.with_reflection && iteration >= windows_.reflection_from;
+    // Copies have the interface's harmonics from the first step on.
+    const auto start = [&](int from, bool cloned) {
+      return config_.run_clock_rates || cloned ? 0 : from;
+    };
     phase_.interface_degree = degree(0);
-    phase_.transmission_degree = degree(windows_.transmission_from);
-    phase_.reflection_degree = degree(windows_.reflection_from);
+    phase_.transmission_degree = degree(start(windows_.transmission_from, config_.clone_interface));
+    phase_.reflection_degree = degree(start(windows_.reflection_from, config_.clone_reflection));
     if (config_.clone_interface && phase_.transmission && iteration == windows_.transmission_from)
       model_.transmission.load(without_extra(model_.interface.cloud()));
+    if (config_.clone_reflection && phase_.reflection && iteration == windows_.reflection_from)
+      model_.reflection.load(without_extra(model_.interface.cloud()));
     const bool late = iteration >= windows_.freeze_from;
     frozen_ = late && config_.freeze == "all";
     if (late && config_.freeze == "geometry") model_.interface.freeze_geometry();
@@ -202,18 +272,33 @@ class Glint final : public Method {
     clear_image(dL_dtransparency_, size, 1);
     clear_gradient(size, model_.interface_output().features.channels(), dL_dinterface_);
   }
-  void add_map_losses(
-      const View& view, int iteration, PhotometricWeights weights, StepStats& stats
-  ) {
+  PhotometricWeights photo_weights() const { return {config_.l1_weight, config_.ssim_weight}; }
+  void add_picture_losses(const View& view, int iteration, const Image& image, StepStats& stats) {
+    const PhotometricWeights weights = photo_weights();
+    const bool clip = config_.clipped_photos;
+    const Image& picture = clip ? clipped_photo_.clip(image, view.rgb) : image;
+    const PhotometricTerms photo = photometric_.evaluate(picture, view, weights, dL_dimage_);
+    stats.terms["photometric"] = photo.weighted(weights);
+    stats.psnr = photo.psnr();
+    add_perceptual(
+        perceptual_.get(), windows_.perceptual, iteration, picture, view, dL_dimage_, stats
+    );
+    if (clip) ClippedPhoto::clip_vjp(image, view.rgb, dL_dimage_);
+  }
+  void add_map_losses(const View& view, int iteration, StepStats& stats) {
     const RasterOutput& interface = model_.interface_output();
     if (!frozen_)
-      geometry_.add(view, iteration, interface, model_.buffer().depth, dL_dinterface_, stats);
+      geometry_.add(view, iteration, interface, model_.interface_depth(), dL_dinterface_, stats);
+    if (!frozen_ && phase_.transmission)
+      transmission_losses_.add_surfel_entropy(
+          iteration, kTransparencyChannel, interface, model_.interface, stats
+      );
     if (phase_.transmission)
       transmission_losses_.add(
           view,
           iteration,
           phase_.transmission_degree,
-          weights,
+          photo_weights(),
           interface,
           model_.buffer(),
           model_.transmission,
@@ -246,7 +331,10 @@ class Glint final : public Method {
   ReflectionBootstrap bootstrap_;
   GlintPhase phase_;
   bool frozen_ = false;
+  static constexpr std::size_t kTransparencyChannel = 0;  // of the interface's extra ones
   PhotometricLoss photometric_;
+  ClippedPhoto clipped_photo_;
+  PlanarLosses planes_;
   std::unique_ptr<PerceptualLoss> perceptual_;
   GeometryLosses geometry_;
   TransmissionLosses transmission_losses_;
@@ -283,10 +371,31 @@ GLINT_REGISTER(
         "glint/release",
         "GLINT (release)",
         "",
-        "as the official code trains it, where it differs from the paper",
+        "as the official code trains it, also where it differs from the paper",
         glint_release_overrides()
     )
 )
+GLINT_REGISTER(
+    MethodSpec,
+    glint_spec(
+        "glint/text",
+        "GLINT (text)",
+        "",
+        "the paper, with our own values where it is silent",
+        glint_text_overrides()
+    )
+)
+GLINT_REGISTER(MethodSpec, [] {
+  MethodSpec spec = glint_spec(
+      "glint/oracle",
+      "GLINT (true pane)",
+      "",
+      "no rival: depth, normals and transparency of the first surface are the true ones",
+      glint_oracle_overrides()
+  );
+  spec.rival = false;
+  return spec;
+}())
 GLINT_REGISTER(
     MethodSpec,
     glint_spec(
@@ -297,15 +406,14 @@ GLINT_REGISTER(
         {{"linear_light", true}}
     )
 )
-// docs/GLINT_NOTES.md has what each does alone.
 GLINT_REGISTER(
     MethodSpec,
     glint_spec(
         "glint/plus",
         "GLINT+",
         "",
-        "beyond the paper: transmission starts as a copy of the interface, a quarter of the resets",
-        {{"clone_interface", true}, {"opacity_reset_interval", 12000}}
+        "beyond the paper: both secondary sets start as copies of the interface, few resets",
+        glint_plus_overrides()
     )
 )
 GLINT_REGISTER(

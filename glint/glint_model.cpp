@@ -56,10 +56,17 @@ const Image& GlintModel::compose(
        .transmission = phase.transmission,
        .reflection = phase.reflection,
        .detach_origins = config.detach_origins,
-       .linear_light = config.linear_light}
+       .linear_light = config.linear_light,
+       .quiet_below = config.quiet_below}
   );
-  interface_output_ = &interface.forward(camera, phase.interface_degree);
-  const GlassBuffer& buffer = transport_.read_interface(camera, *interface_output_);
+  interface_output_ =
+      &interface.forward(camera, phase.interface_degree, interface_settings(config));
+  surface_ = interface_output_;
+  if (phase.truth != nullptr)
+    surface_ = &given_.put(
+        *interface_output_, *phase.truth, interface_channels(interface.cloud()).transparency
+    );
+  const GlassBuffer& buffer = transport_.read_interface(camera, *surface_);
   copy_color(interface_output_->features, layers_.interface);
   rasterized_ = phase.transmission && config.transmission != "trace";
   if (phase.transmission) render_transmission(camera, config, with_behind);
@@ -68,6 +75,20 @@ const Image& GlintModel::compose(
         buffer, reflection, phase.reflection_degree, config.mirror, phase.step, layers_.reflection
     );
   return transport_.compose(layers_);
+}
+
+RasterSettings GlintModel::interface_settings(const GlintConfig& config) const {
+  RasterSettings settings;
+  settings.with_plane_distance = phase_.planes;
+  const int t = interface_channels(interface.cloud()).transparency;
+  if (config.detach_transparency && t >= 0) settings.detached_features = 1u << t;
+  return settings;
+}
+
+const Image& GlintModel::interface_depth() {
+  if (surface_ == interface_output_) return buffer().depth;
+  expected_depth_map(*interface_output_, own_depth_);
+  return own_depth_;
 }
 
 void GlintModel::render_transmission(
@@ -125,7 +146,11 @@ void GlintModel::backward(
   if (phase_.reflection) dL_drays = &mirrored_.trace_backward(reflection, dL_dlayers.reflection);
   if (phase_.transmission) transmission_vjp(dL_dlayers.transmission, dL_dalpha);
   if (!interface_too) return;
-  transport_.interface_vjp(camera_, *interface_output_, dL_drays, dL_dtransparency, dL_dinterface);
+  const bool given = surface_ != interface_output_;
+  transport_.interface_vjp(
+      camera_, *surface_, dL_drays, dL_dtransparency, given ? given_.gradient() : dL_dinterface
+  );
+  if (given) given_.put_vjp(dL_dinterface);
   interface.backward(dL_dinterface);
 }
 
@@ -169,6 +194,7 @@ MapSet GlintModel::render(
     add_behind_depth(camera, out);
   else
     add_depth_estimates(*interface_output_, out);
+  add_depth_modes(interface.pass().rasterizer, out);
   if (phase.reflection) out["reflection"] = layers_.reflection;
   add_components(config.linear_light, out);
   return out;

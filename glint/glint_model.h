@@ -9,6 +9,7 @@
 #include "glint/glint_config.h"
 #include "glint/method.h"
 #include "glint/render/glass_transport.h"
+#include "glint/train/given_surface.h"
 #include "glint/train/mirrored_layer.h"
 #include "glint/train/trainable_set.h"
 
@@ -18,7 +19,9 @@ namespace glint {
 struct GlintPhase {
   bool transmission = true, reflection = true;
   int interface_degree = 3, transmission_degree = 3, reflection_degree = 3;
-  std::optional<int> step;  // of training; none: a picture for someone
+  std::optional<int> step;        // of training; none: a picture for someone
+  bool planes = false;            // the interface's plane distances are wanted
+  const MapSet* truth = nullptr;  // the true surface of the view, for an oracle; null: none
 };
 
 class GlintModel {
@@ -39,6 +42,8 @@ class GlintModel {
       RasterOutputGradient& dL_dinterface
   );
   const RasterOutput& interface_output() const { return *interface_output_; }
+  // [H][W][1] expected depth of the interface's surfels, metres; 0: none.
+  const Image& interface_depth();
   const GlassBuffer& buffer() const { return transport_.buffer(); }
   const GlassLayers& layers() const { return layers_; }
   // [H][W][1] of the transmission set behind the interface, where it took part.
@@ -51,6 +56,7 @@ class GlintModel {
   MapSet render(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
 
  private:
+  RasterSettings interface_settings(const GlintConfig& config) const;
   const Image& compose(
       const Camera& camera, const GlintConfig& config, const GlintPhase& phase, bool with_behind
   );
@@ -63,6 +69,9 @@ class GlintModel {
   GlintPhase phase_;
   GlassTransport transport_;
   const RasterOutput* interface_output_ = nullptr;
+  const RasterOutput* surface_ = nullptr;  // that output, or what was given for it
+  GivenSurface given_;
+  Image own_depth_;  // of the surfels, where the surface was given
   const Image* transmission_alpha_ = nullptr;
   bool rasterized_ = false;  // the transmission set
   GlassLayers layers_;

@@ -32,6 +32,7 @@ constexpr SettingRange kRanges[] = {
     {"feature_spread", at_least(0)},
     // Radiance transport.
     {"f0", kShare},
+    {"quiet_below", kShare},
     {"mirror_transmittance", kBelowOne},
     {"mirror_hits", at_least(1)},
     {"mirror_picture_transmittance", kBelowOne},
@@ -40,6 +41,7 @@ constexpr SettingRange kRanges[] = {
     {"mirror_share_block", at_least(1)},
     {"mirror_weight_below", at_least(0)},
     {"mirror_near", at_least(0)},
+    {"mirror_observe_every", at_least(0)},
     {"surface_weight", kShare},
     // Phases.
     {"sh_interval", at_least(1)},
@@ -57,6 +59,7 @@ constexpr SettingRange kRanges[] = {
     {"neighbor_max_angle", {0, 180}},
     {"scene_unit", above(0)},
     {"max_patches", at_least(0)},
+    {"multi_view_every", at_least(1)},
     // Density control.
     {"densify_interval", at_least(1)},
     {"densify_slow_interval", at_least(0)},
@@ -75,6 +78,14 @@ constexpr SettingRange kRanges[] = {
     {"max_abs_splits", at_least(0)},
     {"min_observations", at_least(0)},
     {"prune_holiday", at_least(-1)},
+    {"min_surfels", at_least(0)},
+    {"min_share", kShare},
+    {"transmission_min_share", kShare},
+    {"reflection_min_share", kShare},
+    {"gradient_quantile", kShare},
+    {"reflection_quantile", kShare},
+    {"scale_limit", at_least(0)},
+    {"secondary_scale_limit", at_least(0)},
     // Rates. Those that fall do so log-linearly.
     {"rate_position", at_least(0)},
     {"rate_position_final", above(0), "rate_position"},
@@ -86,6 +97,7 @@ constexpr SettingRange kRanges[] = {
     {"rate_rotation", at_least(0)},
     {"rate_transparency", at_least(0)},
     {"rate_specular", at_least(0)},
+    {"reflection_color_rate", at_least(0)},
     {"rate_albedo", at_least(0)},
     {"rate_roughness", at_least(0)},
     {"rate_feature", at_least(0)},

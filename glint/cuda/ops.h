@@ -99,6 +99,11 @@ class RasterizerOn final : public RasterBackend {
   ) override {
     pipeline_.first_surface(mask.on_device(), settings, depth.on_device());
   }
+  void depth_modes(
+      const RasterCall&, const DepthModeSettings& settings, Image& first, Image& last
+  ) override {
+    pipeline_.depth_modes(settings, first.on_device(), last.on_device());
+  }
   std::size_t num_pairs() override { return pipeline_.num_pairs(); }
   std::size_t num_pixel_pairs() override { return pipeline_.num_pixel_pairs(); }
 

@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "glint/cuda/raster_lists.h"
+#include "glint/render/depth_modes.h"
 #include "glint/render/pixel_pass.h"
 #include "glint/render/surface_pixel.h"
 
@@ -327,6 +328,19 @@ struct BackwardTile {
   }
 };
 
+// Hits of pixel i.
+GLINT_HD SurfaceHits surface_hits(const TilePass& pass, std::size_t i) {
+  const DeviceLists& lists = pass.lists;
+  const int x = static_cast<int>(i) % lists.width, y = static_cast<int>(i) / lists.width;
+  const float* limit = pass.near_limit;
+  SurfacePixel pixel(x, y, limit == nullptr ? pass.near_plane : max_of(pass.near_plane, limit[i]));
+  const int across = tile_grid(lists.width, lists.height).across;
+  const PairRange range = lists.ranges[y / kDeviceTile * across + x / kDeviceTile];
+  for (std::uint32_t k = range.begin; k < range.end; ++k)
+    if (!pixel.add(lists.splats[lists.pairs[k]])) break;
+  return pixel.hits;
+}
+
 // Depth of the first surface of a pixel (first_surface.h).
 struct FirstSurface {
   TilePass pass;
@@ -338,23 +352,24 @@ struct FirstSurface {
   GLINT_HD void operator()(std::size_t i) const {
     if (1 - out.alpha[i] > settings.max_transmittance)
       depth[i] = 0;
+    else if (mask[i] > 0.5f)
+      depth[i] = first_surface_depth(surface_hits(pass, i), settings);
     else
-      depth[i] = mask[i] > 0.5f ? behind_mask(i) : out.depth_median[i];
+      depth[i] = out.depth_median[i];
   }
+};
 
- private:
-  GLINT_HD float behind_mask(std::size_t i) const {
-    const DeviceLists& lists = pass.lists;
-    const int x = static_cast<int>(i) % lists.width, y = static_cast<int>(i) / lists.width;
-    const float* limit = pass.near_limit;
-    SurfacePixel pixel(
-        x, y, limit == nullptr ? pass.near_plane : max_of(pass.near_plane, limit[i])
-    );
-    const int across = tile_grid(lists.width, lists.height).across;
-    const PairRange range = lists.ranges[y / kDeviceTile * across + x / kDeviceTile];
-    for (std::uint32_t k = range.begin; k < range.end; ++k)
-      if (!pixel.add(lists.splats[lists.pairs[k]])) break;
-    return first_surface_depth(pixel.hits, settings);
+// First and last mode of a pixel's depth (depth_modes.h).
+struct DepthModesOfPixel {
+  TilePass pass;
+  DepthModeSettings settings;
+  float *first, *last;  // [H][W]
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const SurfaceHits hits = surface_hits(pass, i);
+    const DepthModes modes = ModeSearch(hits, settings).run();
+    first[i] = modes.first;
+    last[i] = modes.last;
   }
 };
 

@@ -94,6 +94,10 @@ class RasterPipeline {
   void first_surface(const float* mask, const FirstSurfaceSettings& settings, float* depth) {
     exec_.for_each(num_pixels(), FirstSurface{pass_, call_.out, mask, settings, depth});
   }
+  // The same; first, last: [H][W].
+  void depth_modes(const DepthModeSettings& settings, float* first, float* last) {
+    exec_.for_each(num_pixels(), DepthModesOfPixel{pass_, settings, first, last});
+  }
 
   // Of the last forward call. They wait for the device.
   std::size_t num_pairs() { return lists_->num_pairs(exec_); }

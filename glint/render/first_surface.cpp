@@ -10,25 +10,15 @@
 
 namespace glint {
 
-namespace {
-
-float surface_behind_mask(
-    const RasterCall& call,
-    const TileLists& lists,
-    const FirstSurfaceSettings& settings,
-    int x,
-    int y
-) {
+SurfaceHits surface_hits(const RasterCall& call, const TileLists& lists, int x, int y) {
   const ImageView limit = call.input.near_limit.view();
   const float near = call.settings.near_plane;
   SurfacePixel pixel(x, y, limit.empty() ? near : std::max(near, limit.at(x, y)));
   const int tile = y / kTileSize * lists.tiles_x + x / kTileSize;
   for (std::uint32_t k = lists.tile_begin[tile]; k < lists.tile_begin[tile + 1]; ++k)
     if (!pixel.add(lists.splats[lists.entries[k]])) break;
-  return first_surface_depth(pixel.hits, settings);
+  return pixel.hits;
 }
-
-}  // namespace
 
 void first_surface_on_cpu(
     const RasterCall& call,
@@ -45,7 +35,7 @@ void first_surface_on_cpu(
     if (1 - output.alpha.at(x, y) > settings.max_transmittance)
       z = 0;
     else if (mask.at(x, y) > 0.5f)
-      z = surface_behind_mask(call, lists, settings, x, y);
+      z = first_surface_depth(surface_hits(call, lists, x, y), settings);
     else
       z = output.depth_median.at(x, y);
   });

@@ -2,6 +2,7 @@
 #include "glint/render/map_ops.h"
 
 #include "glint/core/kernel.h"
+#include "glint/render/depth_modes.h"
 #include "glint/render/map_kernels.h"
 
 namespace glint {
@@ -37,6 +38,10 @@ void expected_depth_map_vjp(
 void add_depth_estimates(const RasterOutput& output, MapSet& maps) {
   expected_depth_map(output, maps["behind_expected"]);
   maps["behind_median"] = output.depth_median;
+}
+
+void add_depth_modes(Rasterizer& rasterizer, MapSet& maps) {
+  rasterizer.depth_modes(DepthModeSettings{}, maps["first_mode"], maps["last_mode"]);
 }
 
 void plane_depth_map(

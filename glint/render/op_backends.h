@@ -30,6 +30,9 @@ class RasterBackend {
       const FirstSurfaceSettings& settings,
       Image& depth
   ) = 0;
+  virtual void depth_modes(
+      const RasterCall& call, const DepthModeSettings& settings, Image& first, Image& last
+  ) = 0;
   virtual std::size_t num_pairs() = 0;
   virtual std::size_t num_pixel_pairs() = 0;
 };

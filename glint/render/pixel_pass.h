@@ -32,6 +32,7 @@ struct PassCode {
     has.plane_distance = kExtras && has.plane_distance;
     has.statistics = kExtras && has.statistics;
     has.surface = kSurface;
+    if (kFeatures == kColorChannels) has.detached = 0;
     return has;
   }
 };
@@ -159,17 +160,18 @@ struct PixelGradient {
 
   // From the maps, dL/d(maps) and `kept`; before the first hit.
   GLINT_HD void start(const PixelMaps<T, Code>& maps, MapChannels has) {
+    has = Code::known(has);
     median_behind = max_of(T(0.5f), *kept.transmittance);
     remaining = *dL.alpha * *maps.alpha;
-    if (Code::known(has).surface) remaining += *dL.depth_sum * *maps.depth_sum;
+    if (has.surface) remaining += *dL.depth_sum * *maps.depth_sum;
     for_each_attribute(
         Splat{},  // no values are looked at
         nullptr,
-        Code::known(has),
+        has,
         Code::kFeatureSlot,
-        [&](const auto&, int, int width, const auto& gradient, const auto& sum) {
+        [&](const auto&, int slot, int width, const auto& gradient, const auto& sum) {
           for_channels(sum, width, [&](int c) {
-            remaining = fma_of(gradient[c], sum[c], remaining);
+            if (is_blended(slot, c, has)) remaining = fma_of(gradient[c], sum[c], remaining);
           });
         },
         dL,
@@ -207,9 +209,9 @@ struct PixelGradient {
         feature,
         has,
         Code::kFeatureSlot,
-        [&](const auto& attribute, int, int width, const auto& gradient) {
+        [&](const auto& attribute, int slot, int width, const auto& gradient) {
           for_channels(gradient, width, [&](int c) {
-            value = fma_of(gradient[c], T(attribute[c]), value);
+            if (is_blended(slot, c, has)) value = fma_of(gradient[c], T(attribute[c]), value);
           });
         },
         dL
@@ -278,6 +280,10 @@ struct PixelGradient {
   }
 
  private:
+  // Whether the gradient of a channel of an attribute goes to the weights that blend it.
+  GLINT_HD static bool is_blended(int slot, int channel, MapChannels has) {
+    return slot != Code::kFeatureSlot || !has.is_detached(channel);
+  }
   // Of its depth in the sum and as the median: the last hit in front of which more than half of the
   // light is left.
   GLINT_HD T depth_gradient(const SplatHit<T>& hit) const {

@@ -9,6 +9,8 @@
 // One that differs from hit to hit takes 1. and its two lines in pixel_pass.h, forward and back.
 #pragma once
 
+#include <cstdint>
+
 #include "glint/core/image.h"
 
 namespace glint {
@@ -40,9 +42,13 @@ struct MapChannels {
   bool plane_distance = false;
   bool statistics = false;  // of density control
   bool surface = true;      // depth_sum, depth_median, normal
+  // Feature channels, a bit each, whose gradient ends at the features: where surfels are and how
+  // opaque is not moved by it. Not in calls of colour alone.
+  std::uint32_t detached = 0;
 
   // Whether surfels get sums back that most calls have no use for.
   GLINT_HD constexpr bool has_extras() const { return plane_distance || statistics; }
+  GLINT_HD constexpr bool is_detached(int feature) const { return (detached >> feature & 1u) != 0; }
 };
 
 // f(name, channels, map of each argument) for every map; 0 channels: the call has it not.

@@ -61,6 +61,8 @@ SurfelGeometry<T> load_geometry(const RasterInput& input, std::size_t i);
 
 void build_tile_lists(const RasterCall& call, TileLists& lists);  // fills `lists`
 
+// Hits of a pixel of what was listed.
+SurfaceHits surface_hits(const RasterCall& call, const TileLists& lists, int x, int y);
 // Rasterizer::first_surface() of what was listed; `depth` has the image's size.
 void first_surface_on_cpu(
     const RasterCall& call,
@@ -69,6 +71,14 @@ void first_surface_on_cpu(
     ImageView mask,
     const FirstSurfaceSettings& settings,
     Image& depth
+);
+// Rasterizer::depth_modes() of what was listed; both maps have the image's size.
+void depth_modes_on_cpu(
+    const RasterCall& call,
+    const TileLists& lists,
+    const DepthModeSettings& settings,
+    Image& first,
+    Image& last
 );
 
 }  // namespace glint

@@ -129,4 +129,11 @@ void Rasterizer::first_surface(
   state_->device().first_surface(call, state_->output, mask, settings, depth);
 }
 
+void Rasterizer::depth_modes(const DepthModeSettings& settings, Image& first, Image& last) {
+  const RasterCall& call = state_->last_call();
+  fit(first, call.camera.size(), 1);
+  fit(last, call.camera.size(), 1);
+  state_->device().depth_modes(call, settings, first, last);
+}
+
 }  // namespace glint

@@ -21,6 +21,8 @@
 
 namespace glint {
 
+struct DepthModeSettings;  // depth_modes.h
+
 struct RasterSettings {
   float near_plane = 0.2f;       // metres, planar depth
   bool with_distortion = false;  // also the distortion map [Huang24 Eq. 13]
@@ -34,6 +36,8 @@ struct RasterSettings {
   bool with_statistics = false;
   // RasterGradient::screen, the statistic of density control, counts hits of the low-pass, too.
   bool screen_with_low_pass = false;
+  // Feature channels, a bit each, whose gradient goes to the features alone (MapChannels).
+  std::uint32_t detached_features = 0;
   // On the CPU: at most so many pixels at once, of the widths that there are (16 with AVX-512, 8,
   // 1: without SIMD); the same text, and the same bytes with 8 and 16. For perf and tests.
   int lanes = 16;
@@ -68,6 +72,7 @@ struct RasterCall {
         settings.with_statistics};
     has.surface = settings.with_surface || has.distortion || has.has_extras() ||
                   has.features != kColorChannels;
+    has.detached = settings.detached_features;
     return has;
   }
 };
@@ -126,6 +131,9 @@ class Rasterizer {
   // none. mask [H][W][1]: pixels above 0.5 see something behind it. Errors (kUsage): the mask has
   // not the image's size; there was no forward().
   void first_surface(const Image& mask, const FirstSurfaceSettings& settings, Image& depth);
+  // Of the last forward call: depths [H][W][1] of the first and of the last mode of the weights
+  // along each ray (depth_modes.h), metres, 0: none. Errors (kUsage): there was no forward().
+  void depth_modes(const DepthModeSettings& settings, Image& first, Image& last);
 
   const RasterCall& call() const;      // the last one; errors (kUsage): there was none
   const RasterOutput& output() const;  // of it

@@ -250,6 +250,11 @@ class RasterOnCpu final : public RasterBackend {
   ) override {
     first_surface_on_cpu(call, saved_.lists(), output, mask, settings, depth);
   }
+  void depth_modes(
+      const RasterCall& call, const DepthModeSettings& settings, Image& first, Image& last
+  ) override {
+    depth_modes_on_cpu(call, saved_.lists(), settings, first, last);
+  }
   std::size_t num_pairs() override { return saved_.lists().num_pairs(); }
   std::size_t num_pixel_pairs() override {
     std::size_t sum = 0;

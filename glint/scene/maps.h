@@ -76,6 +76,10 @@ inline constexpr auto kMaps = [] {
        "",
        "",
        false},
+      // First and last mode of the weights along a ray, by one rule for every method, of the set
+      // whose depth it reports. Holes stay holes. See add_depth_modes().
+      {"first_mode", "Depth, first mode", kDepth, "first_mode.exr", "", "", "", false},
+      {"last_mode", "Depth, last mode", kDepth, "last_mode.exr", "", "", "", false},
       {"behind_normal", "Normal behind glass", kNormal, "", "", "behind_normal", ""},
       // Radiance of each surfel set on its own.
       {"interface", "Interface", kColor, "", "interface.png", "", ""},

@@ -108,7 +108,7 @@ void SurfelAdam::step(
     first_.resize(cloud.size());
     second_.resize(cloud.size());
   }
-  const float position = position_rate(rates, steps_) * extent;
+  const float position = position_rate(rates, rates.first_step + steps_) * extent;
   ++steps_;
   const float correction1 = 1 - std::pow(AdamKernel<true>::kBeta1, static_cast<float>(steps_));
   const float correction2 = 1 - std::pow(AdamKernel<true>::kBeta2, static_cast<float>(steps_));

@@ -25,6 +25,7 @@ struct SurfelRates {
   // Numbers without a gradient in a step stay, and so do their moments (no drift by momentum).
   bool only_seen = false;
   std::vector<float> extra;  // of the set's extra channels, in their order
+  int first_step = 0;        // of the run, of Adam's first: positions slow down by the run's steps
 
   template <class V>
   void visit(V&& v) {

@@ -86,6 +86,13 @@ DensifyConfig DensifyConfig::for_views(std::size_t training_views) const {
   return config;
 }
 
+DensifyConfig DensifyConfig::for_surfels(std::size_t count) const {
+  DensifyConfig config = *this;
+  const auto share = static_cast<int>(std::ceil(min_share * static_cast<float>(count)));
+  config.min_surfels = std::max(min_surfels, share);
+  return config;
+}
+
 void drop_lightest(std::size_t limit, DensifyRows& rows, DensifyCounts& counts) {
   std::vector<std::uint32_t> kept;
   for (std::uint32_t i = 0; i < rows.keep.size(); ++i)
@@ -272,18 +279,48 @@ std::vector<float> Densifier::mean_weights() const {
   return weights;
 }
 
+float Densifier::mean_gradient(std::size_t i) const {
+  return views_[i] > 0 ? gradient_sum_[i] / static_cast<float>(views_[i]) : 0.0f;
+}
+
+float Densifier::threshold() const {
+  std::vector<float> seen;
+  if (config_.gradient_quantile > 0)
+    for (std::size_t i = 0; i < views_.size(); ++i)
+      if (views_[i] > 0) seen.push_back(mean_gradient(i));
+  if (seen.empty()) return config_.gradient_threshold;
+  const auto rank =
+      static_cast<std::ptrdiff_t>(config_.gradient_quantile * static_cast<float>(seen.size() - 1));
+  std::nth_element(seen.begin(), seen.begin() + rank, seen.end());
+  return std::min(config_.gradient_threshold, seen[static_cast<std::size_t>(rank)]);
+}
+
+// Those whose mean gradient asks for more surfels, in their order; where there is no room for all,
+// those of the largest gradients (among equals: the first).
+std::vector<std::uint32_t> Densifier::wanted_parents(std::size_t count) const {
+  const float least = threshold();
+  std::vector<std::uint32_t> parents;
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (mean_gradient(i) >= least) parents.push_back(i);
+  const auto most = static_cast<std::size_t>(config_.max_surfels);
+  const std::size_t room = most - std::min(most, count);
+  if (config_.cap_by_visibility || parents.size() <= room) return parents;
+  std::stable_sort(parents.begin(), parents.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return mean_gradient(a) > mean_gradient(b);
+  });
+  parents.resize(room);
+  std::sort(parents.begin(), parents.end());
+  return parents;
+}
+
 // Clones and splits where the mean gradient asks for more surfels.
 DensifyRows Densifier::grow(SurfelCloud& cloud, DensifyCounts& counts) {
   constexpr Shape kSplit{2, 1.6f};
   const std::size_t count = cloud.size();
   statistics(count);
-  const auto most = static_cast<std::size_t>(config_.max_surfels);
   std::vector<std::uint32_t> clones, splits;
   std::vector<std::uint8_t> taken(count, 0);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const float mean = views_[i] > 0 ? gradient_sum_[i] / static_cast<float>(views_[i]) : 0.0f;
-    const bool room = config_.cap_by_visibility || count + clones.size() + splits.size() < most;
-    if (mean < config_.gradient_threshold || !room) continue;
+  for (const std::uint32_t i : wanted_parents(count)) {
     (max_scale_of(cloud, i) > config_.clone_scale * extent_ ? splits : clones).push_back(i);
     taken[i] = 1;
   }
@@ -303,11 +340,27 @@ DensifyRows Densifier::grow(SurfelCloud& cloud, DensifyCounts& counts) {
   return rows;
 }
 
+std::size_t Densifier::room_to_prune(const DensifyRows& rows) const {
+  const auto least = static_cast<std::size_t>(config_.min_surfels);
+  const std::size_t kept = rows.num_kept();
+  return kept - std::min(kept, least);
+}
+
+// Where not all may go, the faintest (among equals: the first).
 void Densifier::prune_faint(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts)
     const {
   const float min_logit = logit(config_.min_opacity);
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.opacity_logits[i] < min_logit) rows.drop(i, counts);
+  std::vector<std::uint32_t> faint;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i)
+    if (rows.keep[i] != 0 && cloud.opacity_logits[i] < min_logit) faint.push_back(i);
+  const std::size_t room = room_to_prune(rows);
+  if (faint.size() > room) {
+    std::stable_sort(faint.begin(), faint.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return cloud.opacity_logits[a] < cloud.opacity_logits[b];
+    });
+    faint.resize(room);
+  }
+  for (const std::uint32_t i : faint) rows.drop(i, counts);
 }
 
 bool Densifier::is_large(const SurfelCloud& cloud, std::size_t i) const {
@@ -316,8 +369,15 @@ bool Densifier::is_large(const SurfelCloud& cloud, std::size_t i) const {
 
 void Densifier::prune_large(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts)
     const {
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (is_large(cloud, i)) rows.drop(i, counts);
+  const bool light_only = config_.prune_light_large;
+  const float light = light_only ? light_quantile(rows, kLightest) : 0;
+  std::size_t room = room_to_prune(rows);
+  for (std::size_t i = 0; i < cloud.size() && room > 0; ++i) {
+    if (rows.keep[i] == 0 || !is_large(cloud, i)) continue;
+    if (light_only && rows.weights[i] >= light && rows.weights[i] > 0) continue;
+    rows.drop(i, counts);
+    --room;
+  }
 }
 
 // Caps by visibility drop what is too much afterwards.
@@ -391,6 +451,21 @@ bool Densifier::resets_within(int step, int margin) const {
   const int last = step - since, next = last + config_.reset_interval;
   const bool after = last > 0 && last < config_.until && since <= margin;
   return after || (next < config_.until && next - step <= margin);
+}
+
+void Densifier::limit_scales(SurfelCloud& cloud, SurfelAdam& adam) const {
+  if (config_.scale_limit <= 0) return;
+  constexpr float kBelow =
+      4e-6f;  // so that rounding makes none larger than a max_scale of the same
+  run_kernel(
+      cloud.log_scales.size(),
+      kGrain,
+      LimitScales{
+          std::log(config_.scale_limit * extent_) - kBelow,
+          cloud.log_scales.on_device(),
+          adam.first().log_scales.on_device(),
+          adam.second().log_scales.on_device()}
+  );
 }
 
 void Densifier::reset_opacity(SurfelCloud& cloud, SurfelAdam& adam) const {

@@ -55,6 +55,13 @@ struct DensifyConfig {
   // [Xie25] waits longer between densifications in the middle of a run.
   int slow_interval = 0, slow_from = 3000, slow_until = 18000;
   bool split_large = false, cap_by_visibility = false;
+  // As GLINT's second release: a set is never pruned below so many surfels, nor below a share of
+  // those it starts with; the threshold is lowered to a quantile of the observed gradients (0: as
+  // it is); of large surfels only the lightest tenth and those that no view saw go.
+  int min_surfels = 0;
+  float min_share = 0, gradient_quantile = 0;
+  bool prune_light_large = false;
+  float scale_limit = 0;  // x extent: scales are held below after each step; 0: they are not
   std::vector<ChannelReset> channel_resets;  // of the set's own channels; its method's to say
 
   static constexpr int kHolidayRule = -1, kShortestHoliday = 200;
@@ -86,6 +93,15 @@ struct DensifyConfig {
     v("densify_slow_until", slow_until, "last step of the slow window");
     v("split_large", split_large, "large surfels are split in five, those least seen pruned");
     v("cap_by_visibility", cap_by_visibility, "above 0.9 x max_surfels those least seen go");
+    v("min_surfels", min_surfels, "a set is not pruned below so many");
+    v("min_share", min_share, "nor below this share of the surfels it starts with");
+    v("gradient_quantile",
+      gradient_quantile,
+      "the threshold is at most this quantile of the observed gradients; 0: it stays");
+    v("prune_light_large",
+      prune_light_large,
+      "of large surfels only the lightest tenth and those not seen are pruned");
+    v("scale_limit", scale_limit, "of the extent: scales are held below; 0: they are not");
   }
   // Published windows to this run's steps; scaled(published, at least).
   template <class F>
@@ -102,6 +118,8 @@ struct DensifyConfig {
   // With the rule's holiday for so many training views, and resets as far apart that at least a
   // third of the time between two is open to pruning.
   DensifyConfig for_views(std::size_t training_views) const;
+  // With min_share in numbers, for a set that starts with so many surfels.
+  DensifyConfig for_surfels(std::size_t count) const;
   // Steps between densifications at this step.
   int interval_at(int step) const {
     const bool slow = slow_interval > 0 && step > slow_from && step <= slow_until;
@@ -159,6 +177,8 @@ class Densifier {
   DensifyCounts update(int step, SurfelCloud& cloud, SurfelAdam& adam);
   // Drops the surfels with keep[i] == 0, their moments and what was observed of them.
   void prune(const std::vector<std::uint8_t>& keep, SurfelCloud& cloud, SurfelAdam& adam);
+  // Lowers scales above scale_limit to it; the optimiser forgets their moments.
+  void limit_scales(SurfelCloud& cloud, SurfelAdam& adam) const;
   // Whether opacities are reset at most `margin` steps before or after this one.
   bool resets_within(int step, int margin) const;
 
@@ -179,6 +199,11 @@ class Densifier {
   };
   DensifyCounts densify(SurfelCloud& cloud, SurfelAdam& adam, int step);
   DensifyRows grow(SurfelCloud& cloud, DensifyCounts& counts);
+  float mean_gradient(std::size_t i) const;  // of the views that saw the surfel
+  float threshold() const;
+  std::vector<std::uint32_t> wanted_parents(std::size_t count) const;
+  // How many may go.
+  std::size_t room_to_prune(const DensifyRows& rows) const;
   void prune_faint(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) const;
   void prune_large(const SurfelCloud& cloud, DensifyRows& rows, DensifyCounts& counts) const;
   std::size_t most_split_in_five(const DensifyRows& rows) const;

@@ -79,6 +79,17 @@ struct ClearColumn {
   GLINT_HD void operator()(std::size_t i) const { values[i * width + column] = 0; }
 };
 
+// Log scales above the highest are lowered to it, and their moments forgotten.
+struct LimitScales {
+  float highest;
+  float *log_scales, *first, *second;  // [N][2]
+  GLINT_HD void operator()(std::size_t i) const {
+    if (log_scales[i] <= highest) return;
+    log_scales[i] = highest;
+    first[i] = second[i] = 0;
+  }
+};
+
 // |v| without overflow of the squares.
 GLINT_HD float safe_length(Vec3f v) {
   const float x = abs_of(v.x), y = abs_of(v.y), z = abs_of(v.z);
@@ -114,6 +125,7 @@ using DensifyKernels = KernelList<
     ObserveTrace,
     CountObservations,
     LowerColumn,
-    ClearColumn>;
+    ClearColumn,
+    LimitScales>;
 
 }  // namespace glint

@@ -64,7 +64,9 @@ std::vector<std::string> GeometryLosses::set_up(
   config_ = config;
   depth_prior_.gradient_scales = config.depth_gradient_scales;
   normal_prior_.l1 = config.normal_l1;
+  normal_prior_.weighted_mean = config.weighted_normals;
   consistency_.unit_normals = config.unit_consistency;
+  consistency_.cosine = config.cosine_consistency;
   std::vector<std::string> warnings;
   require_prior(scene, "depth", "L_depth", method, config_.lambda_depth, warnings);
   require_prior(scene, "normal", "L_normal", method, config_.lambda_normal, warnings);

@@ -22,7 +22,7 @@ struct GeometryLossConfig {
   float min_cosine = 0.3f;
   float normal_l1 = 0;
   bool near_first = false, near_consistency = false;
-  bool unit_consistency = false;
+  bool unit_consistency = false, cosine_consistency = false, weighted_normals = false;
   int depth_gradient_scales = 0;
 
   template <class V>
@@ -39,6 +39,10 @@ struct GeometryLossConfig {
     v("near_first", near_first, "the normal prior weighs near pixels more");
     v("near_consistency", near_consistency, "normal consistency weighs near pixels more");
     v("unit_consistency", unit_consistency, "normal consistency is of unit normals");
+    v("cosine_consistency",
+      cosine_consistency,
+      "normal consistency is the weighted mean of 1 - cosine, without alpha");
+    v("weighted_normals", weighted_normals, "the normal prior's mean divides by its weights");
     v("depth_gradient_scales", depth_gradient_scales, "scales of the depth prior's gradient term");
   }
   // The priors that these weights look at (Method::inputs).
@@ -55,8 +59,8 @@ struct GeometryLossConfig {
 // as prior_control() gives them to others. Weights and starts that the paper does not give:
 // docs/GLINT_NOTES.md, "What the paper leaves open".
 struct PriorLosses {
-  static constexpr float kLambdaDepth = 0.1f, kLambdaNormal = 0.1f, kMinCosine = 0.3f;
-  static constexpr float kLambdaSmooth = 0.01f;
+  static constexpr float kLambdaDepth = 0.05f, kLambdaNormal = 0.3f, kMinCosine = 0.3f;
+  static constexpr float kLambdaSmooth = 0.05f / 3;  // there a mean over three components
   static constexpr int kGateFrom = 10000, kSmoothFrom = 5000, kIterations = 60000;
 };
 

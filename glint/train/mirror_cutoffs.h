@@ -20,6 +20,10 @@ struct MirrorCutoffs {
   float share_below = 0.2f;  // k_s
   int share_block = 2;       // pixels across and down
   float weight_below = 0;    // transmittance times k_s
+  // One traced ray of several pixels gets the sum of their gradients, so that the norm which asks
+  // for more surfels grows with the pixels that share. While the set grows, one step in so many
+  // has a ray for each pixel, and density control looks at those steps alone; 0: at all.
+  int observe_every = 4;
 
   template <class V>
   void visit(V&& v) {
@@ -32,6 +36,10 @@ struct MirrorCutoffs {
       share_below,
       "k_s below which pixels of a block share a mirrored ray in training; 0: none do");
     v("mirror_share_block", share_block, "pixels across and down that share a mirrored ray");
+    v("mirror_observe_every",
+      observe_every,
+      "of a growing set, one step in so many shares no mirrored rays, and growth counts it alone; "
+      "0: growth counts all steps, shared rays too");
     v("mirror_weight_below",
       weight_below,
       "transmittance times k_s below which mirrored rays end in training; 0: all at "
@@ -40,6 +48,11 @@ struct MirrorCutoffs {
   }
   RaySharing sharing() const { return {.below = share_below, .block = share_block}; }
   RayStops stops() const { return {.weight_below = weight_below, .latest = transmittance}; }
+  bool shares() const { return share_below > 0 || weight_below > 0; }
+  // Whether density control looks at this step, in which no ray is shared then.
+  bool observes(int step) const {
+    return !shares() || observe_every <= 0 || step % observe_every == 0;
+  }
   // Of training, or of a picture for someone.
   TraceSettings settings(bool training) const {
     TraceSettings settings;

@@ -13,7 +13,9 @@ void MirroredLayer::trace(
     std::optional<int> step,
     Image& layer
 ) {
-  chosen_ = step && (mirror.share_below > 0 || mirror.weight_below > 0);
+  observes_ = !step || mirror.observes(*step);
+  const bool own = observes_ && mirror.observe_every > 0 && set.grows();
+  chosen_ = step && mirror.shares() && !own;
   const Rays& rays =
       chosen_ ? shared_.choose(buffer, mirror.sharing(), mirror.stops(), *step) : buffer.reflected;
   const Image& color = set.trace(rays, sh_degree, mirror.settings(step.has_value())).color;
@@ -28,7 +30,7 @@ const Rays& MirroredLayer::trace_backward(TrainableSet& set, const Image& dL_dla
     shared_.spread_vjp(dL_dlayer, dL_dtrace_.color);
   else
     copy_color(dL_dlayer, dL_dtrace_.color);
-  return set.trace_backward(dL_dtrace_);
+  return set.trace_backward(dL_dtrace_, observes_);
 }
 
 }  // namespace glint

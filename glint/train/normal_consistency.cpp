@@ -19,10 +19,31 @@ double NormalConsistencyLoss::evaluate(
 ) {
   if (!pixel_weight.empty())
     check_fits("weights of normal consistency", pixel_weight, depth.size(), 1);
-  const auto evaluate = [&](auto& loss) {
-    return loss.evaluate(camera, normal, depth, alpha, pixel_weight, weight, dL_dnormal, dL_ddepth);
+  const auto evaluate = [&](auto& loss, const Image& opacity, const Image& factors) {
+    return loss.evaluate(camera, normal, depth, opacity, factors, weight, dL_dnormal, dL_ddepth);
   };
-  return unit_normals ? evaluate(of_units_) : evaluate(loss_);
+  if (!cosine)
+    return unit_normals ? evaluate(of_units_, alpha, pixel_weight)
+                        : evaluate(loss_, alpha, pixel_weight);
+  fit(ones_, depth.size(), 1);
+  ones_.array().fill(1);
+  return evaluate(of_units_, ones_, shares(camera, depth, pixel_weight));
+}
+
+const Image& NormalConsistencyLoss::shares(
+    const Camera& camera, const Image& depth, const Image& pixel_weight
+) {
+  constexpr std::size_t kGrain = 1024;  // pixels a block
+  const SumConsistentWeights weights{
+      unprojector(camera, depth.on_device()), pixel_weight.on_device()};
+  sum_kernel_to(depth.size(), weights, weight_sum_);
+  fit(shares_, depth.size(), 1);
+  run_kernel(
+      depth.num_pixels(),
+      kGrain,
+      ShareConsistentWeights{weights, weight_sum_.on_device(), shares_.on_device()}
+  );
+  return shares_;
 }
 
 Image NormalConsistencyLoss::depth_normals(const Camera& camera, const Image& depth) {

@@ -184,6 +184,29 @@ struct ConsistencyAt {
 };
 using NormalConsistencyAt = ConsistencyAt<false>;
 using UnitNormalConsistencyAt = ConsistencyAt<true>;
+// The weights of pixels that have a normal of the depth, so that the mean over all pixels is the
+// weighted mean over these: their sum first, then each.
+struct SumConsistentWeights {
+  Unprojector unproject;
+  ImageView pixel_weight;  // may be empty: 1
+
+  GLINT_HD double at(int x, int y) const {
+    if (!differences_at(unproject, x, y).valid) return 0;
+    return pixel_weight.empty() ? 1.0 : static_cast<double>(pixel_weight.at(x, y));
+  }
+  GLINT_HD double operator()(int x, int y) const { return at(x, y); }
+};
+struct ShareConsistentWeights {
+  SumConsistentWeights weights;
+  const double* sum;
+  ImageRef out;
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const int x = static_cast<int>(i) % out.width, y = static_cast<int>(i) / out.width;
+    const auto pixels = static_cast<double>(out.width) * static_cast<double>(out.height);
+    out.at(x, y) = *sum > 0 ? static_cast<float>(weights.at(x, y) * pixels / *sum) : 0.0f;
+  }
+};
 // W |A N_D - N|_1 (plane_consistency.h).
 struct PlaneConsistencyAt {
   Unprojector unproject;
@@ -238,6 +261,8 @@ using NormalKernels = KernelList<
     NormalSmoothnessAt<float>,
     ConsistencyAt<false>,
     ConsistencyAt<true>,
+    SumConsistentWeights,
+    ShareConsistentWeights,
     PlaneConsistencyAt>;
 
 }  // namespace glint

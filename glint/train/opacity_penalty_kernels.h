@@ -59,7 +59,44 @@ struct PenaltyInView {
   }
 };
 
-using OpacityPenaltyKernels =
-    KernelList<CountInView, PenaltyInView<OfOpacity>, PenaltyInView<OfEntropy>>;
+// Numbers of surfels, laid out in rows.
+struct SumInRows {
+  const float* values;  // [count]
+  std::size_t count;
+  int row;  // a row's length
+  GLINT_HD double operator()(int x, int y) const {
+    const std::size_t i =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(row) + static_cast<std::size_t>(x);
+    return i < count ? static_cast<double>(values[i]) : 0;
+  }
+};
+// sum v H(sigmoid(logit)) of an extra channel, v the surfel's weight in the picture, and the
+// gradient of weight times its mean.
+struct ChannelEntropy {
+  SumInRows visibility;
+  const float* logits;  // [N][width]
+  std::size_t column, width;
+  const double* sum;  // of the visibilities
+  float weight;
+  float* dL_dlogits;  // added to
+
+  GLINT_HD double operator()(int x, int y) const {
+    const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(visibility.row) +
+                          static_cast<std::size_t>(x);
+    if (i >= visibility.count || !(visibility.values[i] > 0)) return 0;
+    const float v = visibility.values[i], p = sigmoid(logits[i * width + column]);
+    float dL_dp = 0;
+    binary_entropy_vjp(p, weight * v / static_cast<float>(*sum), dL_dp);
+    dL_dlogits[i * width + column] += sigmoid_vjp(p, dL_dp);
+    return static_cast<double>(v * binary_entropy(p));
+  }
+};
+
+using OpacityPenaltyKernels = KernelList<
+    CountInView,
+    PenaltyInView<OfOpacity>,
+    PenaltyInView<OfEntropy>,
+    SumInRows,
+    ChannelEntropy>;
 
 }  // namespace glint

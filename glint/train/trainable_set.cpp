@@ -63,9 +63,12 @@ TrainableSet::TrainableSet(SurfelCloud cloud, const SetTraining& training)
           training.rates,
           false,
           0,
+          0,
           {},
           Densifier(
-              training.densify.for_views(training.training_views), training.extent, training.seed
+              training.densify.for_views(training.training_views).for_surfels(cloud_.size()),
+              training.extent,
+              training.seed
           ),
           {}})) {
   training_->gradient.extra_names = cloud_.extra_names;
@@ -132,11 +135,36 @@ double TrainableSet::penalise_opacity_entropy(float weight, const Array<std::uin
   return penalise<OfEntropy>(weight, in_view);
 }
 
-const Rays& TrainableSet::trace_backward(const TraceOutputGradient& dL_doutput) {
+double TrainableSet::penalise_entropy(
+    float weight, std::size_t channel, const FloatArray& visibility
+) {
+  constexpr int kRow = 256;
+  Training& t = training();
+  const SumInRows weights{visibility.device_for_reading(), cloud_.size(), kRow};
+  const ImageSize layout{kRow, static_cast<int>((cloud_.size() + kRow - 1) / kRow)};
+  sum_kernel_to(layout, weights, t.num_in_view);
+  const ChannelEntropy entropy{
+      weights,
+      cloud_.extra_logits.on_device(),
+      channel,
+      cloud_.num_extra(),
+      t.num_in_view.on_device(),
+      weight,
+      t.gradient.extra_logits.on_device()};
+  const double sum = sum_kernel(layout, entropy), of = told(t.num_in_view);
+  return of > 0 ? sum / of : 0;
+}
+
+const Rays& TrainableSet::trace_backward(const TraceOutputGradient& dL_doutput, bool observe) {
   Training& t = training();
   const TraceGradient& gradient = glint::trace_backward(trace_pass_, dL_doutput, t.gradient);
-  t.densifier.observe(gradient, gradient.rays.origins.height());
+  if (observe) t.densifier.observe(gradient, gradient.rays.origins.height());
   return gradient.rays;
+}
+
+bool TrainableSet::grows() const {
+  return training_ != nullptr && !training_->frozen_geometry &&
+         training_->last_step + 1 < training_->settings.densify.until;
 }
 
 void TrainableSet::freeze_geometry() {
@@ -172,7 +200,9 @@ DensifyCounts TrainableSet::update(int step) {
   Training& t = training();
   const bool still = t.frozen_geometry || step < t.opacity_paused_until;
   t.rates.opacity = still ? 0 : t.settings.rates.opacity;
+  t.last_step = step;
   t.adam.step(cloud_, t.gradient, t.rates, t.settings.extent);
+  if (!t.frozen_geometry) t.densifier.limit_scales(cloud_, t.adam);
   const DensifyCounts counts =
       t.frozen_geometry ? DensifyCounts{} : t.densifier.update(step, cloud_, t.adam);
   t.gradient.resize(cloud_.size());  // zero after every step
@@ -206,6 +236,7 @@ void TrainableSet::visit_state(TrainingState& state) {
   state("densifier", t.densifier);
   state("frozen_geometry", t.frozen_geometry);
   state("opacity_paused_until", t.opacity_paused_until);
+  state("last_step", t.last_step);
   if (!state.reading()) return;
   check_read(channels);
   if (t.frozen_geometry) freeze_geometry();

@@ -58,8 +58,14 @@ class TrainableSet final : public SurfelSet {
   double penalise_opacity(float weight, const Array<std::uint8_t>& in_view);
   // The same of the mean binary entropy of these opacities.
   double penalise_opacity_entropy(float weight, const Array<std::uint8_t>& in_view);
+  // The same of the binary entropy of an extra channel, averaged by the surfels' weights in a
+  // picture, visibility [N], which are constants; 0 where none has any.
+  double penalise_entropy(float weight, std::size_t channel, const FloatArray& visibility);
   // backward() for the last trace(); returns the rays' gradient, valid until the next call.
-  const Rays& trace_backward(const TraceOutputGradient& dL_doutput);
+  // observe: the statistics count it.
+  const Rays& trace_backward(const TraceOutputGradient& dL_doutput, bool observe = true);
+  // Whether an update() to come may add surfels. A set that is only rendered does not.
+  bool grows() const;
   // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.
   void freeze_geometry();
   // Only opacities stay, from now on.
@@ -93,9 +99,10 @@ class TrainableSet final : public SurfelSet {
     SurfelRates rates;  // now
     bool frozen_geometry;
     int opacity_paused_until;
+    int last_step;  // of update(); 0: none yet
     SurfelAdam adam;
     Densifier densifier;
-    Array<double> num_in_view;  // [1], of the last penalise_opacity()
+    Array<double> num_in_view;  // [1], of the last penalty
   };
   Training& training() const;
   // Errors (kBadReference): a cloud of other channels, moments that are no pair of its kind.

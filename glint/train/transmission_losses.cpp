@@ -9,11 +9,19 @@
 #include "glint/core/kernel.h"
 #include "glint/render/map_kernels.h"
 #include "glint/render/map_ops.h"
+#include "glint/train/check_fits.h"
+#include "glint/train/counted_kernels.h"
 #include "glint/train/glass_masks.h"
 
 namespace glint {
 
 namespace {
+
+// A mask of one channel, 0 where a depth map has none.
+void keep_with_depth(const Image& depth, Image& mask) {
+  check_fits("depth prior", depth, mask.size(), 1);
+  run_kernel(mask.num_pixels(), 4096, KeepCounted{depth.on_device(), mask.on_device()});
+}
 
 // Adds the terms of some losses under names of their own.
 void add_terms(const std::string& prefix, const StepStats& from, StepStats& to) {
@@ -24,6 +32,7 @@ GeometryLossConfig direct_geometry(const TransmissionLossConfig& config) {
   GeometryLossConfig geometry;
   geometry.lambda_consistency = config.lambda_direct_consistency;
   geometry.near_consistency = config.direct_near_consistency;
+  geometry.cosine_consistency = config.direct_cosine_consistency;
   geometry.lambda_smooth = config.lambda_direct_smooth;
   geometry.smooth_from = config.direct_smooth_from;
   return geometry;
@@ -140,14 +149,17 @@ BorrowedImage TransmissionLosses::needed_depths(const View& view, bool only_labe
   return needed_;
 }
 
-// The release's plausibility: on pixels labelled opaque, the set seen on its own is the interface.
-// Half of the depth loss with its gradient term, and the mean of the normals' over these pixels.
+// The release's plausibility: on pixels labelled opaque that have a depth prior, the set seen on
+// its own is the interface. Half of the depth loss with its gradient term, and the mean of the
+// normals' over these pixels.
 void TransmissionLosses::add_plausible(
     const View& view, const RasterOutput& out, const GlassBuffer& buffer, StepStats& stats
 ) {
   const bool eroded = guidance_.kind == GuidanceKind::kBce;
-  const Image& mask = eroded ? masks_.labelled_opaque : masks_.opaque;
-  if (mask.empty()) return;
+  if (masks_.opaque.empty()) return;
+  plausible_ = eroded ? masks_.labelled_opaque : masks_.opaque;
+  if (view.priors.has("depth")) keep_with_depth(view.priors["depth"], plausible_);
+  const Image& mask = plausible_;
   const float weight = config_.lambda_plausible;
   clear_image(dL_ddepth_, out.alpha.size(), 1);
   const double of_depth =
@@ -209,14 +221,18 @@ void TransmissionLosses::add(
   const bool guided =
       config_.lambda_transparency > 0 && iteration >= config_.transparency_from && has_cues(view);
   const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
-  if (guided || plausible || config_.has_direct()) {
+  const bool labelled =
+      guided || plausible ||
+      (config_.masked_transparency_prior && has_transparency_prior(iteration) && has_cues(view));
+  if (!labelled) masks_ = {};
+  if (labelled || config_.has_direct()) {
     const bool only_labels = !plausible && !config_.has_direct();
     const RasterOutput& direct =
         behind != nullptr
             ? transmission.forward_again(pass_, *behind, {}, needed_depths(view, only_labels))
             : transmission.forward(pass_, view.camera, sh_degree);
     expected_depth_map(direct, direct_depth_);
-    if (guided || plausible) guidance_.label(cues(view, interface, buffer), masks_);
+    if (labelled) guidance_.label(cues(view, interface, buffer), masks_);
     add_direct(view, iteration, weights, buffer, transmission, stats);
   }
   if (guided)
@@ -225,11 +241,40 @@ void TransmissionLosses::add(
         guidance_.evaluate(
             buffer.transparency, masks_, config_.lambda_transparency, dL_dtransparency
         );
-  const float prior = config_.lambda_transparency_prior;
-  if (prior > 0 && iteration >= config_.transparency_prior_from)
-    stats.terms["transparency prior"] =
-        static_cast<double>(prior) *
-        transparency_prior_.evaluate(buffer.transparency, view.rgb, prior, dL_dtransparency);
+  if (has_transparency_prior(iteration))
+    add_transparency_prior(view, iteration, buffer.transparency, dL_dtransparency, stats);
+}
+
+MaskedTransparencyRamp TransmissionLosses::ramp(int iteration) const {
+  const int from = config_.transparency_prior_late_from;
+  const int length = std::max(1, config_.transparency_prior_late_until - from);
+  const float late = static_cast<float>(iteration - from) / static_cast<float>(length);
+  return {std::clamp(late, 0.0f, 1.0f)};
+}
+
+void TransmissionLosses::add_transparency_prior(
+    const View& view, int iteration, const Image& transparency, Image& dL_dt, StepStats& stats
+) {
+  const float weight = config_.lambda_transparency_prior;
+  const double loss =
+      config_.masked_transparency_prior
+          ? masked_prior_.evaluate(transparency, masks_, view.rgb, ramp(iteration), weight, dL_dt)
+          : transparency_prior_.evaluate(transparency, view.rgb, weight, dL_dt);
+  stats.terms["transparency prior"] = static_cast<double>(weight) * loss;
+}
+
+void TransmissionLosses::add_surfel_entropy(
+    int iteration,
+    std::size_t channel,
+    const RasterOutput& output,
+    TrainableSet& interface,
+    StepStats& stats
+) const {
+  const float late = ramp(iteration).late;
+  if (!config_.masked_transparency_prior || !has_transparency_prior(iteration) || late <= 0) return;
+  const float weight = config_.lambda_transparency_prior * late;
+  stats.terms["surfel entropy"] =
+      static_cast<double>(weight) * interface.penalise_entropy(weight, channel, output.visibility);
 }
 
 }  // namespace glint

@@ -8,6 +8,7 @@
 
 #include "glint/render/glass_transport.h"
 #include "glint/train/geometry_losses.h"
+#include "glint/train/masked_transparency.h"
 #include "glint/train/perceptual.h"
 #include "glint/train/photometric.h"
 #include "glint/train/trainable_set.h"
@@ -22,11 +23,14 @@ struct TransmissionLossConfig {
   float depth_threshold = 0.01f, low_albedo = 0.05f, transparent_weight = 1;
   float lambda_direct = 0, lambda_plausible = 0, lambda_transparency_prior = 0;
   int transparency_from = 7000, plausible_from = 5000, transparency_prior_from = 7000;
+  // The prior on t by masks, and from when to when it changes (masked_transparency.h).
+  bool masked_transparency_prior = false;
+  int transparency_prior_late_from = 21000, transparency_prior_late_until = 31000;
   // On the set seen from the camera on its own, as on the interface.
   bool direct_lpips = false;
   float lambda_direct_consistency = 0, lambda_direct_smooth = 0;
   int direct_smooth_from = 5000;
-  bool direct_near_consistency = false;
+  bool direct_near_consistency = false, direct_cosine_consistency = false;
   // On the set behind the interface.
   float lambda_opacity = 0;
   int opacity_from = 7000, opacity_until = 31000;
@@ -44,12 +48,22 @@ struct TransmissionLossConfig {
     v("transparency_from", transparency_from, "first published iteration of guidance");
     v("plausible_from", plausible_from, "first published iteration of plausibility");
     v("transparency_prior_from", transparency_prior_from, "first published iteration of that");
+    v("masked_transparency_prior",
+      masked_transparency_prior,
+      "that prior by the labels of guidance, and late in a run of surfels");
+    v("transparency_prior_late_from",
+      transparency_prior_late_from,
+      "published iteration from which the masked prior changes");
+    v("transparency_prior_late_until",
+      transparency_prior_late_until,
+      "published iteration at which it has changed");
     v("direct_lpips", direct_lpips, "LPIPS of the transmission set on its own, too");
     v("lambda_direct_consistency", lambda_direct_consistency, "its normal consistency");
     v("lambda_direct_smooth", lambda_direct_smooth, "its edge-aware normal smoothness");
     v("direct_smooth_from", direct_smooth_from, "first published iteration of that smoothness");
     v("direct_near_consistency", direct_near_consistency, "its consistency weighs near pixels more"
     );
+    v("direct_cosine_consistency", direct_cosine_consistency, "as cosine_consistency");
     v("lambda_opacity", lambda_opacity, "draws the transmission set behind the interface opaque");
     v("opacity_from", opacity_from, "first published iteration of that");
     v("opacity_until", opacity_until, "last published iteration of that, exclusive");
@@ -62,6 +76,8 @@ struct TransmissionLossConfig {
          {&transparency_from,
           &plausible_from,
           &transparency_prior_from,
+          &transparency_prior_late_from,
+          &transparency_prior_late_until,
           &direct_smooth_from,
           &opacity_from,
           &opacity_until})
@@ -88,6 +104,14 @@ class TransmissionLosses {
   // Mean over pixels of 1 - alpha of the set behind the interface: adds the weighted loss to
   // stats.terms and returns dL/d(alpha), the same at every pixel. 0: off, or not its time.
   float add_opacity(int iteration, const Image& alpha, StepStats& stats) const;
+  // Adds the gradient of the entropy of the surfels' t, the last stretch of the masked prior.
+  void add_surfel_entropy(
+      int iteration,
+      std::size_t channel,
+      const RasterOutput& output,
+      TrainableSet& interface,
+      StepStats& stats
+  ) const;
   // Rasterises `transmission` where a loss needs it, and adds the gradient of its parameters and of
   // the transparency map. `interface` and `buffer` are constants. behind: the pass that has just
   // rasterised `transmission` behind the interface for this view, which then shares its work; null:
@@ -106,6 +130,13 @@ class TransmissionLosses {
   );
 
  private:
+  bool has_transparency_prior(int iteration) const {
+    return config_.lambda_transparency_prior > 0 && iteration >= config_.transparency_prior_from;
+  }
+  MaskedTransparencyRamp ramp(int iteration) const;
+  void add_transparency_prior(
+      const View& view, int iteration, const Image& transparency, Image& dL_dt, StepStats& stats
+  );
   // Whether the view has the priors that labels are made from.
   bool has_cues(const View& view) const;
   TransparencyCues cues(const View& view, const RasterOutput& interface, const GlassBuffer& buffer);
@@ -128,6 +159,7 @@ class TransmissionLosses {
   TransmissionLossConfig config_;
   TransparencyGuidance guidance_;
   TransparencyPriorLoss transparency_prior_;
+  MaskedTransparencyLoss masked_prior_;
   PhotometricLoss photometric_;
   PerceptualLoss* perceptual_ = nullptr;
   PerceptualConfig perceptual_config_;
@@ -137,7 +169,7 @@ class TransmissionLosses {
   RasterPass pass_;
   RasterOutputGradient dL_ddirect_;
   TransparencyMasks masks_;
-  Image direct_depth_, cosine_, dL_ddepth_, needed_;
+  Image direct_depth_, cosine_, dL_ddepth_, needed_, plausible_;
 };
 
 }  // namespace glint

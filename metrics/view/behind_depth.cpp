@@ -4,8 +4,8 @@
 //
 // Methods differ in which depth they report (expected, median, of a plane) and in whether they fill
 // holes, which alone moves the score: so besides the depth that a method calls its own, every
-// method is scored by the expected and by the median depth of its set, holes and all, with their
-// coverage.
+// method is scored by the expected and by the median depth of its set, and by the last mode of its
+// weights (glint/render/depth_modes.h), holes and all, with their coverage.
 #include "metrics/depth.h"
 #include "metrics/metric.h"
 
@@ -20,7 +20,8 @@ struct Estimate {
 const Estimate kEstimates[] = {
     {"", "behind_depth", MapId("depth")},
     {"-expected", "behind_expected", {}},
-    {"-median", "behind_median", {}}};
+    {"-median", "behind_median", {}},
+    {"-last-mode", "last_mode", {}}};
 
 ImageView scored_map(const ViewPair& pair, const Estimate& estimate) {
   return pair.rendered_or(estimate.map, estimate.instead.value_or(estimate.map));

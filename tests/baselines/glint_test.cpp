@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kIterations = 60;
 
-std::unique_ptr<Method> started(Json overrides) {
-  auto method = create_method("glint", overrides);
+std::unique_ptr<Method> started(Json overrides, const char* id = "glint") {
+  auto method = create_method(id, overrides);
   RunOptions options;
   options.iterations = kIterations;
   method->initialize(small_room(), options);
@@ -105,6 +105,66 @@ TEST_CASE("Transmission starts as a copy of the interface where it is asked to")
   }
 }
 
+TEST_CASE("Reflection starts as a copy of the interface where it is asked to, harmonics and all") {
+  for (const bool clone : {false, true}) {
+    const auto method = started({{"reflection_from", 30000}, {"clone_reflection", clone}});
+    for (int i = 0; i < 30; ++i) method->step(i);
+    const SurfelCloud interface = cloud_of(*method, "interface.ply");
+    method->step(30);
+    const SurfelCloud reflection = cloud_of(*method, "reflection.ply");
+    CHECK(reflection.extra_names.empty());
+    CHECK((reflection.size() == interface.size()) == clone);
+    if (!clone) continue;
+    double harmonics = 0;
+    for (const float value : reflection.sh_rest) harmonics += std::abs(static_cast<double>(value));
+    CHECK(harmonics > 0);
+  }
+}
+
+TEST_CASE("A set that takes no part is not counted") {
+  const std::size_t all = started(Json::object())->num_surfels();
+  const auto size = [](const char* id, const char* file) {
+    return cloud_of(*started(Json::object(), id), file).size();
+  };
+  CHECK(
+      started(Json::object(), "glint/no-trans")->num_surfels() ==
+      all - size("glint", "transmission.ply")
+  );
+  CHECK(
+      started(Json::object(), "glint/no-refl")->num_surfels() ==
+      all - size("glint", "reflection.ply")
+  );
+  const auto without = started(Json::object(), "glint/no-refl");
+  CHECK(without->step(0).sets.count("reflection") == 0);
+}
+
+TEST_CASE("The oracle shows the true surface, and is no rival") {
+  CHECK_FALSE(find_method("glint/oracle").rival);
+  const auto method = started(Json::object(), "glint/oracle");
+  for (int i = 0; i < kIterations; ++i) method->step(i);
+  const View& view = small_room().test.front();
+  const MapSet out = method->render_view(view);
+  CHECK(largest_difference(out["depth"], view.truth["depth"]) == 0);
+  CHECK(largest_difference(out["transparency"], view.truth["glass"]) == 0);
+  CHECK(largest_difference(out["normal"], view.truth["normal"]) < 1e-3f);
+  CHECK(method->notes().size() == 1);
+  Scene without = small_room();
+  for (View& train : without.train) train.truth = {};
+  CHECK_THROWS_WITH(
+      create_method("glint/oracle")->initialize(without, {}),
+      Catch::Matchers::Contains("no true depth")
+  );
+}
+
+TEST_CASE("Two views agree every so many steps of their window") {
+  const auto method =
+      started({{"multi_view_from", 10000}, {"multi_view_until", 40000}, {"multi_view_every", 5}});
+  for (int i = 0; i < kIterations; ++i) {
+    const bool wanted = i >= 10 && i < 40 && i % 5 == 0;
+    CHECK((method->step(i).terms.count("plane") == 1) == wanted);
+  }
+}
+
 TEST_CASE("Secondary sets grow by their own steps, or by those of the run") {
   // 60,000 planned steps: windows are what they say.
   for (const bool run_clock : {false, true}) {
@@ -160,37 +220,62 @@ TEST_CASE("The three sets have the density control that the config gives them") 
   GlintConfig config;
   CHECK(config.reflection_densify(kPublished).max_scale == config.densify.max_scale);
   CHECK(config.reflection_densify(kSmall).max_scale == Approx(config.densify.max_scale * 32 / 15));
-  CHECK(config.interface_densify(kViews).channel_resets.empty());
-  CHECK(config.transmission_densify().min_opacity == config.densify.min_opacity);
   CHECK(config.reflection_densify(kSmall).max_surfels == config.densify.max_surfels);
-  config_from_json(config, glint_release_overrides(), "test");
   const DensifyConfig interface = config.interface_densify(kViews);
-  REQUIRE(interface.channel_resets.size() == 2);
+  REQUIRE(interface.channel_resets.size() == 1);
+  CHECK(interface.channel_resets[0].channel == kTransparency);
   CHECK(interface.channel_resets[0].ceiling == 0.01f);
-  CHECK(interface.channel_resets[1].from == 3001);
   CHECK(interface.interval_at(10000) == 500);
+  CHECK(interface.scale_limit == 0.1f);
   CHECK(config.transmission_densify().min_opacity == 0.05f);
   CHECK(config.reflection_densify(kSmall).min_opacity == 0.08f);
+  CHECK(config.reflection_densify(kSmall).for_surfels(100000).min_surfels == 5000);
+  CHECK(config.transmission_densify().for_surfels(100000).min_surfels == 1024);
   for (const DensifyConfig& set :
        {config.transmission_densify(), config.reflection_densify(kSmall)}) {
-    CHECK(set.max_surfels == 500000);
     CHECK(set.interval_at(100) == 500);
     CHECK(set.interval_at(10000) == 500);
     CHECK(set.channel_resets.empty());
+    CHECK(set.scale_limit == 2);
   }
+  config_from_json(config, glint_text_overrides(), "test");
+  CHECK(config.interface_densify(kViews).channel_resets.empty());
+  CHECK(config.transmission_densify().min_opacity == config.densify.min_opacity);
 }
 
-TEST_CASE("In short runs of the release, too, s waits a reset and secondary sets have half of them"
-) {
+TEST_CASE("In short runs, too, s waits a reset and secondary sets have half of them") {
   constexpr std::size_t kViews = 50;
   GlintConfig published;
-  config_from_json(published, glint_release_overrides(), "test");
+  published.reset_specular = true;
   const GlintConfig config = published.scaled_to(3000);
   const DensifyConfig interface = config.interface_densify(kViews).for_views(kViews);
   CHECK(interface.reset_interval == 300);
   CHECK(interface.channel_resets.at(1).from == 301);
   CHECK(config.transmission_densify().reset_interval == 600);
-  CHECK(GlintConfig().scaled_to(3000).transmission_densify().reset_interval == 300);
+}
+
+TEST_CASE("Opacities are reset as often in a short run as in the published one") {
+  const auto resets = [](const GlintConfig& config, bool secondary) {
+    constexpr std::size_t kViews = 64;
+    const DensifyConfig set = secondary ? config.transmission_densify().for_views(kViews)
+                                        : config.interface_densify(kViews).for_views(kViews);
+    return set.resets ? (set.until - 1) / set.reset_interval : 0;
+  };
+  for (const int iterations : {8000, 30000, 60000}) {
+    const GlintConfig config = GlintConfig().scaled_to(iterations);
+    CHECK(resets(config, false) == 6);
+    CHECK(resets(config, true) == 3);
+  }
+}
+
+TEST_CASE("Rates of secondary sets count steps of the run, or their own") {
+  GlintConfig config;
+  CHECK(config.secondary_rates(700).first_step == 700);
+  config.reflection_color_rate = 8;
+  CHECK(config.reflection_rates().sh_dc == 8 * config.rates.sh_dc);
+  CHECK(config.reflection_rates().scale == config.rates.scale);
+  config.run_clock_rates = false;
+  CHECK(config.secondary_rates(700).first_step == 0);
 }
 
 TEST_CASE("Without glass GLINT trains as 2DGS does") {
@@ -215,7 +300,7 @@ TEST_CASE("Without glass GLINT trains as 2DGS does") {
   overrides["rate_sh"] = slower * published.sh_rest;
   overrides["rate_scale"] = slower * published.scale;
   overrides["rate_rotation"] = slower * published.rotation;
-  const auto glint = started(overrides);
+  const auto glint = started(overrides, "glint/text");
   const auto two_dgs = create_method("2dgs");
   RunOptions options;
   options.iterations = kIterations;

@@ -110,6 +110,10 @@ TEST_CASE("every metric of the protocol is registered once, with direction and p
         "behind-coverage-expected",
         "behind-absrel-median",
         "behind-coverage-median",
+        "behind-absrel-last-mode",
+        "behind-coverage-last-mode",
+        "depth-absrel-first-mode",
+        "depth-coverage-first-mode",
         "behind-absrel-content",
         "behind-absrel-beyond",
         "normal-mae-background",
@@ -175,6 +179,28 @@ TEST_CASE("behind glass, each estimate of depth is scored by itself, holes count
   CHECK(scores.at("behind-coverage-expected") == 100);
   CHECK(scores.at("behind-absrel-median") == 0.5);
   CHECK(scores.at("behind-coverage-median") == 50);
+}
+
+TEST_CASE("the first mode of depth is scored against the first surface, the last behind glass") {
+  const Maps maps;
+  ViewPair pair = maps.pair();
+  const Image pane(kWidth, kHeight, 1, 2.0f), behind(kWidth, kHeight, 1, 4.0f);
+  const Image last(kWidth, kHeight, 1, 5.0f);
+  Image first(kWidth, kHeight, 1, 2.5f);
+  for (int y = 10; y < 15; ++y)
+    for (int x = 10; x < 20; ++x) first.at(x, y) = 0;  // half of the glass
+  pair.truth["depth"] = pane;
+  pair.truth["behind_depth"] = behind;
+  CHECK(evaluate_view(pair).count("depth-absrel-first-mode") == 0);
+  CHECK(evaluate_view(pair).count("behind-absrel-last-mode") == 0);
+  pair.rendered["first_mode"] = first;
+  pair.rendered["last_mode"] = last;
+  const auto scores = evaluate_view(pair);
+  CHECK(scores.at("depth-absrel-first-mode@glass") == (0.25 + 1) / 2);
+  CHECK(scores.at("depth-absrel-first-mode@opaque") == 0.25);
+  CHECK(scores.at("depth-coverage-first-mode@glass") == 50);
+  CHECK(scores.at("behind-absrel-last-mode") == 0.25);
+  CHECK(scores.at("behind-coverage-last-mode") == 100);
 }
 
 TEST_CASE("depth behind glass is scored apart within 1.25 m of the pane and beyond") {

@@ -400,7 +400,7 @@ TEST_CASE("Without a surface, colours and the gradients of all arrays have the s
     const RasterOutput& colors = without.forward({c.input(), c.camera, c.settings});
     CHECK(std::ranges::equal(colors.features.values(), whole.features.values()));
     CHECK(std::ranges::equal(colors.alpha.values(), whole.alpha.values()));
-    CHECK(std::ranges::equal(colors.visibility, whole.visibility));
+    CHECK(colors.visibility == whole.visibility);
     for (const Image* map : {&colors.depth_sum, &colors.depth_median, &colors.normal})
       CHECK(map->empty());
     const RasterGradient& g = without.backward(c.dL_doutput);
@@ -489,4 +489,36 @@ TEST_CASE("A surfel that reaches no tile has exactly zero gradient, even when it
   for (int k = 0; k < 3; ++k) CHECK(gradient.means[k] == 0.0f);
   for (int k = 0; k < 4; ++k) CHECK(gradient.rotations[k] == 0.0f);
   for (const float value : gradient.screen) CHECK(std::isfinite(value));
+}
+
+TEST_CASE("A detached feature has its gradient, and where surfels are and how opaque has none of it"
+) {
+  Rng rng(23);
+  const Camera camera = random_camera(rng, {48, 32});
+  RandomSurfels options;
+  options.count = 120;
+  options.channels = 5;
+  const SurfelArrays surfels = random_surfels(options, camera, rng);
+  RasterOutputGradient with, without;
+  with.features = without.features = Image(48, 32, 5);
+  for (std::size_t i = 0; i < with.features.values().size(); ++i) {
+    with.features.data()[i] = rng.uniform(-1, 1);
+    without.features.data()[i] = i % 5 == 3 ? 0.0f : with.features.data()[i];
+  }
+  const auto gradient = [&](const RasterOutputGradient& dL, bool detached) {
+    RasterSettings settings;
+    if (detached) settings.detached_features = 1u << 3;
+    Rasterizer rasterizer;
+    rasterizer.forward({surfels.view(), camera, settings});
+    return rasterizer.backward(dL);
+  };
+  const RasterGradient cut = gradient(with, true), none = gradient(without, false);
+  const RasterGradient all = gradient(with, false);
+  CHECK(cut.means == none.means);
+  CHECK(cut.scales == none.scales);
+  CHECK(cut.rotations == none.rotations);
+  CHECK(cut.opacities == none.opacities);
+  CHECK(cut.screen == none.screen);
+  CHECK(cut.features == all.features);
+  CHECK(cut.opacities != all.opacities);
 }

@@ -333,3 +333,89 @@ TEST_CASE("A densifier knows how near a step is to a reset") {
   config.resets = false;
   CHECK_FALSE(Densifier(config, 1, 0).resets_within(10, 2));
 }
+
+TEST_CASE("A set is not pruned below its least, and the faintest go first") {
+  DensifyConfig config = every_step();
+  config.min_surfels = 3;
+  SurfelCloud cloud = cloud_of(5);
+  for (std::size_t i = 0; i < 4; ++i) cloud.opacity_logits[i] = logit(0.04f - 0.01f * i);
+  SurfelAdam adam = adam_of(cloud);
+  Densifier densifier(config, 1, 0);
+  observe(densifier, std::vector<float>(5, 1.0f));
+  CHECK(densifier.update(1, cloud, adam).pruned == 2);
+  REQUIRE(cloud.size() == 3);
+  for (std::size_t i = 0; i < 2; ++i) CHECK(cloud.means[3 * i] == static_cast<float>(i));
+  CHECK(cloud.means[6] == 4);
+}
+
+TEST_CASE("The least of a set is a share of what it starts with, or a number") {
+  DensifyConfig config;
+  config.min_share = 0.05f;
+  CHECK(config.for_surfels(1000).min_surfels == 50);
+  config.min_surfels = 64;
+  CHECK(config.for_surfels(1000).min_surfels == 64);
+}
+
+TEST_CASE("Of large surfels only the lightest tenth and those not seen go, if asked for") {
+  DensifyConfig config = every_step();
+  config.prune_light_large = true;
+  SurfelCloud cloud = cloud_of(20);
+  for (const std::size_t i : {0u, 1u, 5u, 19u}) enlarge(cloud, i);
+  SurfelAdam adam = adam_of(cloud);
+  Densifier densifier(config, 1, 0);
+  std::vector<float> weights(20);
+  std::iota(weights.begin(), weights.end(), 0.0f);  // 0: not seen; 1: among the lightest tenth
+  observe(densifier, weights);
+  const int step = config.reset_interval + 1;
+  CHECK(densifier.update(step, cloud, adam).pruned == 2);
+  CHECK(cloud.means[0] == 2);
+  CHECK(cloud.means[3 * 3] == 5);  // large, and seen
+}
+
+TEST_CASE("A quantile of the observed gradients lowers the threshold, and never raises it") {
+  for (const float scale : {1.0f, 100.0f}) {
+    DensifyConfig config = every_step();
+    config.gradient_threshold = 1e-3f;
+    config.gradient_quantile = 0.5f;
+    SurfelCloud cloud = cloud_of(5);
+    SurfelAdam adam = adam_of(cloud);
+    Densifier densifier(config, 1, 0);
+    std::vector<float> gradients;
+    for (int i = 1; i <= 5; ++i) gradients.push_back(scale * 1e-4f * static_cast<float>(i));
+    observe(densifier, std::vector<float>(5, 1.0f), gradients);
+    CHECK(densifier.update(1, cloud, adam).cloned == (scale == 1 ? 3 : 5));
+  }
+}
+
+TEST_CASE("Where there is no room for all, the largest gradients grow") {
+  DensifyConfig config = every_step();
+  config.max_surfels = 6;
+  SurfelCloud cloud = cloud_of(4);
+  SurfelAdam adam = adam_of(cloud);
+  Densifier densifier(config, 1, 0);
+  observe(densifier, {1, 1, 1, 1}, {0.1f, 0.4f, 0.2f, 0.3f});
+  densifier.update(1, cloud, adam);
+  REQUIRE(cloud.size() == 6);
+  CHECK(cloud.means[3 * 4] == 1);
+  CHECK(cloud.means[3 * 5] == 3);
+}
+
+TEST_CASE("Scales above their limit are lowered to it, and their moments forgotten") {
+  DensifyConfig config;
+  config.scale_limit = 0.1f;
+  SurfelCloud cloud = cloud_of(2), gradient = cloud_of(2);
+  SurfelAdam adam;
+  adam.step(cloud, gradient, {}, 1);
+  enlarge(cloud, 1);
+  const float small = cloud.log_scales[0], moment = adam.first().log_scales[0];
+  const Densifier densifier(config, 2, 0);
+  densifier.limit_scales(cloud, adam);
+  CHECK(cloud.log_scales[0] == small);
+  CHECK(adam.first().log_scales[0] == moment);
+  CHECK(moment != 0);
+  for (const std::size_t i : {2u, 3u}) {
+    CHECK(std::exp(cloud.log_scales[i]) == Approx(0.2f));
+    CHECK(adam.first().log_scales[i] == 0);
+    CHECK(adam.second().log_scales[i] == 0);
+  }
+}

@@ -151,3 +151,58 @@ TEST_CASE("The gradients of normal consistency match central differences") {
         Approx(slope_at(normal.data()[i], 1.0f / 16)).epsilon(1e-3).margin(1e-6)
     );
 }
+
+TEST_CASE("As a cosine the loss is the weighted mean over pixels that have a normal of the depth") {
+  const Camera camera = test_camera(12, 10);
+  const Vec3d n = normalize(Vec3d{0.1, 0.2, -1});
+  const Image depth = plane_depth(camera, n, -4);
+  Image normal(12, 10, 3), alpha(12, 10, 1, 0.3f), factors(12, 10, 1, 0.5f);
+  for (std::size_t i = 0; i < normal.num_pixels(); ++i)
+    for (int c = 0; c < 3; ++c) normal.data()[3 * i + c] = static_cast<float>(0.3 * n[c]);
+  for (int c = 0; c < 3; ++c) normal.at(3, 4, c) *= -1;  // a cosine of -1
+  factors.at(0, 0) = 100;                                // at the border, where there is none
+  Image dL_dn(12, 10, 3), dL_dz(12, 10, 1);
+  NormalConsistencyLoss loss;
+  loss.cosine = true;
+  CHECK(
+      loss.evaluate(camera, normal, depth, alpha, 1, dL_dn, dL_dz, factors) ==
+      Approx(2.0 / 80).epsilon(1e-4)
+  );
+  CHECK(
+      loss.evaluate(camera, normal, depth, alpha, 1, dL_dn, dL_dz) == Approx(2.0 / 80).epsilon(1e-4)
+  );
+}
+
+TEST_CASE("The gradients of the cosine match central differences") {
+  const Camera camera = test_camera(9, 8);
+  Rng rng(5);
+  Image depth(9, 8, 1), normal(9, 8, 3), alpha(9, 8, 1, 1.0f), factors(9, 8, 1);
+  for (float& z : depth.values()) z = rng.uniform(3, 3.2f);
+  for (float& v : normal.values()) v = rng.uniform(0.2f, 1);
+  for (float& m : factors.values()) m = rng.uniform(0, 1.5f);
+  NormalConsistencyLoss of_cosine;
+  of_cosine.cosine = true;
+  Image dL_dn(9, 8, 3), dL_dz(9, 8, 1);
+  of_cosine.evaluate(camera, normal, depth, alpha, 1, dL_dn, dL_dz, factors);
+  const auto slope_at = [&](float& x) {
+    const float at = x, h = 1.0f / 256;
+    const auto loss_at = [&](float value) {
+      x = value;
+      Image a(9, 8, 3), b(9, 8, 1);
+      return of_cosine.evaluate(camera, normal, depth, alpha, 1, a, b, factors);
+    };
+    const double slope = (loss_at(at + h) - loss_at(at - h)) / (2 * static_cast<double>(h));
+    x = at;
+    return slope;
+  };
+  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
+    CHECK(
+        static_cast<double>(dL_dz.data()[i]) ==
+        Approx(slope_at(depth.data()[i])).epsilon(0.03).margin(5e-4)
+    );
+  for (std::size_t i = 0; i < normal.values().size(); ++i)
+    CHECK(
+        static_cast<double>(dL_dn.data()[i]) ==
+        Approx(slope_at(normal.data()[i])).epsilon(0.03).margin(5e-4)
+    );
+}

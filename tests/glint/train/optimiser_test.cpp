@@ -299,3 +299,50 @@ TEST_CASE("the entropy of opacities that are certain is that of the clamp, and h
   CHECK(set.penalise_opacity_entropy(1, in_view) == Approx(entropy).epsilon(0.05));  // 1 - p rounds
   for (const float slope : set.gradient().opacity_logits) CHECK(slope == 0);
 }
+
+TEST_CASE("A penalty of a channel's entropy is its mean by weight in the picture, with its gradient"
+) {
+  SurfelCloud cloud = cloud_of(300);
+  cloud.extra_names = {"transparency", "specular"};
+  cloud.resize(300);
+  FloatArray visibility(300, 0.0f);
+  for (std::size_t i = 0; i < 300; ++i) {
+    cloud.extra_logits[2 * i] = 0.02f * static_cast<float>(i) - 3;
+    visibility[i] = i % 3 == 0 ? 0.1f * static_cast<float>(i + 1) : 0.0f;
+  }
+  TrainableSet set(cloud, SetTraining{});
+  double sum = 0, entropy = 0;
+  const auto share = [&](std::size_t i) {
+    return 1 / (1 + std::exp(-static_cast<double>(cloud.extra_logits[2 * i])));
+  };
+  for (std::size_t i = 0; i < 300; ++i) {
+    const double p = share(i), v = static_cast<double>(visibility[i]);
+    sum += v;
+    entropy -= v * (p * std::log(p) + (1 - p) * std::log1p(-p));
+  }
+  CHECK(set.penalise_entropy(3, 0, visibility) == Approx(entropy / sum));
+  for (std::size_t i = 0; i < 300; ++i) {
+    const double p = share(i), x = static_cast<double>(cloud.extra_logits[2 * i]);
+    const double slope = -3 * x * p * (1 - p) * static_cast<double>(visibility[i]) / sum;
+    CHECK(static_cast<double>(set.gradient().extra_logits[2 * i]) == Approx(slope).margin(1e-9));
+    CHECK(set.gradient().extra_logits[2 * i + 1] == 0);
+  }
+  CHECK(set.penalise_entropy(3, 0, FloatArray(300, 0.0f)) == 0);
+}
+
+TEST_CASE("Positions may slow down by the steps of the run") {
+  SurfelRates rates;
+  rates.means_steps = 100;
+  const auto moved = [&](int first_step) {
+    SurfelRates of_run = rates;
+    of_run.first_step = first_step;
+    SurfelCloud cloud = cloud_of(1), gradient = cloud_of(1);
+    const float before = cloud.means[0];
+    gradient.means[0] = 1;
+    SurfelAdam adam;
+    adam.step(cloud, gradient, of_run, 1);
+    return static_cast<double>(before - cloud.means[0]);
+  };
+  CHECK(moved(0) == Approx(static_cast<double>(rates.means)).epsilon(1e-3));
+  CHECK(moved(100) == Approx(static_cast<double>(rates.means_final)).epsilon(0.1));
+}
