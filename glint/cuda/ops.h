@@ -99,9 +99,8 @@ class RasterizerOn final : public RasterBackend {
   ) override {
     pipeline_.first_surface(mask.on_device(), settings, depth.on_device());
   }
-  void depth_modes(
-      const RasterCall&, const DepthModeSettings& settings, Image& first, Image& last
-  ) override {
+  void depth_modes(const RasterCall&, const DepthModeSettings& settings, Image& first, Image& last)
+      override {
     pipeline_.depth_modes(settings, first.on_device(), last.on_device());
   }
   std::size_t num_pairs() override { return pipeline_.num_pairs(); }

@@ -6,8 +6,8 @@
 // over depth is that of the blending weights w = T alpha. Here that density is made of the hits
 // themselves, D(z) = sum_i w_i max(0, 1 - |z_i - z| / (width z)), looked at at each hit, where its
 // maxima are, and halfway between neighbours. A maximum is a mode of its own where D falls below
-// `valley` times the lower of two before the next. Its depth is the weighted mean of the hits within
-// `width` of it; where those have less than `share` of the pixel's weight, it is none.
+// `valley` times the lower of two before the next. Its depth is the weighted mean of the hits
+// within `width` of it; where those have less than `share` of the pixel's weight, it is none.
 //
 // Deviation: the official code finds maxima of the density of the sampled maps' mean depths, once
 // per image, and takes the maps at those transmittances: layers that have another transmittance in
@@ -82,10 +82,10 @@ class ModeSearch {
 
   const SurfaceHits& hits_;
   const DepthModeSettings& settings_;
-  float least_ = 0;     // weight of a mode
-  int begin_ = 0;       // first hit in reach of the place looked at
-  Place highest_;       // since the last mode ended
-  float lowest_ = 0;    // density since then
+  float least_ = 0;   // weight of a mode
+  int begin_ = 0;     // first hit in reach of the place looked at
+  Place highest_;     // since the last mode ended
+  float lowest_ = 0;  // density since then
   DepthModes found_;
 };
 
