@@ -73,11 +73,14 @@ TEST_CASE("Every method renders colour, depth and unit normals that face the cam
     REQUIRE(out["normal"].size() == view.camera.size());
     REQUIRE(out["behind_expected"].size() == view.camera.size());
     REQUIRE(out["behind_median"].size() == view.camera.size());
+    REQUIRE(out["first_mode"].size() == view.camera.size());
+    REQUIRE(out["last_mode"].size() == view.camera.size());
     std::size_t hits = 0;
     for (int y = 0; y < view.camera.height; ++y)
       for (int x = 0; x < view.camera.width; ++x) {
         const float z = out["depth"].at(x, y);
         REQUIRE(std::isfinite(z));
+        REQUIRE(out["first_mode"].at(x, y) <= out["last_mode"].at(x, y));
         const float* n = out["normal"].pixel(x, y);
         const float norm = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         CHECK((norm == 0.0f || std::abs(norm - 1) < 1e-4f));

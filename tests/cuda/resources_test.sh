@@ -21,6 +21,7 @@ SumWindows 0
 GatherSurfels 0
 ConvolveTile 0
 FirstSurface 2560 (list of all hits; of masked pixels, in one method)
+DepthModesOfPixel 2560 (the same list; of renders, not of training)
 '
 
 table() {  # kernel, arch, registers, shared memory, frame, spills

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Compile test: the shared maths as device code, in float. One kernel calls every formula and vjp,
 // so that nothing of it can stop compiling for CUDA unnoticed.
+#include "glint/render/depth_modes.h"
 #include "glint/render/depth_normal.h"
 #include "glint/render/first_surface.h"
 #include "glint/render/project.h"
@@ -33,7 +34,7 @@ __device__ float surfel_formulas(
   SurfaceHits hits;
   hits.add(p.plane_distance, step.weight);
   return dL_dopacity + dL_dsurfel.mean.x + dL_dm.z + screen_radius(surfel, camera, kMaxRho) +
-         first_surface_depth(hits, {});
+         first_surface_depth(hits, {}) + ModeSearch(hits, {}).run().last;
 }
 
 __device__ float pixel_formulas(Vec3f direction) {

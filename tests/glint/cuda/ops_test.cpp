@@ -103,7 +103,7 @@ TEST_CASE("A rasterised set is the same on a GPU, forward and backward") {
   });
 }
 
-TEST_CASE("Plane distances, statistics and first surfaces are the same on a GPU") {
+TEST_CASE("Plane distances, statistics, first surfaces and modes are the same on a GPU") {
   check_same_as_cpu(kReordered, [] {
     RasterPass pass;
     const SurfelSet set(test_cloud());
@@ -114,15 +114,18 @@ TEST_CASE("Plane distances, statistics and first surfaces are the same on a GPU"
     RasterOutputGradient g = raster_gradient();
     g.plane_distance = noise(1, 5, -1, 1);
     const RasterGradient& gradient = pass.rasterizer.backward(g);
-    Image depth;
+    Image depth, first, last;
     pass.rasterizer.first_surface(noise(1, 6, 0, 1), {.window = 0.1f}, depth);
+    pass.rasterizer.depth_modes({.width = 0.1f}, first, last);
     return Results{
         {"plane distance", read(out.plane_distance)},
         {"owned pixels", read(out.owned_pixels)},
         {"radii", read(out.radii)},
         {"gradient of means", read(gradient.means)},
         {"absolute screen gradient", read(gradient.screen_abs)},
-        {"first surface", read(depth)}};
+        {"first surface", read(depth)},
+        {"first mode", read(first)},
+        {"last mode", read(last)}};
   });
 }
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "tests/support/compare_render.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/facing_layers.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -87,18 +87,6 @@ Image first_surface(
   return depth;
 }
 
-// Parallel to the image plane of small_camera(), on its axis.
-void add_facing(SurfelArrays& surfels, double depth, double opacity) {
-  surfels.add({0, 0, depth}, {5, 5}, {1, 0, 0, 0}, opacity, {1, 1, 1});
-}
-// 21 x 21 pixels, focal length 20: the middle pixel's centre looks along the axis.
-Camera small_camera() {
-  Camera camera;
-  camera.width = camera.height = 21;
-  camera.fx = camera.fy = 20;
-  camera.cx = camera.cy = 10.5;
-  return camera;
-}
 double in_the_middle(const SurfelArrays& surfels, float masked = 1) {
   const Image depth = first_surface(surfels, small_camera(), Image(21, 21, 1, masked));
   return static_cast<double>(depth.at(10, 10));
