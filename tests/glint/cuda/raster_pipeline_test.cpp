@@ -183,6 +183,26 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's maps") {
   }
 }
 
+TEST_CASE("The GPU's rasteriser on the host finds the CPU's modes of depth") {
+  std::uint64_t seed = 1;
+  for (const Case& c : kCases) {
+    CAPTURE(c.size.width, c.surfels);
+    const Fixture f(c, seed++);
+    Rasterizer cpu;
+    cpu.forward(f.call());
+    Image expected_first, expected_last;
+    cpu.depth_modes({}, expected_first, expected_last);
+    HostExec exec;
+    RasterPipeline<HostExec> gpu(exec);
+    RasterOutput maps = room(c.size, c.channels, f.arrays.count());
+    gpu.forward(device_call(f.call(), maps));
+    Image first(c.size.width, c.size.height, 1), last = first;
+    gpu.depth_modes({}, first.on_device(), last.on_device());
+    CHECK(difference(first.values(), expected_first.values()) == 0);
+    CHECK(difference(last.values(), expected_last.values()) == 0);
+  }
+}
+
 TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
   std::uint64_t seed = 11;
   for (const Case& c : kCases) {

@@ -338,7 +338,8 @@ TEST_CASE("A set is not pruned below its least, and the faintest go first") {
   DensifyConfig config = every_step();
   config.min_surfels = 3;
   SurfelCloud cloud = cloud_of(5);
-  for (std::size_t i = 0; i < 4; ++i) cloud.opacity_logits[i] = logit(0.04f - 0.01f * i);
+  for (std::size_t i = 0; i < 4; ++i)
+    cloud.opacity_logits[i] = logit(0.04f - 0.01f * static_cast<float>(i));
   SurfelAdam adam = adam_of(cloud);
   Densifier densifier(config, 1, 0);
   observe(densifier, std::vector<float>(5, 1.0f));
