@@ -16,6 +16,7 @@
 // trims, then densifies (there the other way round, so that trims see what is new); a view's
 // exposure has an Adam of its own, whose moments wait while the view is not drawn.
 #include "glint/method.h"
+#include "glint/render/map_ops.h"
 #include "glint/train/planar_model.h"
 #include "glint/train/training_state.h"
 

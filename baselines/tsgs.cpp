@@ -26,6 +26,7 @@
 #include "baselines/tsgs_kernels.h"
 #include "glint/core/kernel.h"
 #include "glint/method.h"
+#include "glint/render/map_ops.h"
 #include "glint/train/check_fits.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/glass_masks.h"
