@@ -99,7 +99,6 @@ class Glint final : public Method {
         {kSpecular, config_.initial_specular, config_.rate_specular}};
     model_.interface =
         new_set(points, initial, windows_.interface_densify(scene.train.size()), windows_.rates);
-    bootstrap_ = ReflectionBootstrap(windows_.bootstrap, options.seed);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
 
@@ -187,7 +186,6 @@ class Glint final : public Method {
     state("transmission", model_.transmission);
     state("reflection", model_.reflection);
     state("views", views_);
-    state("bootstrap", bootstrap_);
     return true;
   }
   std::size_t num_surfels() const override {
@@ -312,10 +310,7 @@ class Glint final : public Method {
     const auto update_set = [&](TrainableSet& set, int from, const char* name) {
       note_reset(set.update(iteration - from + 1), name, stats);
     };
-    if (!frozen_) {
-      update_set(model_.interface, 0, "interface");
-      bootstrap_.update(iteration + 1, model_.interface);
-    }
+    if (!frozen_) update_set(model_.interface, 0, "interface");
     const auto start = [&](int from) { return config_.secondary_run_clock ? 0 : from; };
     if (phase_.transmission)
       update_set(model_.transmission, start(windows_.transmission_from), "transmission");
@@ -328,7 +323,6 @@ class Glint final : public Method {
   std::vector<std::string> warnings_;
   ViewSampler views_;
   GlintModel model_;
-  ReflectionBootstrap bootstrap_;
   GlintPhase phase_;
   bool frozen_ = false;
   static constexpr std::size_t kTransparencyChannel = 0;  // of the interface's extra ones

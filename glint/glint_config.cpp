@@ -47,7 +47,6 @@ GlintConfig GlintConfig::scaled_to(int iterations) const {
   run.geometry.scale(scaled);
   run.transmission_losses.scale(scaled);
   run.densify.scale(scaled);
-  run.bootstrap.scale(scaled);
   run.multi_view.from = scaled(multi_view.from);
   run.multi_view.until = scaled(multi_view.until);
   run.secondary_densify_interval = scaled(secondary_densify_interval, 50);
@@ -78,7 +77,6 @@ DensifyConfig GlintConfig::secondary_densify() const {
   config.resets = reset_secondary;
   config.prune_light_large = secondary_prune_light_large;
   config.scale_limit = secondary_scale_limit;
-  if (secondary_max_surfels > 0) config.max_surfels = secondary_max_surfels;
   return config;
 }
 

@@ -12,7 +12,6 @@
 #include "glint/train/mirror_cutoffs.h"
 #include "glint/train/neighbor_views.h"
 #include "glint/train/perceptual.h"
-#include "glint/train/reflection_bootstrap.h"
 #include "glint/train/transmission_losses.h"
 
 namespace glint {
@@ -83,8 +82,6 @@ struct GlintConfig {
   float transmission_min_share = 0.01f, reflection_min_share = 0.05f;
   bool secondary_prune_light_large = true;
   float secondary_scale_limit = 2;
-  int secondary_max_surfels = 0;
-  BootstrapConfig bootstrap;
   SurfelRates rates;
   float rate_transparency = 0.05f;  // as the official code has them, in runs of any length
   float rate_specular = 0.01f;
@@ -130,6 +127,11 @@ struct GlintConfig {
     transmission_losses.visit(v);
     densify.visit(v);
     rates.visit(v);
+    visit_secondary(v);
+  }
+  // Rates of channels and sets, and density control of the secondary sets.
+  template <class V>
+  void visit_secondary(V&& v) {
     v("rate_transparency", rate_transparency, "learning rate of transparency");
     v("rate_specular", rate_specular, "learning rate of specularity");
     v("run_clock_rates",
@@ -162,10 +164,6 @@ struct GlintConfig {
     v("transmission_min_opacity",
       transmission_min_opacity,
       "min_opacity of the transmission set; below 0: min_opacity");
-    v("secondary_max_surfels",
-      secondary_max_surfels,
-      "max_surfels of each of the secondary sets; 0: max_surfels");
-    bootstrap.visit(v);
   }
 
   static constexpr int kPublishedIterations = 60000;

@@ -74,7 +74,6 @@ constexpr SettingRange kRanges[] = {
     {"max_scale", above(0)},
     {"max_surfels", at_least(1)},
     {"environment_max_surfels", at_least(1)},
-    {"secondary_max_surfels", at_least(0)},
     {"max_abs_splits", at_least(0)},
     {"min_observations", at_least(0)},
     {"prune_holiday", at_least(-1)},

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/masked_transparency.h"
 
-#include "glint/render/map_kernels.h"
 #include "glint/train/check_fits.h"
-#include "glint/train/masked_transparency_kernels.h"
-#include "glint/train/share_kernels.h"
+#include "glint/train/masked_mean.h"
 
 namespace glint {
 
@@ -12,20 +10,14 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;  // pixels a block
 
-// weight times the mean of f(t) over a mask, 0 for an empty one.
+// A mean over a mask as a share of the loss; none where that is 0.
 template <class Of, class T>
-double masked_mean(
+double part(
     const BasicImage<T>& t, const Image& mask, Of of, float share, T weight, BasicImage<T>& dL_dt
 ) {
   if (share == 0) return 0;
-  Array<double> mask_sum;
-  Array<T> scale;
-  sum_kernel_to(t.size(), SumPixels{mask.on_device()}, mask_sum);
-  share_of(mask_sum.on_device(), static_cast<T>(share) * weight, scale);
-  const MaskedSumAt<T, Of> loss_at{
-      t.on_device(), mask.on_device(), of, scale.on_device(), dL_dt.on_device()};
-  const double sum = sum_kernel(t.size(), loss_at), count = told(mask_sum);
-  return count == 0 ? 0 : static_cast<double>(share) * sum / count;
+  return static_cast<double>(share) *
+         masked_mean(t, mask, of, static_cast<T>(share) * weight, dL_dt);
 }
 
 }  // namespace
@@ -54,9 +46,9 @@ double MaskedTransparencyLoss::evaluate(
   );
   const HingeOfT<T> hinge{static_cast<T>(kLeastOnGlass)};
   return smoothness +
-         masked_mean(transparency, labelled_, EntropyOfT<T>{}, ramp.entropy(), weight, dL_dt) +
-         masked_mean(transparency, masks.opaque, ValueOfT<T>{}, ramp.opaque(), weight, dL_dt) +
-         masked_mean(transparency, masks.transparent, hinge, ramp.hinge(), weight, dL_dt);
+         part(transparency, labelled_, EntropyOfT<T>{}, ramp.entropy(), weight, dL_dt) +
+         part(transparency, masks.opaque, ValueOfT<T>{}, ramp.opaque(), weight, dL_dt) +
+         part(transparency, masks.transparent, hinge, ramp.hinge(), weight, dL_dt);
 }
 
 template double MaskedTransparencyLoss::

@@ -2,7 +2,7 @@
 // Normal consistency [Huang24 Eq. 14]: mean over pixels of m (1 - N . (A N_d)), with N the
 // composited normal (not normalised; its unit vector in [Zhang25]), N_d the normal of the surface
 // depth, A the alpha map held constant, m = 1 or the factors of [Xie25]. `cosine`: the weighted
-// mean of 1 - N/|N| . N_d instead, over the pixels that have both, as GLINT's second release.
+// mean of 1 - N/|N| . N_d instead, over the pixels that have N_d, as GLINT's second release.
 #pragma once
 
 #include "glint/train/depth_normal_loss.h"

@@ -9,16 +9,19 @@
 
 namespace glint {
 
-// Surfels laid out in rows, and which of them a view has.
-struct SurfelsInView {
-  const std::uint8_t* in_view;  // [N]
+// Surfels laid out in rows, to be summed one after the other in each.
+struct SurfelRows {
+  static constexpr int kRow = 256;
   std::size_t count;
-  int row;  // surfels a row
 
-  GLINT_HD std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(row) +
-           static_cast<std::size_t>(x);
+  GLINT_HD static std::size_t at(int x, int y) {
+    return static_cast<std::size_t>(y) * kRow + static_cast<std::size_t>(x);
   }
+  ImageSize layout() const { return {kRow, static_cast<int>((count + kRow - 1) / kRow)}; }
+};
+// Which of them a view has.
+struct SurfelsInView : SurfelRows {
+  const std::uint8_t* in_view;  // [N]
   GLINT_HD bool has(int x, int y) const { return at(x, y) < count && in_view[at(x, y)] != 0; }
 };
 
@@ -59,15 +62,10 @@ struct PenaltyInView {
   }
 };
 
-// Numbers of surfels, laid out in rows.
-struct SumInRows {
-  const float* values;  // [count]
-  std::size_t count;
-  int row;  // a row's length
+struct SumInRows : SurfelRows {
+  const float* values;  // [N]
   GLINT_HD double operator()(int x, int y) const {
-    const std::size_t i =
-        static_cast<std::size_t>(y) * static_cast<std::size_t>(row) + static_cast<std::size_t>(x);
-    return i < count ? static_cast<double>(values[i]) : 0;
+    return at(x, y) < count ? static_cast<double>(values[at(x, y)]) : 0;
   }
 };
 // sum v H(sigmoid(logit)) of an extra channel, v the surfel's weight in the picture, and the
@@ -81,8 +79,7 @@ struct ChannelEntropy {
   float* dL_dlogits;  // added to
 
   GLINT_HD double operator()(int x, int y) const {
-    const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(visibility.row) +
-                          static_cast<std::size_t>(x);
+    const std::size_t i = SurfelRows::at(x, y);
     if (i >= visibility.count || !(visibility.values[i] > 0)) return 0;
     const float v = visibility.values[i], p = sigmoid(logits[i * width + column]);
     float dL_dp = 0;

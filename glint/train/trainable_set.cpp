@@ -113,9 +113,8 @@ void TrainableSet::observe(
 
 template <class Of>
 double TrainableSet::penalise(float weight, const Array<std::uint8_t>& in_view) {
-  constexpr int kRow = 256;  // surfels that are summed one after the other
-  const SurfelsInView surfels{in_view.on_device(), cloud_.size(), kRow};
-  const ImageSize layout{kRow, static_cast<int>((cloud_.size() + kRow - 1) / kRow)};
+  const SurfelsInView surfels{{cloud_.size()}, in_view.on_device()};
+  const ImageSize layout = surfels.layout();
   Array<double>& count = training().num_in_view;
   sum_kernel_to(layout, CountInView{surfels}, count);
   const PenaltyInView<Of> penalty{
@@ -138,10 +137,9 @@ double TrainableSet::penalise_opacity_entropy(float weight, const Array<std::uin
 double TrainableSet::penalise_entropy(
     float weight, std::size_t channel, const FloatArray& visibility
 ) {
-  constexpr int kRow = 256;
   Training& t = training();
-  const SumInRows weights{visibility.device_for_reading(), cloud_.size(), kRow};
-  const ImageSize layout{kRow, static_cast<int>((cloud_.size() + kRow - 1) / kRow)};
+  const SumInRows weights{{cloud_.size()}, visibility.device_for_reading()};
+  const ImageSize layout = weights.layout();
   sum_kernel_to(layout, weights, t.num_in_view);
   const ChannelEntropy entropy{
       weights,

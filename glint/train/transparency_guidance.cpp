@@ -5,7 +5,7 @@
 #include "glint/render/glass_transport.h"
 #include "glint/train/check_fits.h"
 #include "glint/train/counted_kernels.h"
-#include "glint/train/share_kernels.h"
+#include "glint/train/masked_mean.h"
 #include "glint/train/transparency_kernels.h"
 
 namespace glint {
@@ -45,21 +45,6 @@ double mean_l1(
       transparent_weight,
       dL_dt.on_device()};
   return sum_kernel(t.size(), loss_at) / num_pixels;
-}
-
-// sum m BCE(t, target) / sum m, 0 for an empty mask.
-template <class T>
-double mean_bce(
-    const BasicImage<T>& t, const Image& mask, T target, T weight, BasicImage<T>& dL_dt
-) {
-  Array<double> mask_sum;
-  Array<T> scale;
-  sum_kernel_to(t.size(), SumPixels{mask.on_device()}, mask_sum);
-  share_of(mask_sum.on_device(), weight, scale);
-  const GuideBce<T> loss_at{
-      t.on_device(), mask.on_device(), target, scale.on_device(), dL_dt.on_device()};
-  const double sum = sum_kernel(t.size(), loss_at), count = told(mask_sum);
-  return count == 0 ? 0 : sum / count;
 }
 
 }  // namespace
@@ -133,9 +118,10 @@ double TransparencyGuidance::evaluate(
         transparency, masks, weight, static_cast<T>(transparent_weight), dL_dtransparency
     );
   check_fits("opacity mask", masks.opaque, transparency.size(), 1);
-  const T high = static_cast<T>(transparent_target), low = static_cast<T>(opaque_target);
-  return mean_bce(transparency, masks.transparent, high, weight, dL_dtransparency) +
-         mean_bce(transparency, masks.opaque, low, weight, dL_dtransparency);
+  const CrossEntropyOfT<T> high{static_cast<T>(transparent_target)},
+      low{static_cast<T>(opaque_target)};
+  return masked_mean(transparency, masks.transparent, high, weight, dL_dtransparency) +
+         masked_mean(transparency, masks.opaque, low, weight, dL_dtransparency);
 }
 
 Image viewing_cosines(const Camera& camera, const Image& normal) {

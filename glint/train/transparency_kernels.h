@@ -109,21 +109,6 @@ struct GuideL1 {
   }
 };
 
-template <class T>
-struct GuideBce {
-  BasicImageView<T> t;
-  ImageView mask;
-  T target;
-  const T* scale;
-  BasicImageRef<T> dL_dt;
-
-  GLINT_HD double operator()(int x, int y) const {
-    const T m = static_cast<T>(mask.at(x, y));
-    binary_cross_entropy_vjp(t.at(x, y), target, *scale * m, dL_dt.at(x, y));
-    return static_cast<double>(m * binary_cross_entropy(t.at(x, y), target));
-  }
-};
-
 struct ViewingCosine {
   PixelRays rays;
   const float* normal;  // [H][W][3] composited, camera space
@@ -165,7 +150,6 @@ using TransparencyKernels = KernelList<
     ErodeAndWeigh,
     ViewingCosine,
     GuideL1<float>,
-    GuideBce<float>,
     TransparencyPriorAt<float>>;
 
 }  // namespace glint

@@ -13,30 +13,18 @@
 #include "metrics/metric.h"
 #include "reports/tables/published.h"
 #include "reports/tables/table_writers.h"
+#include "tests/support/table_parts.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
+using namespace glint::test;
 
 namespace {
 
 const fs::path kGolden = "tests/reports/golden";
 
-TableDefinition definition_of(const std::string& id) {
-  for (const TableDefinition& definition : table_definitions())
-    if (definition.id == id) return definition;
-  throw std::runtime_error("no table " + id);
-}
-
 Table golden_table(const std::string& id) {
   return build_table(definition_of(id), read_records(kGolden / "records.jsonl"));
-}
-
-const TableCell& cell_of(const Table& table, const std::string& method, const std::string& column) {
-  for (const TableRow& row : table.rows)
-    if (row.method == method)
-      for (std::size_t i = 0; i < table.columns.size(); ++i)
-        if (table.columns[i].id == column) return row.cells[i];
-  throw std::runtime_error("no cell " + method + " " + column);
 }
 
 }  // namespace
@@ -453,110 +441,6 @@ TEST_CASE("a second place that the paired bootstrap cannot tell from the first i
   add("envgs", {29.9, 30.9, 31.7});  // worse on every seed
   CHECK_FALSE(cell_of(table(), "envgs", "psnr").tied);
   CHECK(table_markdown(table()).find("≈") == std::string::npos);
-}
-
-namespace {
-
-void register_told_method() {
-  if (Registry<MethodSpec>::all().contains("told")) return;
-  MethodSpec spec;
-  spec.id = "told";
-  spec.title = "Told";
-  spec.description = "no rival: given the true pane";
-  spec.rival = false;
-  Registry<MethodSpec>::add(spec, "");
-}
-
-// Two rooms, one seed.
-void add_rooms(std::vector<Record>& records, const std::string& method, double psnr) {
-  for (const char* room : {"room_1", "room_2"}) {
-    Record record;
-    record.dataset = "glassroom";
-    record.cell = {room, method, 0};
-    record.metrics["psnr"] = psnr;
-    records.push_back(record);
-  }
-}
-
-}  // namespace
-
-TEST_CASE("a method that was given the truth has no rank, moves nobody's, and stands last") {
-  register_told_method();
-  std::vector<Record> records;
-  add_rooms(records, "told", 99);
-  add_rooms(records, "2dgs", 30);
-  add_rooms(records, "zzz", 31);
-  const TableDefinition definition = definition_of("table1_photometric");
-  const Table table = build_table(definition, records);
-  CHECK(cell_of(table, "told", "psnr").value == 99);
-  CHECK(cell_of(table, "told", "psnr").rank == 0);
-  CHECK(cell_of(table, "zzz", "psnr").rank == 1);
-  CHECK(cell_of(table, "2dgs", "psnr").rank == 2);
-  CHECK(table.rows.back().title == "Told‡");
-  const std::string note = "‡ Told: no rival: given the true pane; not ranked.";
-  CHECK_THAT(table_markdown(table), Catch::Contains("| Told‡ | 99.00 |") && Catch::Contains(note));
-  CHECK_THAT(table_terminal(table, {false, 0, true}), Catch::Contains(note));
-  CHECK_THAT(
-      table_html(table), Catch::Contains("<tr class=\"others\"><th scope=\"row\">Told‡</th>")
-  );
-  CHECK_THAT(table_latex(table), Catch::Contains("\\midrule\nTold$^\\ddagger$ & 99.00 &"));
-  CHECK_THAT(table_csv(table), Catch::Contains("\ntold,99,") && Catch::Contains(",psnr\n"));
-  CHECK(table_json(table)["rows"].back()["rival"] == false);
-  CHECK_FALSE(table_json(table)["rows"][0].contains("rival"));
-}
-
-TEST_CASE("a method that was given the truth has no say in the scenes of means") {
-  register_told_method();
-  std::vector<Record> records;
-  add_rooms(records, "told", 99);
-  add_rooms(records, "2dgs", 30);
-  records.pop_back();  // room_1 alone
-  const Table table = build_table(definition_of("table1_photometric"), records);
-  CHECK(cell_of(table, "2dgs", "psnr").status == CellStatus::kOk);
-  CHECK(cell_of(table, "2dgs", "psnr").rank == 0);  // nobody to rank against
-  CHECK(cell_of(table, "told", "psnr").num_scenes == 1);
-  records.resize(2);
-  CHECK(
-      cell_of(build_table(definition_of("table1_photometric"), records), "told", "psnr").value == 99
-  );
-}
-
-TEST_CASE("means have an interval over scenes and seeds in every format, from three pairs on") {
-  std::vector<Record> records;
-  const auto add = [&](const char* room, std::uint64_t seed, double psnr) {
-    Record record;
-    record.dataset = "glassroom";
-    record.cell = {room, "2dgs", seed};
-    record.metrics["psnr"] = psnr;
-    records.push_back(record);
-  };
-  const auto table = [&] { return build_table(definition_of("table1_photometric"), records); };
-  add("a", 0, 30);
-  add("b", 0, 30);
-  CHECK_FALSE(cell_of(table(), "2dgs", "psnr").interval.has_value());
-  CHECK_THAT(table_markdown(table()), !Catch::Contains("bootstrap over"));
-  add("c", 0, 30);  // all alike: no width
-  const Interval alike = cell_of(table(), "2dgs", "psnr").interval.value();
-  CHECK(alike.low == Approx(30).epsilon(1e-12));
-  CHECK(alike.high == Approx(30).epsilon(1e-12));
-  CHECK_THAT(table_markdown(table()), Catch::Contains("95 % by bootstrap over scenes, too narrow"));
-  for (const char* room : {"a", "b", "c"}) add(room, 1, 32);
-  const Table both = table();
-  const Interval interval = cell_of(both, "2dgs", "psnr").interval.value();
-  CHECK(interval.low >= 30);
-  CHECK(interval.high <= 32);
-  CHECK(interval.low < 31);
-  CHECK(interval.high > 31);
-  const std::string text = fmt::format("[{:.2f}, {:.2f}]", interval.low, interval.high);
-  CHECK_THAT(table_markdown(both), Catch::Contains("| 31.00 ± 2.00<br>" + text + " |"));
-  CHECK_THAT(table_terminal(both), Catch::Contains("31.00 ± 2.00 " + text));
-  CHECK_THAT(table_html(both), Catch::Contains("31.00 ± 2.00<br><small>" + text + "</small>"));
-  CHECK_THAT(table_latex(both), Catch::Contains("31.00 $\\pm$ 2.00 {\\scriptsize " + text + "}"));
-  CHECK(table_json(both)["rows"][0]["cells"]["psnr"]["interval"].size() == 2);
-  CHECK_THAT(table_markdown(both), Catch::Contains("95 % by bootstrap over scenes and seeds"));
-  const std::string narrow = table_terminal(both, {false, 60});
-  CHECK_THAT(narrow, !Catch::Contains(text) && Catch::Contains("Intervals are left out"));
-  CHECK_THAT(table_terminal(both, {false, 0, true}), !Catch::Contains(text));
 }
 
 TEST_CASE("fewer than three pairs of scene and seed claim no tie and say so") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// MaskedTransparencyLoss, pixel by pixel.
+// Means over masks (masked_mean.h), pixel by pixel.
 #pragma once
 
 #include "glint/core/kernel.h"
@@ -9,6 +9,14 @@
 namespace glint {
 
 // What of t is averaged over a mask, and its slope.
+template <class T>
+struct CrossEntropyOfT {
+  T target;
+  GLINT_HD T value(T t) const { return binary_cross_entropy(t, target); }
+  GLINT_HD void vjp(T t, T dL_dvalue, T& dL_dt) const {
+    binary_cross_entropy_vjp(t, target, dL_dvalue, dL_dt);
+  }
+};
 template <class T>
 struct EntropyOfT {
   GLINT_HD T value(T t) const { return binary_entropy(t); }
@@ -52,7 +60,8 @@ struct AddMasks {
   GLINT_HD void operator()(std::size_t i) const { sum[i] = min_of(a[i] + b[i], 1.0f); }
 };
 
-using MaskedTransparencyKernels = KernelList<
+using MaskedMeanKernels = KernelList<
+    MaskedSumAt<float, CrossEntropyOfT<float>>,
     MaskedSumAt<float, EntropyOfT<float>>,
     MaskedSumAt<float, ValueOfT<float>>,
     MaskedSumAt<float, HingeOfT<float>>,

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Rows that are no rivals, and intervals of means, in every format.
+#include <catch2/catch.hpp>
+
+#include "glint/method.h"
+#include "reports/tables/table_writers.h"
+#include "reports/tables/tables.h"
+#include "tests/support/table_parts.h"
+
+using namespace glint;
+using namespace glint::test;
+
+namespace {
+
+void register_told_method() {
+  if (Registry<MethodSpec>::all().contains("told")) return;
+  MethodSpec spec;
+  spec.id = "told";
+  spec.title = "Told";
+  spec.description = "no rival: given the true pane";
+  spec.rival = false;
+  Registry<MethodSpec>::add(spec, "");
+}
+
+// Two rooms, one seed.
+void add_rooms(std::vector<Record>& records, const std::string& method, double psnr) {
+  for (const char* room : {"room_1", "room_2"}) {
+    Record record;
+    record.dataset = "glassroom";
+    record.cell = {room, method, 0};
+    record.metrics["psnr"] = psnr;
+    records.push_back(record);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a method that was given the truth has no rank, moves nobody's, and stands last") {
+  register_told_method();
+  std::vector<Record> records;
+  add_rooms(records, "told", 99);
+  add_rooms(records, "2dgs", 30);
+  add_rooms(records, "zzz", 31);
+  const TableDefinition definition = definition_of("table1_photometric");
+  const Table table = build_table(definition, records);
+  CHECK(cell_of(table, "told", "psnr").value == 99);
+  CHECK(cell_of(table, "told", "psnr").rank == 0);
+  CHECK(cell_of(table, "zzz", "psnr").rank == 1);
+  CHECK(cell_of(table, "2dgs", "psnr").rank == 2);
+  CHECK(table.rows.back().title == "Told‡");
+  const std::string note = "‡ Told: no rival: given the true pane; not ranked.";
+  CHECK_THAT(table_markdown(table), Catch::Contains("| Told‡ | 99.00 |") && Catch::Contains(note));
+  CHECK_THAT(table_terminal(table, {false, 0, true}), Catch::Contains(note));
+  CHECK_THAT(
+      table_html(table), Catch::Contains("<tr class=\"others\"><th scope=\"row\">Told‡</th>")
+  );
+  CHECK_THAT(table_latex(table), Catch::Contains("\\midrule\nTold$^\\ddagger$ & 99.00 &"));
+  CHECK_THAT(table_csv(table), Catch::Contains("\ntold,99,") && Catch::Contains(",psnr\n"));
+  CHECK(table_json(table)["rows"].back()["rival"] == false);
+  CHECK_FALSE(table_json(table)["rows"][0].contains("rival"));
+}
+
+TEST_CASE("a method that was given the truth has no say in the scenes of means") {
+  register_told_method();
+  std::vector<Record> records;
+  add_rooms(records, "told", 99);
+  add_rooms(records, "2dgs", 30);
+  records.pop_back();  // room_1 alone
+  const Table table = build_table(definition_of("table1_photometric"), records);
+  CHECK(cell_of(table, "2dgs", "psnr").status == CellStatus::kOk);
+  CHECK(cell_of(table, "2dgs", "psnr").rank == 0);  // nobody to rank against
+  CHECK(cell_of(table, "told", "psnr").num_scenes == 1);
+  records.resize(2);
+  CHECK(
+      cell_of(build_table(definition_of("table1_photometric"), records), "told", "psnr").value == 99
+  );
+}
+
+TEST_CASE("means have an interval over scenes and seeds in every format, from three pairs on") {
+  std::vector<Record> records;
+  const auto add = [&](const char* room, std::uint64_t seed, double psnr) {
+    Record record;
+    record.dataset = "glassroom";
+    record.cell = {room, "2dgs", seed};
+    record.metrics["psnr"] = psnr;
+    records.push_back(record);
+  };
+  const auto table = [&] { return build_table(definition_of("table1_photometric"), records); };
+  add("a", 0, 30);
+  add("b", 0, 30);
+  CHECK_FALSE(cell_of(table(), "2dgs", "psnr").interval.has_value());
+  CHECK_THAT(table_markdown(table()), !Catch::Contains("bootstrap over"));
+  add("c", 0, 30);  // all alike: no width
+  const Interval alike = cell_of(table(), "2dgs", "psnr").interval.value();
+  CHECK(alike.low == Approx(30).epsilon(1e-12));
+  CHECK(alike.high == Approx(30).epsilon(1e-12));
+  CHECK_THAT(table_markdown(table()), Catch::Contains("95 % by bootstrap over scenes, too narrow"));
+  for (const char* room : {"a", "b", "c"}) add(room, 1, 32);
+  const Table both = table();
+  const Interval interval = cell_of(both, "2dgs", "psnr").interval.value();
+  CHECK(interval.low >= 30);
+  CHECK(interval.high <= 32);
+  CHECK(interval.low < 31);
+  CHECK(interval.high > 31);
+  const std::string text = fmt::format("[{:.2f}, {:.2f}]", interval.low, interval.high);
+  CHECK_THAT(table_markdown(both), Catch::Contains("| 31.00 ± 2.00<br>" + text + " |"));
+  CHECK_THAT(table_terminal(both), Catch::Contains("31.00 ± 2.00 " + text));
+  CHECK_THAT(table_html(both), Catch::Contains("31.00 ± 2.00<br><small>" + text + "</small>"));
+  CHECK_THAT(table_latex(both), Catch::Contains("31.00 $\\pm$ 2.00 {\\scriptsize " + text + "}"));
+  CHECK(table_json(both)["rows"][0]["cells"]["psnr"]["interval"].size() == 2);
+  CHECK_THAT(table_markdown(both), Catch::Contains("95 % by bootstrap over scenes and seeds"));
+  const std::string narrow = table_terminal(both, {false, 60});
+  CHECK_THAT(narrow, !Catch::Contains(text) && Catch::Contains("Intervals are left out"));
+  CHECK_THAT(table_terminal(both, {false, 0, true}), !Catch::Contains(text));
+}
