@@ -32,6 +32,8 @@ GlintConfig::GlintConfig() {
   densify.min_opacity = 0.08f;
   densify.min_surfels = 1024;
   densify.scale_limit = 0.1f;
+  rates.settle_from = 30000;
+  rates.settle_until = kPublishedIterations;
 }
 
 GlintConfig GlintConfig::scaled_to(int iterations) const {
@@ -102,7 +104,8 @@ DensifyConfig GlintConfig::reflection_densify(ImageSize size) const {
 
 SurfelRates GlintConfig::secondary_rates(int from) const {
   SurfelRates result = rates;
-  if (run_clock_rates) result.first_step = from;
+  result.first_step = from;
+  result.run_clock = run_clock_rates;
   return result;
 }
 
@@ -218,6 +221,13 @@ Json glint_plus_overrides() {
       {"min_opacity", 0.08},
       {"transmission_min_opacity", 0.05},
       {"mirror_observe_every", 4},
+      // The transmission set alone is held to the photos, less than in the row.
+      {"lambda_direct", 0.3},
+      {"lambda_direct_consistency", 0.1},
+      {"direct_near_consistency", true},
+      // The second half of a run averages over views and their noise.
+      {"rate_settled", 0.05},
+      {"freeze", "nothing"},
   });
   return overrides;
 }

@@ -89,6 +89,7 @@ constexpr SettingRange kRanges[] = {
     {"rate_position", at_least(0)},
     {"rate_position_final", above(0), "rate_position"},
     {"position_steps", at_least(1)},
+    {"rate_settled", above(0)},
     {"rate_color", at_least(0)},
     {"rate_sh", at_least(0)},
     {"rate_opacity", at_least(0)},

@@ -18,8 +18,7 @@ namespace {
 
 constexpr std::size_t kGrain = 1u << 15;  // values a block
 
-float rate_of(std::string_view array, const SurfelRates& rates, float position) {
-  if (array == "means") return position;
+float rate_of(std::string_view array, const SurfelRates& rates) {
   if (array == "log_scales") return rates.scale;
   if (array == "rotations") return rates.rotation;
   if (array == "opacity_logits") return rates.opacity;
@@ -27,11 +26,11 @@ float rate_of(std::string_view array, const SurfelRates& rates, float position) 
   return rates.sh_rest;
 }
 
-// Rates of the columns of an array, one or one each.
+// Rates of the columns of an array but the positions, one or one each.
 std::vector<float> rates_of(
-    std::string_view array, const SurfelCloud& cloud, const SurfelRates& rates, float position
+    std::string_view array, const SurfelCloud& cloud, const SurfelRates& rates
 ) {
-  if (array != "extra_logits") return {rate_of(array, rates, position)};
+  if (array != "extra_logits") return {rate_of(array, rates)};
   GLINT_CHECK(
       rates.extra.size() == cloud.num_extra() && cloud.num_extra() <= kMaxRates,
       kUsage,
@@ -41,6 +40,20 @@ std::vector<float> rates_of(
       kMaxRates
   );
   return rates.extra;
+}
+
+// The same at a step of a run, of any array; `position` is that of the positions.
+std::vector<float> rates_at(
+    std::string_view array,
+    const SurfelCloud& cloud,
+    const SurfelRates& rates,
+    float position,
+    float settled
+) {
+  if (array == "means") return {position};
+  std::vector<float> result = rates_of(array, cloud, rates);
+  for (float& rate : result) rate *= settled;
+  return result;
 }
 
 // The parts of one array.
@@ -78,7 +91,8 @@ SurfelRates SurfelRates::for_shorter_run(double shortening) const {
         &rates.scale,
         &rates.rotation})
     *rate *= faster;
-  rates.means_steps = std::max(static_cast<int>(std::lround(means_steps / shortening)), 1);
+  for (int* step : {&rates.means_steps, &rates.settle_from, &rates.settle_until})
+    *step = std::max(static_cast<int>(std::lround(*step / shortening)), 1);
   return rates;
 }
 
@@ -100,6 +114,11 @@ float position_rate(const SurfelRates& rates, int step) {
   return log_linear_rate(rates.means, rates.means_final, step, rates.means_steps);
 }
 
+float settled_share(const SurfelRates& rates, int step) {
+  const int from = rates.settle_from;
+  return log_linear_rate(1, rates.settled, step - from, rates.settle_until - from);
+}
+
 void SurfelAdam::step(
     SurfelCloud& cloud, SurfelCloud& gradient, const SurfelRates& rates, float extent
 ) {
@@ -108,14 +127,16 @@ void SurfelAdam::step(
     first_.resize(cloud.size());
     second_.resize(cloud.size());
   }
-  const float position = position_rate(rates, rates.first_step + steps_) * extent;
+  const int run_step = rates.first_step + steps_;
+  const float position = position_rate(rates, rates.run_clock ? run_step : steps_) * extent;
+  const float settled = settled_share(rates, run_step);
   ++steps_;
   const float correction1 = 1 - std::pow(AdamKernel<true>::kBeta1, static_cast<float>(steps_));
   const float correction2 = 1 - std::pow(AdamKernel<true>::kBeta2, static_cast<float>(steps_));
   std::array<AdamArrays, 7> arrays{};
   std::size_t k = 0;
   cloud.for_each_array([&](const char* name, FloatArray& array, std::size_t) {
-    arrays[k++] = {&array, nullptr, nullptr, nullptr, rates_of(name, cloud, rates, position)};
+    arrays[k++] = {&array, nullptr, nullptr, nullptr, rates_at(name, cloud, rates, position, settled)};
   });
   k = 0;
   gradient.for_each_array([&](const char*, FloatArray& a, std::size_t) { arrays[k++].g = &a; });

@@ -24,8 +24,13 @@ struct SurfelRates {
   float rotation = 0.001f;
   // Numbers without a gradient in a step stay, and so do their moments (no drift by momentum).
   bool only_seen = false;
+  // Beyond the papers: all rates but the positions' fall log-linearly to a share of themselves, so
+  // that the end of a run averages over views and their noise. 1: they do not.
+  float settled = 1;
+  int settle_from = 15000, settle_until = 30000;
   std::vector<float> extra;  // of the set's extra channels, in their order
-  int first_step = 0;        // of the run, of Adam's first: positions slow down by the run's steps
+  int first_step = 0;        // of the run, of Adam's first
+  bool run_clock = true;     // positions slow down by steps of the run, not by Adam's
 
   template <class V>
   void visit(V&& v) {
@@ -37,10 +42,13 @@ struct SurfelRates {
     v("rate_opacity", opacity, "learning rate of opacity");
     v("rate_scale", scale, "learning rate of log scales");
     v("rate_rotation", rotation, "learning rate of quaternions");
+    v("rate_settled", settled, "share to which all rates but the positions' fall; 1: none");
+    v("settle_from", settle_from, "published step from which they fall");
+    v("settle_until", settle_until, "published step at which they have fallen");
     v("only_seen", only_seen, "Adam leaves numbers alone that have no gradient in a step");
   }
 
-  // Rates of a run that is `shortening` times shorter than the published one: position_steps
+  // Rates of a run that is `shortening` times shorter than the published one: numbers of steps
   // shrink with it, and positions, colour, scales and rotations move faster by faster_rates(), the
   // same rule for every method. Deviation: at published rates a short run ends before
   // surfels have reached their place (docs/GLINT_NOTES.md).
@@ -50,6 +58,8 @@ struct SurfelRates {
 // The rate of a step of `steps`: log-linear from `begin` to `end`, `end` behind; 0 where `begin` is
 // 0. Errors (kUsage): one of them is not above 0 otherwise.
 float log_linear_rate(float begin, float end, int step, int steps);
+// What the other rates are multiplied by at a step of the run; errors: as above.
+float settled_share(const SurfelRates& rates, int step);
 // Rate of the positions at a step, before the factor of the scene's extent; errors: as above.
 float position_rate(const SurfelRates& rates, int step);
 

@@ -73,6 +73,14 @@ Json titles_json(const std::vector<Record>& records) {
   return titles;
 }
 
+// Methods that were given the truth: nothing is ranked against them.
+Json no_rivals_json(const std::vector<Record>& records) {
+  std::set<std::string> ids;
+  for (const Record& record : records)
+    if (!is_rival(record.cell.method)) ids.insert(record.cell.method);
+  return ids;
+}
+
 Json failures_json(const std::vector<PageScene>& scenes, const PageOptions& options) {
   Json failures = Json::array();
   for (const PageScene& scene : scenes)
@@ -145,6 +153,7 @@ Json page_summary(
   json["metrics"] = metrics_json(ids, tables);
   json["records"] = records_json(records, ids);
   json["titles"] = titles_json(records);
+  json["no_rivals"] = no_rivals_json(records);
   json["mesh_faces"] = mesh_faces(options);
   json["failures"] = failures_json(scenes, options);
   json["environments"] = environments_json(records);

@@ -271,11 +271,12 @@ TEST_CASE("Opacities are reset as often in a short run as in the published one")
 TEST_CASE("Rates of secondary sets count steps of the run, or their own") {
   GlintConfig config;
   CHECK(config.secondary_rates(700).first_step == 700);
+  CHECK(config.secondary_rates(700).run_clock);
   config.reflection_color_rate = 8;
   CHECK(config.reflection_rates().sh_dc == 8 * config.rates.sh_dc);
   CHECK(config.reflection_rates().scale == config.rates.scale);
   config.run_clock_rates = false;
-  CHECK(config.secondary_rates(700).first_step == 0);
+  CHECK_FALSE(config.secondary_rates(700).run_clock);
 }
 
 TEST_CASE("Without glass GLINT trains as 2DGS does") {

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "glint/render/activations.h"
 #include "glint/train/densify.h"
@@ -333,9 +335,10 @@ TEST_CASE("A penalty of a channel's entropy is its mean by weight in the picture
 TEST_CASE("Positions may slow down by the steps of the run") {
   SurfelRates rates;
   rates.means_steps = 100;
-  const auto moved = [&](int first_step) {
+  const auto moved = [&](int first_step, bool run_clock = true) {
     SurfelRates of_run = rates;
     of_run.first_step = first_step;
+    of_run.run_clock = run_clock;
     SurfelCloud cloud = cloud_of(1), gradient = cloud_of(1);
     const float before = cloud.means[0];
     gradient.means[0] = 1;
@@ -345,4 +348,34 @@ TEST_CASE("Positions may slow down by the steps of the run") {
   };
   CHECK(moved(0) == Approx(static_cast<double>(rates.means)).epsilon(1e-3));
   CHECK(moved(100) == Approx(static_cast<double>(rates.means_final)).epsilon(0.1));
+  CHECK(moved(100, false) == moved(0));
+}
+
+TEST_CASE("Rates settle over a window of the run, positions by their own schedule") {
+  SurfelRates rates;
+  rates.settled = 0.01f;
+  rates.settle_from = 100;
+  rates.settle_until = 300;
+  const SurfelRates half = rates.for_shorter_run(2);
+  CHECK(half.settle_from == 50);
+  CHECK(half.settle_until == 150);
+  const auto moved = [&](int first_step, const char* name) {
+    rates.first_step = first_step;
+    SurfelCloud cloud = cloud_of(1), gradient = cloud_of(1);
+    float change = 0;
+    gradient.for_each_array([](const char*, FloatArray& a, std::size_t) { a[0] = 1; });
+    cloud.for_each_array([&](const char* n, FloatArray& a, std::size_t) {
+      if (std::string_view(n) == name) change = a[0];
+    });
+    SurfelAdam().step(cloud, gradient, rates, 1);
+    cloud.for_each_array([&](const char* n, FloatArray& a, std::size_t) {
+      if (std::string_view(n) == name) change -= a[0];
+    });
+    return static_cast<double>(change);
+  };
+  for (const auto& [step, share] : {std::pair(0, 1.0), {100, 1.0}, {200, 0.1}, {300, 0.01}}) {
+    CHECK(moved(step, "opacity_logits") == Approx(0.05 * share).epsilon(0.01));
+    CHECK(moved(step, "sh_dc") == Approx(2.5e-3 * share).epsilon(0.01));
+    CHECK(moved(step, "means") == Approx(position_rate(rates, step)).epsilon(0.01));
+  }
 }

@@ -308,6 +308,19 @@ TEST_CASE("a view says how much of it is glass, and methods have their titles") 
   CHECK(assigned(store.asset("data.js"))["titles"] == Json({{"fake", method_title("fake")}}));
 }
 
+TEST_CASE("the page knows which methods were given the truth") {
+  if (!Registry<MethodSpec>::all().contains("told")) {
+    MethodSpec spec;
+    spec.id = "told";
+    spec.rival = false;
+    Registry<MethodSpec>::add(spec, "");
+  }
+  Store store;
+  for (const char* method : {"fake", "told"}) store.add(record_of("room_1", method));
+  store.write();
+  CHECK(assigned(store.asset("data.js"))["no_rivals"] == Json({"told"}));
+}
+
 TEST_CASE("a page that is written again keeps nothing of the one before") {
   const Store store;
   store.add(record_of("room_1", "fake"));

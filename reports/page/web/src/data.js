@@ -72,6 +72,8 @@ export function metricText(id, value) {
 }
 
 export const methodTitle = (id) => report.titles[id] ?? id;
+// False: it was given the truth.
+export const isRival = (id) => !report.no_rivals.includes(id);
 
 const hasSeeds = (scene, run) =>
   scene.runs.filter((other) => other.method === run.method).length > 1;

@@ -1,6 +1,6 @@
 // The picture that the page opens with: a test view, true and by the best methods.
 import { addressOf } from "./address.js";
-import { loadScene, metricText, pictureUrl, report, runKey, sceneKey, sceneTitle } from "./data.js";
+import { isRival, loadScene, metricText, pictureUrl, report, runKey, sceneKey, sceneTitle } from "./data.js";
 import { h, replace } from "./dom.js";
 import { scoreOf } from "./frames.js";
 import { layersOf, ownerKey, ownerTitle } from "./owner.js";
@@ -28,6 +28,7 @@ function meanScore(scene, run) {
 function bestRuns(scene, view) {
   return scene.runs
     .map((_, run) => run)
+    .filter((run) => isRival(scene.runs[run].method))
     .filter((run) => scene.views[view].runs?.[run]?.includes("rgb"))
     .sort((a, b) => meanScore(scene, b) - meanScore(scene, a))
     .slice(0, kMethods);
