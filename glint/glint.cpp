@@ -406,7 +406,8 @@ GLINT_REGISTER(
         "glint/plus",
         "GLINT+",
         "",
-        "beyond the paper: secondary sets start as copies of the interface, few resets, rates that settle",
+        "beyond the paper: secondary sets start as copies of the interface, few resets, rates that "
+        "settle",
         glint_plus_overrides()
     )
 )

@@ -136,7 +136,8 @@ void SurfelAdam::step(
   std::array<AdamArrays, 7> arrays{};
   std::size_t k = 0;
   cloud.for_each_array([&](const char* name, FloatArray& array, std::size_t) {
-    arrays[k++] = {&array, nullptr, nullptr, nullptr, rates_at(name, cloud, rates, position, settled)};
+    arrays[k++] = {
+        &array, nullptr, nullptr, nullptr, rates_at(name, cloud, rates, position, settled)};
   });
   k = 0;
   gradient.for_each_array([&](const char*, FloatArray& a, std::size_t) { arrays[k++].g = &a; });
