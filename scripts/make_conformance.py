@@ -344,6 +344,8 @@ def glass_maps():
              "behind_depth": behind * bounded(25, 0.8, 1.3), "normal": predicted_normal,
              "behind_expected": behind * bounded(30, 0.9, 1.6),
              "behind_median": np.where(bounded(31, 0, 1) < 0.2, 0, behind * bounded(32, 0.7, 1.2)),
+             "first_mode": np.where(bounded(33, 0, 1) < 0.1, 0, depth * bounded(34, 0.8, 1.1)),
+             "last_mode": np.where(bounded(35, 0, 1) < 0.1, 0, behind * bounded(36, 0.9, 1.3)),
              "transparency": np.clip(0.7 * glass + bounded(26, -0.2, 0.4), -0.1, 1.1).astype("f4"),
              "specularity": np.clip(0.2 * glass + bounded(27, 0, 0.3), 0, 1).astype("f4"),
              "transmitted": bounded(28, 0, 1, 3), "reflected": bounded(29, 0, 0.4, 3)}
@@ -405,6 +407,9 @@ def glass_vectors():
         values = goldens.depth_values(d["depth"][m], t["depth"][m])
         for key in ["absrel", "rmse", "delta1"]:
             vector(f"depth-{key}{at}", values[key], NUMPY, where)
+        values = goldens.depth_values(d["first_mode"][m], t["depth"][m])
+        vector("depth-absrel-first-mode" + at, values["absrel"], NUMPY, where + ", holes count as 0 metres")
+        vector("depth-coverage-first-mode" + at, 100 * (d["first_mode"][m] > 0).mean(), NUMPY, where, 1e-9)
         vector("transparency-mae" + at, np.abs(clipped - glass)[m].mean(), NUMPY, where)
     behind = goldens.depth_values(d["behind_depth"][glass], t["behind_depth"][glass])
     vector("behind-absrel", behind["absrel"], NUMPY, "depth of what is behind glass, glass pixels")
@@ -414,8 +419,9 @@ def glass_vectors():
         values = goldens.depth_values(d["behind_depth"][part], t["behind_depth"][part])
         vector(f"behind-absrel-{key}", values["absrel"], NUMPY,
                "glass pixels with less than 1.25 m between the layers, and the others")
-    for suffix in ["", "-expected", "-median"]:
-        p = d["behind" + (suffix.replace("-", "_") or "_depth")][glass]
+    for suffix, key in [("", "behind_depth"), ("-expected", "behind_expected"),
+                        ("-median", "behind_median"), ("-last-mode", "last_mode")]:
+        p = d[key][glass]
         if suffix:
             values = goldens.depth_values(p, t["behind_depth"][glass])
             vector("behind-absrel" + suffix, values["absrel"], NUMPY,

@@ -328,8 +328,9 @@ struct BackwardTile {
   }
 };
 
-// Hits of pixel i.
-GLINT_HD SurfaceHits surface_hits(const TilePass& pass, std::size_t i) {
+// What `use` makes of the hits of pixel i; they are not copied, for they are many.
+template <class Use>
+GLINT_HD auto with_surface_hits(const TilePass& pass, std::size_t i, const Use& use) {
   const DeviceLists& lists = pass.lists;
   const int x = static_cast<int>(i) % lists.width, y = static_cast<int>(i) / lists.width;
   const float* limit = pass.near_limit;
@@ -338,7 +339,7 @@ GLINT_HD SurfaceHits surface_hits(const TilePass& pass, std::size_t i) {
   const PairRange range = lists.ranges[y / kDeviceTile * across + x / kDeviceTile];
   for (std::uint32_t k = range.begin; k < range.end; ++k)
     if (!pixel.add(lists.splats[lists.pairs[k]])) break;
-  return pixel.hits;
+  return use(pixel.hits);
 }
 
 // Depth of the first surface of a pixel (first_surface.h).
@@ -353,7 +354,9 @@ struct FirstSurface {
     if (1 - out.alpha[i] > settings.max_transmittance)
       depth[i] = 0;
     else if (mask[i] > 0.5f)
-      depth[i] = first_surface_depth(surface_hits(pass, i), settings);
+      depth[i] = with_surface_hits(pass, i, [&](const SurfaceHits& hits) {
+        return first_surface_depth(hits, settings);
+      });
     else
       depth[i] = out.depth_median[i];
   }
@@ -366,8 +369,9 @@ struct DepthModesOfPixel {
   float *first, *last;  // [H][W]
 
   GLINT_HD void operator()(std::size_t i) const {
-    const SurfaceHits hits = surface_hits(pass, i);
-    const DepthModes modes = ModeSearch(hits, settings).run();
+    const DepthModes modes = with_surface_hits(pass, i, [&](const SurfaceHits& hits) {
+      return ModeSearch(hits, settings).run();
+    });
     first[i] = modes.first;
     last[i] = modes.last;
   }

@@ -43,6 +43,17 @@ std::string list_of(const std::string& text) {
   return at == std::string::npos ? "" : text.substr(at);
 }
 
+// Members of KernelList<...>, not of the templates in it.
+std::size_t num_listed(const std::string& list) {
+  std::size_t listed = 1, depth = 0;
+  for (const char c : list) {
+    if (c == '<') ++depth;
+    if (c == '>') --depth;
+    if (c == ',' && depth == 1) ++listed;
+  }
+  return listed;
+}
+
 template <class Kernel>
 bool is_offered() {
   if constexpr (requires { typename Kernel::Shared; })
@@ -80,9 +91,6 @@ TEST_CASE("GPU backends offer the kernels of all lists") {
   use_host_kernels();
   use_cpu();
   std::size_t listed = 0;
-  for (const fs::path& header : kernel_headers()) {
-    const std::string list = list_of(read_file(header));
-    listed += 1 + static_cast<std::size_t>(std::count(list.begin(), list.end(), ','));
-  }
+  for (const fs::path& header : kernel_headers()) listed += num_listed(list_of(read_file(header)));
   CHECK(num_offered_in(KernelLists{}) == listed);
 }

@@ -363,7 +363,9 @@ TEST_CASE("Rates settle over a window of the run, positions by their own schedul
     rates.first_step = first_step;
     SurfelCloud cloud = cloud_of(1), gradient = cloud_of(1);
     float change = 0;
-    gradient.for_each_array([](const char*, FloatArray& a, std::size_t) { a[0] = 1; });
+    gradient.for_each_array([](const char*, FloatArray& a, std::size_t) {
+      if (!a.empty()) a[0] = 1;
+    });
     cloud.for_each_array([&](const char* n, FloatArray& a, std::size_t) {
       if (std::string_view(n) == name) change = a[0];
     });

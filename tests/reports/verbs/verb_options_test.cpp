@@ -199,6 +199,9 @@ TEST_CASE("methods want the priors of which they would miss one") {
   view.camera.cx = view.camera.cy = 16;
   view.camera.translation_cam_from_world = {0, 0, 2};
   view.rgb = Image(32, 32, 3, 0.5f);
+  // What glint/oracle is given.
+  view.truth["depth"] = view.truth["glass"] = Image(32, 32, 1, 1.0f);
+  view.truth["normal"] = Image(32, 32, 3, 1.0f);
   scene.train = {view, view};
   scene.points.positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {0.1f, 0.1f, 0}};
   scene.points.colors.assign(4, {0.5f, 0.5f, 0.5f});
