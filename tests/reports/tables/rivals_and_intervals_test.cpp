@@ -113,3 +113,16 @@ TEST_CASE("means have an interval over scenes and seeds in every format, from th
   CHECK_THAT(narrow, !Catch::Contains(text) && Catch::Contains("Intervals are left out"));
   CHECK_THAT(table_terminal(both, {false, 0, true}), !Catch::Contains(text));
 }
+
+TEST_CASE("a table of short runs says so first") {
+  std::vector<Record> records;
+  add_rooms(records, "2dgs", 30);
+  const TableDefinition definition = definition_of("table1_photometric");
+  const auto caption = [&](int steps) {
+    for (Record& record : records) record.iterations = steps;
+    return build_table(definition, records).caption;
+  };
+  CHECK(caption(3000).starts_with("A smoke test: 3000 steps, "));
+  CHECK(caption(8000) == definition.caption);
+  CHECK(caption(0) == definition.caption);  // unknown
+}
