@@ -460,16 +460,18 @@ void add_steps_note(Table& table, const std::vector<Record>& records) {
   );
 }
 
-// Before the caption: what runs of a few steps say of methods is not what published ones do.
-std::string short_runs_warning(const std::vector<Record>& records) {
+// Title and caption: what runs of a few steps say of methods is not what published ones do.
+void warn_of_short_runs(Table& table, const std::vector<Record>& records) {
   constexpr int kLong = 8000;
   int most = 0;
   for (const Record& record : records)
     if (record.ok()) most = std::max(most, record.iterations);
-  if (most == 0 || most >= kLong) return "";
-  return fmt::format(
-      "A smoke test: {} steps, of published 30,000 and more, at which the order can be another. ",
-      most
+  if (most == 0 || most >= kLong) return;
+  table.title += fmt::format(" (a smoke test: {} steps)", most);
+  table.caption = fmt::format(
+      "A smoke test: {} steps, of published 30,000 and more, at which the order can be another. {}",
+      most,
+      table.caption
   );
 }
 
@@ -516,7 +518,7 @@ Table build_table(const TableDefinition& definition, const std::vector<Record>& 
   Table table{definition.id, definition.title, definition.caption, {}, {}, {}, {}};
   const std::vector<TableRowDefinition> rows = rows_of(definition, all_records);
   const std::vector<Record> records = records_of(rows, all_records);
-  table.caption = short_runs_warning(records) + table.caption;
+  warn_of_short_runs(table, records);
   table.columns = columns_of(definition, records);
   const std::vector<SizedScenes> scenes = scenes_of_columns(table.columns, records);
   for (const TableRowDefinition& row : rows)

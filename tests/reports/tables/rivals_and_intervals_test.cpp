@@ -118,11 +118,14 @@ TEST_CASE("a table of short runs says so first") {
   std::vector<Record> records;
   add_rooms(records, "2dgs", 30);
   const TableDefinition definition = definition_of("table1_photometric");
-  const auto caption = [&](int steps) {
+  const auto table_of = [&](int steps) {
     for (Record& record : records) record.iterations = steps;
-    return build_table(definition, records).caption;
+    return build_table(definition, records);
   };
-  CHECK(caption(3000).starts_with("A smoke test: 3000 steps, "));
-  CHECK(caption(8000) == definition.caption);
-  CHECK(caption(0) == definition.caption);  // unknown
+  CHECK(table_of(3000).caption.starts_with("A smoke test: 3000 steps, "));
+  CHECK_THAT(table_terminal(table_of(3000), {}), Catch::Contains("(a smoke test: 3000 steps)"));
+  for (const int steps : {8000, 0}) {  // 0: unknown
+    CHECK(table_of(steps).caption == definition.caption);
+    CHECK(table_of(steps).title == definition.title);
+  }
 }
