@@ -32,8 +32,8 @@ GlintConfig::GlintConfig() {
   densify.min_opacity = 0.08f;
   densify.min_surfels = 1024;
   densify.scale_limit = 0.1f;
-  rates.settle_from = 30000;
-  rates.settle_until = kPublishedIterations;
+  rates.settle_from = densify.until;
+  rates.settle_until = 45000;
 }
 
 GlintConfig GlintConfig::scaled_to(int iterations) const {
@@ -227,8 +227,6 @@ Json glint_plus_overrides() {
       {"direct_near_consistency", true},
       // Once the sets are grown, rates fall: what is left of the run averages over views and noise.
       {"rate_settled", 0.03},
-      {"settle_from", 21000},
-      {"settle_until", 45000},
       {"freeze", "nothing"},
   });
   return overrides;

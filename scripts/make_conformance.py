@@ -408,8 +408,10 @@ def glass_vectors():
         for key in ["absrel", "rmse", "delta1"]:
             vector(f"depth-{key}{at}", values[key], NUMPY, where)
         values = goldens.depth_values(d["first_mode"][m], t["depth"][m])
-        vector("depth-absrel-first-mode" + at, values["absrel"], NUMPY, where + ", holes count as 0 metres")
-        vector("depth-coverage-first-mode" + at, 100 * (d["first_mode"][m] > 0).mean(), NUMPY, where, 1e-9)
+        vector("depth-absrel-first-mode" + at, values["absrel"], NUMPY,
+               where + ", holes count as 0 metres")
+        vector("depth-coverage-first-mode" + at, 100 * (d["first_mode"][m] > 0).mean(), NUMPY,
+               where, 1e-9)
         vector("transparency-mae" + at, np.abs(clipped - glass)[m].mean(), NUMPY, where)
     behind = goldens.depth_values(d["behind_depth"][glass], t["behind_depth"][glass])
     vector("behind-absrel", behind["absrel"], NUMPY, "depth of what is behind glass, glass pixels")

@@ -13,6 +13,7 @@ using namespace glint::test;
 namespace {
 
 constexpr int kSteps = 200;
+constexpr double kSameQuality = 0.1;  // dB
 
 // A training on the device in use, with a copy of the scene there.
 struct Training {
@@ -51,17 +52,15 @@ TEST_CASE("Every method's first steps have the same losses on a GPU") {
   }
 }
 
-// dB. So short a run of the row is a matter of chance: with seeds 0 and 1 it ends at 18.84
-// and 19.17 on the CPU, at 19.76 and 19.17 with kernels on the host.
+// Not the row: where so short a run of it ends is a matter of chance (seeds 0 and 1: 18.84
+// and 19.17 dB on the CPU, 19.76 and 19.17 with kernels on the host).
 TEST_CASE("Methods train to the same quality on a GPU") {
   watch_memory(false);
-  const std::pair<const char*, double> margins[] = {
-      {"2dgs", 0.1}, {"glint/text", 0.1}, {"glint", 1.5}};
-  for (const auto& [id, margin] : margins) {
+  for (const char* id : {"2dgs", "glint/text"}) {
     const double expected = Training(id, kSteps, kSteps).test_psnr();
-    for_each_gpu_backend([&, &id = id, &margin = margin](const std::string& backend) {
+    for_each_gpu_backend([&](const std::string& backend) {
       INFO(id << " with " << backend);
-      CHECK(Training(id, kSteps, kSteps).test_psnr() == Approx(expected).margin(margin));
+      CHECK(Training(id, kSteps, kSteps).test_psnr() == Approx(expected).margin(kSameQuality));
     });
   }
 }

@@ -21,6 +21,7 @@
 #include "reports/tables/method_title.h"
 #include "tests/reports/fake_method.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/told_method.h"
 
 using namespace glint;
 
@@ -309,12 +310,7 @@ TEST_CASE("a view says how much of it is glass, and methods have their titles") 
 }
 
 TEST_CASE("the page knows which methods were given the truth") {
-  if (!Registry<MethodSpec>::all().contains("told")) {
-    MethodSpec spec;
-    spec.id = "told";
-    spec.rival = false;
-    Registry<MethodSpec>::add(spec, "");
-  }
+  test::register_told_method();
   Store store;
   for (const char* method : {"fake", "told"}) store.add(record_of("room_1", method));
   store.write();

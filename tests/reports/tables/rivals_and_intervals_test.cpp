@@ -2,25 +2,15 @@
 // Rows that are no rivals, and intervals of means, in every format.
 #include <catch2/catch.hpp>
 
-#include "glint/method.h"
 #include "reports/tables/table_writers.h"
 #include "reports/tables/tables.h"
 #include "tests/support/table_parts.h"
+#include "tests/support/told_method.h"
 
 using namespace glint;
 using namespace glint::test;
 
 namespace {
-
-void register_told_method() {
-  if (Registry<MethodSpec>::all().contains("told")) return;
-  MethodSpec spec;
-  spec.id = "told";
-  spec.title = "Told";
-  spec.description = "no rival: given the true pane";
-  spec.rival = false;
-  Registry<MethodSpec>::add(spec, "");
-}
 
 // Two rooms, one seed.
 void add_rooms(std::vector<Record>& records, const std::string& method, double psnr) {
