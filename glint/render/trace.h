@@ -21,11 +21,6 @@
 
 namespace glint {
 
-// How hits are found; the picture is the same. Rays that run together can share a search
-// (trace_beam.h), which pays where surfels are large; others go through a tree one by one. With
-// `triangles`, all do.
-enum class TraceSearch { kCheapest, kTree, kBeams };
-
 struct TraceSettings {
   float near = 0;  // ray parameter; below 0 counts as 0
   float max_rho = kMaxRho;
@@ -33,7 +28,6 @@ struct TraceSettings {
   float min_transmittance = kMinTransmittance;
   int max_hits = 256;      // contributors of a ray
   bool triangles = false;  // Embree sees two triangles a surfel [Na26], no disc; same picture
-  TraceSearch search = TraceSearch::kCheapest;
 };
 
 // Activated surfels, structure of arrays; borrowed. N surfels.

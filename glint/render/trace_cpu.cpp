@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
@@ -14,7 +13,8 @@ namespace glint {
 
 namespace {
 
-constexpr int kRebuildInterval = 16;  // updates; order and bounds loosen as surfels move
+constexpr int kRebuildInterval = 16;      // updates; order and bounds loosen as surfels move
+constexpr std::size_t kBlocksAtOnce = 4;  // of rays, that a thread takes
 
 // ---- surfels
 // -------------------------------------------------------------------------------------
@@ -131,12 +131,9 @@ void shade_groups(const TraceSaved& saved, const RayState& ray, WeightedHits& hi
   hits.drop_first(whole);
 }
 
-// `search` has nearest(origin, direction, hits).
-template <class Search>
 void trace_ray(
     const TraceSettings& settings,
     const TraceSaved& saved,
-    Search& search,
     RayState& ray,
     std::vector<std::uint32_t>& slots,
     RaySums& sums
@@ -146,7 +143,7 @@ void trace_ray(
   auto left = static_cast<std::size_t>(std::max(settings.max_hits, 0));
   for (bool more = left > 0; more;) {
     nearest.start(ray.transmittance, left);
-    search.nearest(ray.origin, ray.direction, nearest);
+    saved.bvh.nearest(ray.origin, ray.direction, nearest);
     more = nearest.finish();
     const std::size_t before = hits.count;
     more = weigh(settings, saved, nearest, left, ray, hits) && more;
@@ -156,19 +153,6 @@ void trace_ray(
   hits.pad();
   shade_groups(saved, ray, hits, sums);
 }
-
-// ---- tiles
-// -----------------------------------------------------------------------------------------
-
-// Rays of a beam, at most: of which surfels are sorted, and that share a search.
-constexpr std::size_t kRaysPerSort = 64, kRaysPerBeam = 32;
-constexpr std::size_t kShrink = 2;       // a beam is culled again with so many times fewer rays
-constexpr float kBroadestBeam = 0.7f;    // radius of directions above which nothing is culled
-constexpr std::size_t kMostSplits = 24;  // of a tile's rays; reached where rays are the same
-// A beam pays where going through its surfels costs at most this share of what its rays cost one
-// by one, which a few of each tile's rays tell.
-constexpr double kCullShare = 1.0 / 4, kSearchShare = 1;
-constexpr std::size_t kProbes = 8;
 
 // Everything the forward pass reads and its outputs.
 struct ForwardPass : TraceCall {
@@ -183,147 +167,19 @@ bool is_ray(const RayState& ray) {
   return direction2 > 0 && std::isfinite(direction2 + length2(ray.origin));
 }
 
-template <class Search>
-void forward_ray(const ForwardPass& call, Search& search, std::size_t i, TraceScratch& scratch) {
-  const std::size_t before = scratch.slots.size();
+// The slots of its hits go to its block.
+void forward_ray(const ForwardPass& call, std::size_t i) {
+  std::vector<std::uint32_t>& slots = call.saved.blocks[i / kRaysPerBlock];
+  if (i % kRaysPerBlock == 0) slots.clear();
+  const std::size_t before = slots.size();
   RayState ray = ray_at(call.rays, call.input.sh_degree, i);
   RaySums sums;
-  if (is_ray(ray) && call.input.count > 0)
-    trace_ray(call.settings, call.saved, search, ray, scratch.slots, sums);
-  scratch.first_hit[i % kRaysPerTile] = before;
-  call.saved.counts[i] = static_cast<std::uint32_t>(scratch.slots.size() - before);
+  if (is_ray(ray) && call.input.count > 0) trace_ray(call.settings, call.saved, ray, slots, sums);
+  call.saved.counts[i] = static_cast<std::uint32_t>(slots.size() - before);
   put3(call.output.color.data(), i, lane_sum(sums.color));
   put3(call.output.normal.data(), i, lane_sum(sums.normal));
   call.output.depth_sum.data()[i] = lane_sum(sums.depth);
   call.output.alpha.data()[i] = 1 - std::abs(ray.transmittance);
-}
-
-template <class Search>
-void forward_rays(
-    const ForwardPass& call,
-    Search& search,
-    std::span<const std::uint32_t> rays,
-    TraceScratch& scratch
-) {
-  for (const std::uint32_t i : rays) forward_ray(call, search, i, scratch);
-}
-
-// Searches the tree and counts the clusters that this takes.
-struct Probe {
-  const SurfelBvh& bvh;
-  std::size_t clusters = 0;
-
-  void nearest(Vec3f origin, Vec3f direction, NearestHits& hits) {
-    clusters += bvh.nearest(origin, direction, hits);
-  }
-};
-
-// Surfels that rays of a beam may meet.
-struct BeamNode {
-  const BeamSurfels* surfels = nullptr;  // null: all
-  std::size_t culled_for = 0;            // rays
-  bool sorted = false;
-
-  std::size_t groups(const TraceSaved& saved) const {
-    return surfels == nullptr ? saved.bvh.clusters().size() : surfels->groups();
-  }
-  // Of the hits, which lie nearer than the surfels do on average.
-  float hit_distance() const { return surfels == nullptr ? 1.0f : 0.5f * surfels->mean_distance(); }
-};
-
-// Drops what the beam of `count` rays cannot meet, where that pays.
-void narrow(
-    const TraceSaved& saved,
-    const Beam& beam,
-    std::size_t count,
-    BeamSurfels& culled,
-    BeamSurfels& sorted,
-    BeamNode& node
-) {
-  const bool sorts = count <= kRaysPerSort;
-  const bool fewer = sorts || node.surfels == nullptr || kShrink * count <= node.culled_for;
-  if (node.sorted || !fewer || beam.direction_radius > kBroadestBeam) return;
-  if (node.surfels == nullptr)
-    culled.cull(beam, saved.bvh.clusters());
-  else
-    culled.cull(beam, *node.surfels, saved.surfels);
-  if (sorts) sorted.sort(culled);
-  node = {sorts ? &sorted : &culled, count, sorts};
-}
-
-// Halves the rays until few and alike are left, whose surfels are few as well; or until sharing
-// does not pay.
-void trace_beam(
-    const ForwardPass& call,
-    std::span<std::uint32_t> rays,
-    BeamNode node,
-    std::size_t splits,
-    TraceScratch& scratch
-) {
-  const double one_by_one = scratch.clusters_per_ray * static_cast<double>(rays.size());
-  const bool shared = node.sorted && rays.size() <= kRaysPerBeam;
-  const double share = node.sorted ? kSearchShare : kCullShare;
-  const auto together = static_cast<double>(node.groups(call.saved));
-  if (splits == kMostSplits || rays.empty() || together >= share * one_by_one)
-    return forward_rays(call, call.saved.bvh, rays, scratch);
-  const RayBounds bounds = ray_bounds(call.rays, rays);
-  const Beam beam = bounding_beam(call.rays, rays, bounds);
-  if (shared) {
-    scratch.search.start(beam, *node.surfels, call.saved.surfels);
-    return forward_rays(call, scratch.search, rays, scratch);
-  }
-  narrow(call.saved, beam, rays.size(), scratch.levels[splits], scratch.sorted, node);
-  const std::size_t half = split_rays(call.rays, bounds, node.hit_distance(), rays);
-  trace_beam(call, rays.first(half), node, splits + 1, scratch);
-  trace_beam(call, rays.subspan(half), node, splits + 1, scratch);
-}
-
-// Hits in the order of the rays, as backward() reads them.
-void save_hits(const TraceScratch& scratch, std::size_t begin, std::size_t end, TraceSaved& saved) {
-  for (std::size_t i = begin; i < end; ++i) {
-    std::vector<std::uint32_t>& block = saved.blocks[i / kRaysPerBlock];
-    if (i % kRaysPerBlock == 0) block.clear();
-    const std::uint32_t* slots = scratch.slots.data() + scratch.first_hit[i % kRaysPerTile];
-    block.insert(block.end(), slots, slots + saved.counts[i]);
-  }
-}
-
-// What a ray costs that goes through the tree. Tells from a few rays from all over the tile, which
-// come to the front; returns their number.
-std::size_t probe(const ForwardPass& call, std::span<std::uint32_t> rays, TraceScratch& scratch) {
-  const TraceSettings& settings = call.settings;
-  const bool beams = settings.search == TraceSearch::kBeams && !settings.triangles;
-  scratch.clusters_per_ray = beams ? std::numeric_limits<double>::infinity() : 0.0;
-  const bool open = settings.search == TraceSearch::kCheapest && !settings.triangles;
-  if (!open || rays.size() < 2 * kProbes) return 0;
-  Probe search{call.saved.bvh};
-  for (std::size_t k = 0; k < kProbes; ++k) {
-    std::swap(rays[k], rays[k * (rays.size() / kProbes)]);
-    forward_ray(call, search, rays[k], scratch);
-  }
-  scratch.clusters_per_ray = static_cast<double>(search.clusters) / kProbes;
-  return kProbes;
-}
-
-void forward_tile(
-    const ForwardPass& call, std::size_t begin, std::size_t end, TraceScratch& scratch
-) {
-  scratch.slots.clear();
-  scratch.first_hit.resize(kRaysPerTile);
-  scratch.levels.resize(kMostSplits);
-  scratch.rays.clear();
-  for (std::size_t i = begin; i < end; ++i) {
-    const Vec3f origin = get3(call.rays.origins.data(), i),
-                direction = get3(call.rays.directions.data(), i);
-    if (fits_beam(origin, direction))
-      scratch.rays.push_back(static_cast<std::uint32_t>(i));
-    else
-      forward_ray(call, call.saved.bvh, i, scratch);
-  }
-  const std::span<std::uint32_t> rays(scratch.rays);
-  const std::size_t probed = probe(call, rays, scratch);
-  trace_beam(call, rays.subspan(probed), {}, 0, scratch);
-  save_hits(scratch, begin, end, call.saved);
 }
 
 // ---- preparation
@@ -375,11 +231,13 @@ void trace_forward(const TraceCall& call, TraceOutput& output, TraceSaved& saved
   const std::size_t num_rays = call.rays.origins.num_pixels();
   prepare(call, num_rays, saved);
   const ForwardPass pass{{call}, saved, output};
-  parallel_for_blocks(num_rays, kRaysPerTile, [&](std::size_t begin, std::size_t end) {
-    auto scratch = saved.scratch.take();
-    forward_tile(pass, begin, end, *scratch);
-    saved.scratch.give_back(std::move(scratch));
-  });
+  parallel_for_blocks(
+      num_rays,
+      kBlocksAtOnce * kRaysPerBlock,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) forward_ray(pass, i);
+      }
+  );
 }
 
 namespace {

@@ -3,21 +3,17 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <mutex>
 #include <vector>
 
 #include "glint/render/sh_lanes.h"
 #include "glint/render/spherical_harmonics.h"
 #include "glint/render/surfel_lanes.h"
 #include "glint/render/trace.h"
-#include "glint/render/trace_beam.h"
 #include "glint/render/trace_bvh.h"
 
 namespace glint {
 
 inline constexpr std::size_t kRaysPerBlock = 64;
-inline constexpr std::size_t kRaysPerTile = 32 * kRaysPerBlock;  // that are traced together
 inline constexpr std::size_t kSurfelGrain = 512;
 inline constexpr std::size_t kSurfelsAhead = 8;  // that memory is asked for in advance
 inline constexpr std::size_t kHitsAtOnce = Float8::kLanes;
@@ -40,36 +36,6 @@ struct GradientSlice {
   std::vector<SurfelGradient> rows;
 };
 
-// What tracing a tile takes; kept, because fresh memory costs more than the work on it.
-struct TraceScratch {
-  std::vector<std::uint32_t> rays;
-  std::vector<std::uint32_t> slots;    // of the tile's hits, in the order of tracing
-  std::vector<std::size_t> first_hit;  // [rays of the tile] into `slots`
-  std::vector<BeamSurfels> levels;     // of the beams that hold the present one
-  double clusters_per_ray = 0;         // that the tree takes
-  BeamSurfels sorted;
-  BeamSearch search;
-};
-
-class ScratchPool {
- public:
-  std::unique_ptr<TraceScratch> take() {
-    const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<TraceScratch>();
-    std::unique_ptr<TraceScratch> scratch = std::move(free_.back());
-    free_.pop_back();
-    return scratch;
-  }
-  void give_back(std::unique_ptr<TraceScratch> scratch) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(scratch));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<TraceScratch>> free_;
-};
-
 struct TraceSaved {
   std::vector<std::uint32_t> slot_of_surfel;  // [N]
   std::vector<TracedSurfel> surfels;          // by slot
@@ -79,7 +45,6 @@ struct TraceSaved {
   std::vector<std::vector<std::uint32_t>> blocks;  // slots of the hits of each block of rays
   std::vector<std::uint32_t> counts;               // [rays] hits
   std::vector<GradientSlice> slices;
-  ScratchPool scratch;
 };
 
 struct RayState {

@@ -338,25 +338,21 @@ TEST_CASE("no surfels, and rays without direction, give nothing and no gradient"
 TEST_CASE("rays that are not finite count as none, those beside them as ever") {
   Rng rng(19);
   const TraceArrays arrays = random_arrays(30, rng);
-  for (const TraceSearch search : {TraceSearch::kTree, TraceSearch::kBeams}) {
-    Rays rays = random_rays(6, 4, rng);
-    TraceSettings settings;
-    settings.search = search;
-    Tracer tracer;
-    TraceOutput before, after;
-    before = tracer.forward({arrays.view(), rays, settings});
-    rays.origins.data()[0] = std::numeric_limits<float>::quiet_NaN();
-    rays.directions.data()[4] = std::numeric_limits<float>::quiet_NaN();
-    rays.directions.data()[7] = std::numeric_limits<float>::infinity();
-    rays.origins.data()[10] = 1e30f;
-    after = tracer.forward({arrays.view(), rays, settings});
-    for (std::size_t i = 0; i < 24; ++i)
-      CHECK(after.alpha.data()[i] == (i < 4 ? 0.0f : before.alpha.data()[i]));
-    TraceOutputGradient g;
-    g.color = Image(6, 4, 3, 1.0f);
-    const TraceGradient gradient = tracer.backward(g);
-    for (const float value : gradient.means) CHECK(std::isfinite(value));
-  }
+  Rays rays = random_rays(6, 4, rng);
+  Tracer tracer;
+  TraceOutput before, after;
+  before = tracer.forward({arrays.view(), rays, {}});
+  rays.origins.data()[0] = std::numeric_limits<float>::quiet_NaN();
+  rays.directions.data()[4] = std::numeric_limits<float>::quiet_NaN();
+  rays.directions.data()[7] = std::numeric_limits<float>::infinity();
+  rays.origins.data()[10] = 1e30f;
+  after = tracer.forward({arrays.view(), rays, {}});
+  for (std::size_t i = 0; i < 24; ++i)
+    CHECK(after.alpha.data()[i] == (i < 4 ? 0.0f : before.alpha.data()[i]));
+  TraceOutputGradient g;
+  g.color = Image(6, 4, 3, 1.0f);
+  const TraceGradient gradient = tracer.backward(g);
+  for (const float value : gradient.means) CHECK(std::isfinite(value));
 }
 
 TEST_CASE("surfels that moved are found where they are, refitted or rebuilt") {
