@@ -6,10 +6,11 @@
 
 #include <cmath>
 
-#include "glint/core/parallel.h"
 #include "glint/method.h"
 #include "metrics/ssim_formula.h"
+#include "tests/support/same_bytes.h"
 #include "tests/support/small_room.h"
+#include "tests/support/threads.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -30,11 +31,11 @@ std::unique_ptr<Method> trained(
   return method;
 }
 
-// After 60 steps, trained once for all tests that only look.
+// After 60 steps on two threads, trained once for all tests that only look.
 Method& after_60_steps(const MethodSpec& spec) {
   static std::map<std::string, std::unique_ptr<Method>> methods;
   auto& method = methods[spec.id];
-  if (method == nullptr) method = trained(spec, 60, nullptr);
+  if (method == nullptr) method = with_threads(2, [&] { return trained(spec, 60, nullptr); });
   return *method;
 }
 
@@ -42,11 +43,6 @@ double mean(const std::vector<double>& values, std::size_t begin, std::size_t en
   double sum = 0;
   for (std::size_t i = begin; i < end; ++i) sum += values[i];
   return sum / static_cast<double>(end - begin);
-}
-
-bool same_bytes(const Image& a, const Image& b) {
-  return a.size() == b.size() &&
-         std::equal(a.values().begin(), a.values().end(), b.values().begin());
 }
 
 }  // namespace
@@ -110,11 +106,8 @@ TEST_CASE("Every method trains to the same bytes with one and two threads") {
   for (const auto& [id, spec] : Registry<MethodSpec>::all()) {
     INFO(id);
     const Camera& camera = small_room().test.front().camera;
-    set_num_threads(1);
-    const MapSet one = trained(spec, 80, nullptr)->render(camera);
-    set_num_threads(2);
-    const MapSet two = trained(spec, 80, nullptr)->render(camera);
-    set_num_threads(0);
+    const MapSet one = with_threads(1, [&] { return trained(spec, 60, nullptr)->render(camera); });
+    const MapSet two = with_threads(2, [&] { return after_60_steps(spec).render(camera); });
     CHECK(same_bytes(one["rgb"], two["rgb"]));
     CHECK(same_bytes(one["depth"], two["depth"]));
   }

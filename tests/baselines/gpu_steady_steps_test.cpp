@@ -105,23 +105,21 @@ std::uint64_t check_steady(const Trained& trained) {
 }  // namespace
 
 TEST_CASE("A steady step asks a GPU for nothing, whatever the method") {
-  use_host_kernels();
+  const OnHost on_host;
   for (const Trained& trained : all_trained()) check_steady(trained);
-  use_cpu();
 }
 
 TEST_CASE("Nor does a steady step with LPIPS") {
-  use_host_kernels();
+  const OnHost on_host;
   const std::uint64_t without = check_steady(Trained("envgs"));
   const LpipsWeightsHere weights;
   CHECK(check_steady(Trained("envgs")) > without + 10);  // a network, there and back
   for (const char* id : {"glint/release", "rt-splatting"}) check_steady(Trained(id));
-  use_cpu();
 }
 
 // For docs/gpu.md: test_baselines_gpu_steady_steps "[costs]".
 TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
-  use_host_kernels();
+  const OnHost on_host;
   for (const Trained& trained : all_trained()) {
     const Scene scene = two_views_of_room();
     const auto method = create_method(trained.id, trained.options);
@@ -135,11 +133,10 @@ TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
     );
     fmt::print("|\n");
   }
-  use_cpu();
 }
 
 TEST_CASE("A training of silent steps ends with the bytes of one that is told everything") {
-  use_host_kernels();
+  const OnHost on_host;
   const LpipsWeightsHere weights;  // for those that look at LPIPS
   const Scene scene = two_views_of_room();
   for (const Trained& trained : all_trained()) {
@@ -149,7 +146,6 @@ TEST_CASE("A training of silent steps ends with the bytes of one that is told ev
     CHECK(take_void_steps().count == 0);
     CHECK((told == silent));
   }
-  use_cpu();
 }
 
 TEST_CASE("What a training had in use on a device at most is told, and is 0 on the CPU") {
@@ -162,17 +158,16 @@ TEST_CASE("What a training had in use on a device at most is told, and is 0 on t
     return train(*method, scene, options).device_memory_mb;
   };
   CHECK(memory_of_training() == 0);
-  use_host_kernels();
+  const OnHost on_host;
   watch_memory(false);
   const double first = memory_of_training();
   const double photo_mb = 4e-6 * static_cast<double>(small_room().train[0].rgb.values().size());
   CHECK(first > photo_mb);
   CHECK(memory_of_training() == first);  // the one before has left
-  use_cpu();
 }
 
 TEST_CASE("Images that fill more than half of a device come for a step and leave, or stay") {
-  use_host_kernels();
+  const OnHost on_host;
   watch_memory(false);
   const auto train_with = [](std::size_t room) {
     host_memory().room = room;
@@ -189,5 +184,4 @@ TEST_CASE("Images that fill more than half of a device come for a step and leave
   CHECK(large.first == small.first);
   CHECK(small.second >= large.second + 9);  // each step's photo, not each view's
   host_memory().room = std::size_t{1} << 34;
-  use_cpu();
 }

@@ -13,7 +13,7 @@ using namespace glint::test;
 
 namespace {
 
-constexpr int kSteps = 40;
+constexpr int kSteps = 24;  // all phases of a run, scaled to it
 
 // `every`: of TestPsnr.
 std::string trained_bytes(const Trained& trained, const Scene& scene, int every) {

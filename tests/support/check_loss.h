@@ -7,21 +7,20 @@
 
 #include "glint/core/error.h"
 #include "glint/core/image.h"
-#include "glint/core/parallel.h"
-#include "glint/core/rng.h"
 #include "glint/core/vec.h"
 #include "tests/support/gradcheck.h"
+#include "tests/support/random_values.h"
+#include "tests/support/same_bytes.h"
+#include "tests/support/threads.h"
 
 namespace glint::test {
 
 using ImageD = BasicImage<double>;
 
-template <class T>
-BasicImage<T> random_map(ImageSize size, int channels, float low, float high, std::uint64_t seed) {
-  Rng rng(seed);
-  BasicImage<T> map(size.width, size.height, channels);
-  for (T& value : map.values()) value = static_cast<T>(rng.uniform(low, high));
-  return map;
+inline ImageD in_double(const Image& image) {
+  ImageD out(image.width(), image.height(), image.channels());
+  std::copy(image.values().begin(), image.values().end(), out.data());
+  return out;
 }
 template <class T>
 BasicImage<T> map_of(int width, int height, int channels, const std::vector<T>& values) {
@@ -71,17 +70,12 @@ void check_loss_gradient(const ImageD& map, const Loss& loss, double relative = 
 // Same bytes with any number of threads.
 template <class Loss>
 void check_thread_independence(const Image& map, const Loss& loss) {
-  struct RestoreThreads {
-    ~RestoreThreads() { set_num_threads(0); }
-  } restore;
-  set_num_threads(1);
-  const double value = value_of(loss, map);
-  const Image gradient = gradient_of(loss, map);
+  const auto evaluated = [&] { return std::pair(value_of(loss, map), gradient_of(loss, map)); };
+  const auto [value, gradient] = with_threads(1, evaluated);
   for (const int threads : {2, 5}) {
-    set_num_threads(threads);
-    CHECK(value_of(loss, map) == value);
-    const Image again = gradient_of(loss, map);
-    CHECK(std::equal(gradient.values().begin(), gradient.values().end(), again.values().begin()));
+    const auto again = with_threads(threads, evaluated);
+    CHECK(again.first == value);
+    CHECK(same_bytes(again.second, gradient));
   }
 }
 

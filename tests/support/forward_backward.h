@@ -7,6 +7,7 @@
 
 #include "glint/render/rasterize.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/same_bytes.h"
 
 namespace glint::test {
 
@@ -22,12 +23,6 @@ inline RandomSurfels all_kinds() {
   RandomSurfels options;
   options.edge_on = options.at_camera = options.behind = options.huge = options.tiny = 0.1;
   return options;
-}
-
-template <class Range>
-bool same_bytes(const Range& a, const Range& b) {
-  return a.size() == b.size() &&
-         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(*a.data())) == 0);
 }
 
 inline void check_same_bytes(const RasterOutput& a, const RasterOutput& b) {

@@ -3,6 +3,7 @@
 // CUDA device where there is one, or has to be (GLINT_REQUIRE_GPU=1).
 #pragma once
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -14,11 +15,20 @@
 #include "glint/cuda/require_gpu.h"
 #include "tests/support/difference_list.h"
 #include "tests/support/host_exec.h"
+#include "tests/support/relative_difference.h"
 
 namespace glint::test {
 
 // Kernels are compiled once, in host_kernels.cpp.
 void use_host_kernels();
+
+// While this lives, ops run on them.
+struct OnHost {
+  OnHost() { use_host_kernels(); }
+  ~OnHost() { use_cpu(); }
+  OnHost(const OnHost&) = delete;
+  OnHost& operator=(const OnHost&) = delete;
+};
 
 // Calls f(name) with each backend in use, and the CPU afterwards.
 template <class F>
@@ -44,19 +54,6 @@ std::vector<float> read(const Values& values) {
 }
 inline std::vector<float> read(const Image& image) { return read(image.values()); }
 
-// Largest difference, relative to the largest value.
-inline double relative_difference(const std::vector<float>& a, const std::vector<float>& b) {
-  REQUIRE(a.size() == b.size());
-  double largest = 0, scale = 1e-20;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double x = static_cast<double>(a[i]), y = static_cast<double>(b[i]);
-    REQUIRE(std::isfinite(x));
-    largest = std::max(largest, std::abs(x - y));
-    scale = std::max(scale, std::abs(y));
-  }
-  return largest / scale;
-}
-
 // run(): makes its arrays, runs ops and returns what they wrote, by name. On every GPU backend it
 // gives what it gives on the CPU, whatever the order of the host's loops.
 template <class Run>
@@ -69,6 +66,7 @@ void check_same_as_cpu(double tolerance, Run&& run) {
       const auto found = run();
       for (const auto& [name, values] : expected) {
         INFO(name);
+        REQUIRE(std::ranges::all_of(values, [](float v) { return std::isfinite(v); }));
         const double difference = relative_difference(found.at(name), values);
         list_difference(
             Catch::getResultCapture().getCurrentTestName(), backend, name, difference, tolerance

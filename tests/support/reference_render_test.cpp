@@ -5,9 +5,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/support/facing_layers.h"
 #include "tests/support/golden_surfel.h"
 #include "tests/support/gradcheck.h"
-#include "tests/support/random_scene.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -23,15 +23,6 @@ void add_facing(ReferenceInput& input, double depth, double scale, double opacit
   for (const double value : {1.0, 0.0, 0.0, 0.0}) input.rotations.push_back(value);
   input.opacities.push_back(opacity);
   input.features.push_back(feature);
-}
-
-// 21 x 21 pixels, focal length 20: the middle pixel's centre looks along the axis.
-Camera small_camera() {
-  Camera camera;
-  camera.width = camera.height = 21;
-  camera.fx = camera.fy = 20;
-  camera.cx = camera.cy = 10.5;
-  return camera;
 }
 
 enum class Quantity { kRho3, kDepth, kRho2 };

@@ -7,20 +7,13 @@
 
 #include "datasets/view_maps.h"
 #include "glint/scene/scene.h"
+#include "tests/support/same_bytes.h"
 
 namespace glint::test {
 
 template <class T>
 bool same_bytes(const T* a, const T* b, std::size_t count) {
-  return count == 0 || std::memcmp(a, b, count * sizeof(T)) == 0;
-}
-template <class T>
-bool same_bytes(const BasicImage<T>& a, const BasicImage<T>& b) {
-  return a.size() == b.size() && a.channels() == b.channels() &&
-         same_bytes(a.data(), b.data(), a.values().size());
-}
-inline bool same_bytes(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
-  return a.size() == b.size() && same_bytes(a.data(), b.data(), a.size());
+  return std::memcmp(a, b, count * sizeof(T)) == 0;
 }
 
 inline void check_same(const View& a, const View& b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Definitions of tables by name, and their cells.
+// Records, definitions of tables by name, and their cells.
 #pragma once
 
 #include <stdexcept>
@@ -7,6 +7,19 @@
 #include "reports/tables/tables.h"
 
 namespace glint::test {
+
+// Of a cell of GlassRoom that ran.
+inline Record record_of(const CellKey& cell, std::map<std::string, double> metrics) {
+  Record record;
+  record.dataset = "glassroom";
+  record.cell = cell;
+  record.metrics = std::move(metrics);
+  return record;
+}
+// In the first room, with its PSNR.
+inline Record record_of(const std::string& method, double psnr, std::uint64_t seed = 0) {
+  return record_of({"room_1", method, seed}, {{"psnr", psnr}});
+}
 
 inline TableDefinition definition_of(const std::string& id) {
   for (const TableDefinition& definition : table_definitions())

@@ -6,17 +6,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/threads.h"
+
 using namespace glint;
-
-namespace {
-
-// Restores the default number of threads.
-struct ThreadCount {
-  explicit ThreadCount(int n) { set_num_threads(n); }
-  ~ThreadCount() { set_num_threads(0); }
-};
-
-}  // namespace
+using test::ThreadCount;
 
 TEST_CASE("A parallel loop visits every index once, for any length, grain and number of threads") {
   for (const int threads : {1, 2, 5}) {

@@ -49,11 +49,6 @@ bool is_deadly(F&& f) {
   return WIFSIGNALED(status);
 }
 
-struct OnHost {
-  OnHost() { use_host_kernels(); }
-  ~OnHost() { use_cpu(); }
-};
-
 }  // namespace
 
 TEST_CASE("A pointer to the wrong side of an array ends a test") {

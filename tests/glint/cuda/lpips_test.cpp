@@ -94,7 +94,7 @@ TEST_CASE("Targets that are kept change no byte, and serve the other device, too
 }
 
 TEST_CASE("The network runs once over a target that is kept, every time where there is no room") {
-  use_host_kernels();
+  const OnHost on_host;
   const Image rendered = rendered_picture(), target = target_picture(0);
   Image gradient(kWidth, kHeight, 3);
   const auto launches_again = [&](std::size_t room) {
@@ -109,7 +109,6 @@ TEST_CASE("The network runs once over a target that is kept, every time where th
   const std::uint64_t kept = launches_again(std::size_t{1} << 30), again = launches_again(1000);
   const std::size_t steps = tiny_weights()->steps.size(), taps = tiny_weights()->lin.size();
   CHECK(again - kept == 1 + steps + taps);  // fed, run, kept for the moment
-  use_cpu();
 }
 
 namespace {
@@ -132,7 +131,7 @@ void check_silent(F&& f) {
 }  // namespace
 
 TEST_CASE("A silent step of LPIPS asks a GPU for nothing and does what any other does") {
-  use_host_kernels();
+  const OnHost on_host;
   const Image rendered = rendered_picture(), target = target_picture(0);
   const bool kept = GENERATE(true, false);
   const auto number = kept ? std::optional<std::size_t>(0) : std::nullopt;
@@ -143,11 +142,10 @@ TEST_CASE("A silent step of LPIPS asks a GPU for nothing and does what any other
   gradient.array().fill(0);
   check_silent([&] { CHECK(std::isnan(lpips.evaluate(rendered, target, 1, gradient, number))); });
   CHECK(read(gradient) == told);
-  use_cpu();
 }
 
 TEST_CASE("Pictures of several sizes take turns without asking a GPU for anything") {
-  use_host_kernels();
+  const OnHost on_host;
   struct View {
     Image rendered, target, gradient;
   };
@@ -168,15 +166,13 @@ TEST_CASE("Pictures of several sizes take turns without asking a GPU for anythin
   check_silent([&] { evaluate(0), evaluate(1); });
   CHECK(read(views[0].gradient) == first);
   CHECK(read(views[1].gradient) == second);
-  use_cpu();
 }
 
 TEST_CASE("Pictures of two shapes are an error on a GPU, too") {
-  use_host_kernels();
+  const OnHost on_host;
   Lpips lpips(tiny_weights());
   Image gradient(kWidth, kHeight, 3);
   CHECK_THROWS_AS(
       lpips.evaluate(rendered_picture(), Image(kWidth, kHeight - 1, 3), 1, gradient), Error
   );
-  use_cpu();
 }

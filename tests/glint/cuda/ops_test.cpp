@@ -301,7 +301,6 @@ TEST_CASE("A kernel that no GPU backend offers is refused by name") {
   struct Unknown {
     void operator()(std::size_t) const {}
   };
-  use_host_kernels();
+  const OnHost on_host;
   CHECK_THROWS_WITH(run_kernel(1, 1, Unknown{}), Catch::Contains("Unknown"));
-  use_cpu();
 }

@@ -28,18 +28,6 @@ RasterOutput room(ImageSize size, int channels, std::size_t surfels) {
   return out;
 }
 
-// Largest difference, relative to the largest value.
-double difference(std::span<const float> a, std::span<const float> b) {
-  REQUIRE(a.size() == b.size());
-  double largest = 0, scale = 1e-20;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double x = static_cast<double>(a[i]), y = static_cast<double>(b[i]);
-    largest = std::max(largest, std::abs(x - y));
-    scale = std::max(scale, std::abs(y));
-  }
-  return largest / scale;
-}
-
 struct Case {
   ImageSize size;
   int surfels, channels;
@@ -171,15 +159,15 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's maps") {
         f.call().maps(),
         [](const char* name, int channels, const Image& a, const Image& b) {
           INFO(name);
-          if (channels > 0) CHECK(difference(a.values(), b.values()) == 0);
+          if (channels > 0) CHECK(relative_difference(a.values(), b.values()) == 0);
         },
         actual,
         expected
     );
-    CHECK(difference(actual.visibility, expected.visibility) < 1e-5);
+    CHECK(relative_difference(actual.visibility, expected.visibility) < 1e-5);
     if (!c.statistics) continue;
-    CHECK(difference(actual.owned_pixels, expected.owned_pixels) == 0);
-    CHECK(difference(actual.radii, expected.radii) == 0);
+    CHECK(relative_difference(actual.owned_pixels, expected.owned_pixels) == 0);
+    CHECK(relative_difference(actual.radii, expected.radii) == 0);
   }
 }
 
@@ -198,8 +186,8 @@ TEST_CASE("The GPU's rasteriser on the host finds the CPU's modes of depth") {
     gpu.forward(device_call(f.call(), maps));
     Image first(c.size.width, c.size.height, 1), last = first;
     gpu.depth_modes({}, first.on_device(), last.on_device());
-    CHECK(difference(first.values(), expected_first.values()) == 0);
-    CHECK(difference(last.values(), expected_last.values()) == 0);
+    CHECK(relative_difference(first.values(), expected_first.values()) == 0);
+    CHECK(relative_difference(last.values(), expected_last.values()) == 0);
   }
 }
 
@@ -222,7 +210,7 @@ TEST_CASE("The GPU's rasteriser on the host makes the CPU's gradients") {
         {},
         [](const char* name, std::size_t, const FloatArray& a, const FloatArray& b) {
           INFO(name);
-          CHECK(difference(a, b) < 2e-5);  // sums over pixels in another order
+          CHECK(relative_difference(a, b) < 2e-5);  // sums over pixels in another order
         },
         actual,
         expected
@@ -247,7 +235,7 @@ TEST_CASE("The GPU's rasteriser gives the same bytes in any order of threads, wa
 }
 
 TEST_CASE("Silent steps of the GPU's rasteriser wait for nothing and give the bytes of loud ones") {
-  use_host_kernels();
+  const OnHost on_host;
   const Case& c = kCases[3];
   const Fixture f(c, 31);
   HostExec exec;
@@ -267,11 +255,10 @@ TEST_CASE("Silent steps of the GPU's rasteriser wait for nothing and give the by
   CHECK(gpu.num_slots() == slots + slots / 2);
   CHECK(gpu.num_pairs() == pairs);
   CHECK(overflow == 0);
-  use_cpu();
 }
 
 TEST_CASE("Where a silent step of the GPU's rasteriser lacks room, it says so and shows nothing") {
-  use_host_kernels();
+  const OnHost on_host;
   const Case& small = kCases[3];
   Case large = small;
   large.surfels *= 3;
@@ -296,11 +283,10 @@ TEST_CASE("Where a silent step of the GPU's rasteriser lacks room, it says so an
   overflow = 0;
   CHECK(run_both_ways(learned, many, large, &overflow) == expected);
   CHECK(overflow == 0);
-  use_cpu();
 }
 
 TEST_CASE("Where only the gradients lack room, they are zero") {
-  use_host_kernels();
+  const OnHost on_host;
   const Case& c = kCases[3];
   const Fixture f(c, 51);
   Fixture hidden(c, 51);  // the same pairs without any hit
@@ -325,7 +311,6 @@ TEST_CASE("Where only the gradients lack room, they are zero") {
   CHECK(std::all_of(found.begin() + static_cast<std::ptrdiff_t>(maps), found.end(), [](float v) {
     return v == 0;
   }));
-  use_cpu();
 }
 
 TEST_CASE("Counts of pairs that are too large for 32 bits stay at the largest number, each alone") {
@@ -339,7 +324,7 @@ TEST_CASE("Counts of pairs that are too large for 32 bits stay at the largest nu
 }
 
 TEST_CASE("More pairs than the GPU can list are an error, and make a silent step void") {
-  use_host_kernels();
+  const OnHost on_host;
   HostExec exec;
   CountedRoom<HostExec> counted;
   const auto count = [&](std::vector<PairCounts> counts, std::uint32_t* overflow) {
@@ -364,7 +349,6 @@ TEST_CASE("More pairs than the GPU can list are an error, and make a silent step
     count({many, many}, &overflow);
     CHECK(overflow == 1);
   }
-  use_cpu();
 }
 
 TEST_CASE("A second pass of the GPU's rasteriser over the same surfels uses the lists of the first"

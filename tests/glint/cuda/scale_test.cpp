@@ -251,7 +251,7 @@ TEST_CASE("Lists of 100,000 surfels are complete and sorted") {
 
 // For docs/gpu_raster.md: test_glint_cuda_scale "[counts]".
 TEST_CASE("Pairs, slots and rows of 100,000 surfels", "[.counts]") {
-  use_host_kernels();
+  const OnHost on_host;
   for (const double max_opacity : {1.0, 0.1}) {
     const LargeScene large = large_scene(max_opacity);
     const RasterCall call = call_of(large);
@@ -286,5 +286,4 @@ TEST_CASE("Pairs, slots and rows of 100,000 surfels", "[.counts]") {
     CHECK(gpu.num_rows() <= gpu.num_slots());
     CHECK(gpu.num_slots() <= 8 * gpu.num_pairs());
   }
-  use_cpu();
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tests/glint/cuda/trace_scenes.h"
+#include "tests/support/relative_difference.h"
 
 namespace glint::test {
 
@@ -79,24 +80,10 @@ inline std::vector<float> all_values(const TraceGradient& g) {
   return all;
 }
 
-// Largest difference, relative to the largest value.
-inline double difference(std::span<const float> a, std::span<const float> b) {
-  REQUIRE(a.size() == b.size());
-  double largest = 0, scale = 1e-20;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double x = static_cast<double>(a[i]), y = static_cast<double>(b[i]);
-    REQUIRE(std::isfinite(x) == std::isfinite(y));
-    if (!std::isfinite(y)) continue;
-    largest = std::max(largest, std::abs(x - y));
-    scale = std::max(scale, std::abs(y));
-  }
-  return largest / scale;
-}
 inline void check_same(const TraceOutput& actual, const TraceOutput& expected, double tolerance) {
-  CHECK(difference(actual.color.values(), expected.color.values()) <= tolerance);
-  CHECK(difference(actual.alpha.values(), expected.alpha.values()) <= tolerance);
-  CHECK(difference(actual.depth_sum.values(), expected.depth_sum.values()) <= tolerance);
-  CHECK(difference(actual.normal.values(), expected.normal.values()) <= tolerance);
+  for (const auto map :
+       {&TraceOutput::color, &TraceOutput::alpha, &TraceOutput::depth_sum, &TraceOutput::normal})
+    CHECK(relative_difference((actual.*map).values(), (expected.*map).values()) <= tolerance);
 }
 inline void check_same(
     const TraceGradient& actual, const TraceGradient& expected, double tolerance
@@ -108,7 +95,7 @@ inline void check_same(
   std::size_t i = 0;
   for_each_gradient(actual, [&](const char* name, std::span<const float> values) {
     INFO(name);
-    CHECK(difference(values, of_expected[i++]) <= tolerance);
+    CHECK(relative_difference(values, of_expected[i++]) <= tolerance);
   });
 }
 

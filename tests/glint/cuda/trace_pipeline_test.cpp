@@ -149,5 +149,5 @@ TEST_CASE("A set of the same revision is not looked at again") {
   pipeline.forward(call(moved, 2));
   fresh.forward(call(expected, 0));
   check_same(moved, expected, 0);
-  CHECK(difference(moved.color.values(), first.color.values()) > 0.1);
+  CHECK(relative_difference(moved.color.values(), first.color.values()) > 0.1);
 }

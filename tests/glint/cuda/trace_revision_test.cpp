@@ -91,7 +91,7 @@ const Change kChanges[] = {
 }  // namespace
 
 TEST_CASE("A set that nobody wrote is fitted once, and whatever was written is seen") {
-  use_host_kernels();
+  const OnHost on_host;
   const Rays rays = rays_of_camera();
   TrainableSet set = training_set();
   Picture before = picture_of(set, rays);
@@ -111,12 +111,11 @@ TEST_CASE("A set that nobody wrote is fitted once, and whatever was written is s
     CHECK(found.color != before.color);
     before = found;
   }
-  use_cpu();
 }
 
 TEST_CASE("Who looks at a set, renders it, changes its colours or traces other rays moves nothing"
 ) {
-  use_host_kernels();
+  const OnHost on_host;
   const Rays rays = rays_of_camera();
   Rays other = rays;
   for (float& v : other.origins.values()) v += 0.1f;
@@ -136,7 +135,6 @@ TEST_CASE("Who looks at a set, renders it, changes its colours or traces other r
   CHECK(smaller.fits == 1);
   SurfelSet fresh(set.cloud());
   CHECK(smaller.color == picture_of(fresh, rays, settings).color);
-  use_cpu();
 }
 
 TEST_CASE("An array has another revision after each way to write it, and no other has had it") {

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "glint/core/parallel.h"
 #include "tests/support/compare_render.h"
 #include "tests/support/facing_layers.h"
+#include "tests/support/same_bytes.h"
+#include "tests/support/threads.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -162,14 +163,10 @@ TEST_CASE("Modes have the same bytes with any number of threads") {
   Rng rng(9);
   const Camera camera = random_camera(rng, kSize);
   const SurfelArrays surfels = random_surfels({.count = 200, .max_opacity = 0.4}, camera, rng);
-  set_num_threads(1);
-  const Modes one = depth_modes(surfels.view(), camera);
-  set_num_threads(2);
-  const Modes two = depth_modes(surfels.view(), camera);
-  set_num_threads(0);
-  CHECK(std::equal(one.first.values().begin(), one.first.values().end(), two.first.values().begin())
-  );
-  CHECK(std::equal(one.last.values().begin(), one.last.values().end(), two.last.values().begin()));
+  const auto run = [&] { return depth_modes(surfels.view(), camera); };
+  const Modes one = with_threads(1, run), two = with_threads(2, run);
+  CHECK(same_bytes(one.first, two.first));
+  CHECK(same_bytes(one.last, two.last));
 }
 
 TEST_CASE("One layer is the first mode and the last, at its depth") {

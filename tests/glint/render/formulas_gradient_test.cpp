@@ -10,23 +10,8 @@ using namespace glint::test;
 
 namespace {
 
-PlaneMap<double> unpack_map(const Vector& x, std::size_t i) {
-  return {vec3(x, i), vec3(x, i + 3), vec3(x, i + 6), x[i + 9]};
-}
-void push_map(Vector& x, const PlaneMap<double>& map) {
-  for (const Vec3d& e : {map.e1, map.e2, map.e3}) push(x, e);
-  x.push_back(map.det);
-}
-
-SurfelGeometry<double> unpack_surfel(const Vector& x) {
-  return {vec3(x, 0), {x[3], x[4]}, {x[5], x[6], x[7], x[8]}};
-}
-Vector pack(const SurfelGeometry<double>& s) {
-  const Vec4<double> q = s.rotation;
-  return {s.mean.x, s.mean.y, s.mean.z, s.scale.x, s.scale.y, q.w, q.x, q.y, q.z};
-}
 // A surfel in front of a rotated camera with an off-centre principal point.
-const Vector kSurfel = {0.2, -0.1, 4, 0.3, 0.15, 0.9, 0.2, -0.3, 0.1};
+const SurfelGeometry<double> kSurfel = {{0.2, -0.1, 4}, {0.3, 0.15}, {0.9, 0.2, -0.3, 0.1}};
 CameraOf<double> test_camera() {
   const Mat3d rotation = rotation_matrix(Vec4<double>{0.95, 0.1, -0.2, 0.05});
   return {rotation, {0.1, -0.2, 0.3}, 500, 480, 310, 250, 640, 480, 0.2};
@@ -35,61 +20,41 @@ CameraOf<double> test_camera() {
 }  // namespace
 
 TEST_CASE("plane_map_vjp matches central differences") {
-  check_vjp(
-      random_inputs(9, -1, 1, 1),
-      [](const Vector& x) {
-        Vector y;
-        push_map(y, plane_map(vec3(x, 0), vec3(x, 3), vec3(x, 6)));
-        return y;
-      },
-      [](const Vector& x, const Vector& g) {
-        Vec3d h0{}, h1{}, m{};
-        plane_map_vjp(vec3(x, 0), vec3(x, 3), vec3(x, 6), unpack_map(g, 0), h0, h1, m);
-        Vector y;
-        for (const Vec3d& v : {h0, h1, m}) push(y, v);
-        return y;
-      }
+  check_formula(
+      plane_map<double>,
+      plane_map_vjp<double>,
+      Vec3d{0.9, -0.4, 0.2},
+      Vec3d{-0.3, 0.7, -0.6},
+      Vec3d{0.1, 0.5, -0.8}
   );
 }
 
 TEST_CASE("intersect_vjp matches central differences") {
-  check_vjp(
-      {0.3, -0.4, 1.2, 2.5},
-      [](const Vector& x) {
-        const PlaneHit<double> hit = intersect(vec3(x, 0), x[3]);
-        return Vector{hit.u, hit.v, hit.t};
+  check_formula(
+      [](Vec3d zeta, double det) {
+        const PlaneHit<double> hit = intersect(zeta, det);
+        return Vec3d{hit.u, hit.v, hit.t};
       },
-      [](const Vector& x, const Vector& g) {
-        Vec3d zeta{};
-        double det = 0;
-        intersect_vjp(intersect(vec3(x, 0), x[3]), g[0], g[1], g[2], zeta, det);
-        return Vector{zeta.x, zeta.y, zeta.z, det};
-      }
+      [](Vec3d zeta, double det, Vec3d g, Vec3d& dL_dzeta, double& dL_ddet) {
+        intersect_vjp(intersect(zeta, det), g.x, g.y, g.z, dL_dzeta, dL_ddet);
+      },
+      Vec3d{0.3, -0.4, 1.2},
+      2.5
   );
 }
 
 TEST_CASE("low_pass_rho2_vjp matches central differences") {
-  check_vjp(
-      {0.3, -0.7},
-      [](const Vector& x) { return Vector{low_pass_rho2(x[0], x[1])}; },
-      [](const Vector& x, const Vector& g) {
-        Vector y(2);
-        low_pass_rho2_vjp(x[0], x[1], g[0], y[0], y[1]);
-        return y;
-      }
-  );
+  check_formula(low_pass_rho2<double>, low_pass_rho2_vjp<double>, 0.3, -0.7);
 }
 
 TEST_CASE("splat_alpha_vjp matches central differences and is zero where alpha is clamped") {
-  const auto vjp = [](const Vector& x, const Vector& g) {
-    Vector y(2);
-    splat_alpha_vjp(x[0], splat_alpha(x[0], x[1]), g[0], y[0], y[1]);
-    return y;
+  const auto vjp = [](double opacity, double rho, double g, double& dL_dopacity, double& dL_drho) {
+    splat_alpha_vjp(opacity, splat_alpha(opacity, rho), g, dL_dopacity, dL_drho);
   };
-  check_vjp(
-      {0.7, 1.3}, [](const Vector& x) { return Vector{splat_alpha(x[0], x[1]).alpha}; }, vjp
-  );
-  CHECK(vjp({1.0, 0.001}, {1.0}) == Vector{0, 0});
+  check_formula([](double o, double rho) { return splat_alpha(o, rho).alpha; }, vjp, 0.7, 1.3);
+  Vec2d clamped{};
+  vjp(1.0, 0.001, 1.0, clamped.x, clamped.y);
+  CHECK((clamped.x == 0 && clamped.y == 0));
 }
 
 TEST_CASE("blend_alpha_vjp gives the gradient of front-to-back compositing") {
@@ -149,117 +114,97 @@ TEST_CASE("distortion is the pairwise sum, and its derivatives match central dif
 }
 
 TEST_CASE("distortion_depth_vjp and expected_depth_vjp match central differences") {
-  check_vjp(
-      {2.5},
-      [](const Vector& x) { return Vector{distortion_depth(x[0], 3.0, 0.2, 100.0)}; },
-      [](const Vector& x, const Vector& g) {
-        return Vector{distortion_depth_vjp(x[0], 0.2, 100.0, g[0])};
-      }
+  check_formula(
+      [](double z) { return distortion_depth(z, 3.0, 0.2, 100.0); },
+      [](double z, double g) { return distortion_depth_vjp(z, 0.2, 100.0, g); },
+      2.5
   );
-  check_vjp(
-      {2.5, 0.8},
-      [](const Vector& x) { return Vector{expected_depth(x[0], x[1])}; },
-      [](const Vector& x, const Vector& g) {
-        Vector y(2);
-        expected_depth_vjp(x[0], x[1], g[0], y[0], y[1]);
-        return y;
-      }
-  );
+  check_formula(expected_depth<double>, expected_depth_vjp<double>, 2.5, 0.8);
 }
 
 TEST_CASE("activation vjps match central differences") {
-  check_vjp(
-      {0.4},
-      [](const Vector& x) { return Vector{sigmoid(x[0])}; },
-      [](const Vector& x, const Vector& g) { return Vector{sigmoid_vjp(sigmoid(x[0]), g[0])}; }
+  check_formula(
+      [](double x) { return sigmoid(x); },
+      [](double x, double g) { return sigmoid_vjp(sigmoid(x), g); },
+      0.4
   );
-  check_vjp(
-      {-1.4},
-      [](const Vector& x) { return Vector{exp_fast(x[0])}; },
-      [](const Vector& x, const Vector& g) { return Vector{exp_vjp(exp_fast(x[0]), g[0])}; }
+  check_formula(
+      [](double x) { return exp_fast(x); },
+      [](double x, double g) { return exp_vjp(exp_fast(x), g); },
+      -1.4
   );
-  check_vjp(
-      {0.9, 0.2, -0.3, 0.1},
-      [](const Vector& x) {
-        const Mat3d r = rotation_matrix(Vec4<double>{x[0], x[1], x[2], x[3]});
-        Vector y;
-        for (const Vec3d& row : r.rows) push(y, row);
-        return y;
-      },
-      [](const Vector& x, const Vector& g) {
-        Vec4<double> q{};
-        const Mat3d dL_dr{{vec3(g, 0), vec3(g, 3), vec3(g, 6)}};
-        rotation_matrix_vjp(Vec4<double>{x[0], x[1], x[2], x[3]}, dL_dr, q);
-        return Vector{q.w, q.x, q.y, q.z};
-      }
+  check_formula(
+      rotation_matrix<double>, rotation_matrix_vjp<double>, Vec4<double>{0.9, 0.2, -0.3, 0.1}
   );
 }
 
 TEST_CASE("surfel_in_cam_vjp matches central differences") {
-  const CameraOf<double> camera = test_camera();
-  check_vjp(
-      kSurfel,
-      [&](const Vector& x) {
-        const SurfelInCam<double> s = surfel_in_cam(unpack_surfel(x), camera);
-        Vector y;
-        for (const Vec3d& v : {s.h0, s.h1, s.m, s.normal}) push(y, v);
-        return y;
+  struct Outputs {
+    Vec3d h0, h1, m, normal;
+  };
+  check_formula(
+      [](const SurfelGeometry<double>& surfel) {
+        const SurfelInCam<double> s = surfel_in_cam(surfel, test_camera());
+        return Outputs{s.h0, s.h1, s.m, s.normal};
       },
-      [&](const Vector& x, const Vector& g) {
-        const SurfelGeometry<double> surfel = unpack_surfel(x);
-        const SurfelInCam<double> dL{vec3(g, 0), vec3(g, 3), vec3(g, 6), vec3(g, 9), 0};
-        SurfelGeometry<double> out{};
-        surfel_in_cam_vjp(surfel, camera, surfel_in_cam(surfel, camera).facing, dL, out);
-        return pack(out);
-      }
+      [](const SurfelGeometry<double>& surfel, Outputs g, SurfelGeometry<double>& dL_dsurfel) {
+        const double facing = surfel_in_cam(surfel, test_camera()).facing;
+        surfel_in_cam_vjp(
+            surfel, test_camera(), facing, {g.h0, g.h1, g.m, g.normal, 0}, dL_dsurfel
+        );
+      },
+      kSurfel
   );
 }
 
 TEST_CASE("project_surfel_vjp matches central differences of zeta at a pixel, centre, depth, normal"
 ) {
-  const CameraOf<double> camera = test_camera();
   // The reference point moves with the surfel, so outputs are compared at a fixed image point.
+  struct Outputs {
+    Vec3d zeta;
+    double det, center_x, center_y, z_center;
+    Vec3d normal;
+    double plane_distance;
+  };
   const double px = 330.5, py = 260.5;
-  check_vjp(
-      kSurfel,
-      [&](const Vector& x) {
-        const ProjectedSurfel<double> p = project_surfel(unpack_surfel(x), camera, 9.0);
-        Vector y;
-        push(y, zeta_at(p.map, px - p.x_ref, py - p.y_ref));
-        y.insert(y.end(), {p.map.det, p.center_x + p.x_ref, p.center_y + p.y_ref, p.z_center});
-        push(y, p.normal);
-        y.push_back(p.plane_distance);
-        return y;
+  check_formula(
+      [&](const SurfelGeometry<double>& surfel) {
+        const ProjectedSurfel<double> p = project_surfel(surfel, test_camera(), 9.0);
+        return Outputs{
+            zeta_at(p.map, px - p.x_ref, py - p.y_ref),
+            p.map.det,
+            p.center_x + p.x_ref,
+            p.center_y + p.y_ref,
+            p.z_center,
+            p.normal,
+            p.plane_distance};
       },
-      [&](const Vector& x, const Vector& g) {
-        const SurfelGeometry<double> surfel = unpack_surfel(x);
-        const ProjectedSurfel<double> p = project_surfel(surfel, camera, 9.0);
+      [&](const SurfelGeometry<double>& surfel, Outputs g, SurfelGeometry<double>& dL_dsurfel) {
+        const ProjectedSurfel<double> p = project_surfel(surfel, test_camera(), 9.0);
         ProjectedSurfel<double> dL{};
-        dL.map.g0 = vec3(g, 0);
-        dL.map.gx = (px - p.x_ref) * vec3(g, 0);
-        dL.map.gy = (py - p.y_ref) * vec3(g, 0);
-        dL.map.det = g[3];
-        dL.center_x = g[4];
-        dL.center_y = g[5];
-        dL.z_center = g[6];
-        dL.normal = vec3(g, 7);
-        dL.plane_distance = g[10];
-        SurfelGeometry<double> out{};
+        dL.map.g0 = g.zeta;
+        dL.map.gx = (px - p.x_ref) * g.zeta;
+        dL.map.gy = (py - p.y_ref) * g.zeta;
+        dL.map.det = g.det;
+        dL.center_x = g.center_x;
+        dL.center_y = g.center_y;
+        dL.z_center = g.z_center;
+        dL.normal = g.normal;
+        dL.plane_distance = g.plane_distance;
         Vec3d dL_dm;
-        project_surfel_vjp(surfel, camera, dL, true, out, dL_dm);
-        return pack(out);
-      }
+        project_surfel_vjp(surfel, test_camera(), dL, true, dL_dsurfel, dL_dm);
+      },
+      kSurfel
   );
 }
 
 TEST_CASE("the screen statistic is of hits within the disc, and of the low-pass if asked for") {
   const CameraOf<double> camera = test_camera();
-  const SurfelGeometry<double> surfel = unpack_surfel(kSurfel);
   // dL/d(centre in camera space), as the statistic has it and as the parameter has it.
   const auto of = [&](const ProjectedSurfel<double>& dL, bool low_pass) {
     SurfelGeometry<double> gradient{};
     Vec3d dL_dm;
-    project_surfel_vjp(surfel, camera, dL, low_pass, gradient, dL_dm);
+    project_surfel_vjp(kSurfel, camera, dL, low_pass, gradient, dL_dm);
     return std::pair(dL_dm, camera.rotation * gradient.mean);
   };
   const auto check_same = [](const std::pair<Vec3d, Vec3d>& found) {
@@ -329,20 +274,10 @@ TEST_CASE("spherical harmonics are orthonormal over the sphere") {
 TEST_CASE("normal_from_differences faces the camera and its vjp matches central differences") {
   const Vec3d n = normal_from_differences(Vec3d{0.2, 0, 0}, Vec3d{0, 0.2, 0});
   CHECK(n.z == Approx(-1.0));
-  check_vjp(
-      random_inputs(6, -1, 1, 5),
-      [](const Vector& x) {
-        Vector y;
-        push(y, normal_from_differences(vec3(x, 0), vec3(x, 3)));
-        return y;
-      },
-      [](const Vector& x, const Vector& g) {
-        Vec3d dx{}, dy{};
-        normal_from_differences_vjp(vec3(x, 0), vec3(x, 3), vec3(g, 0), dx, dy);
-        Vector y;
-        push(y, dx);
-        push(y, dy);
-        return y;
-      }
+  check_formula(
+      normal_from_differences<double>,
+      normal_from_differences_vjp<double>,
+      Vec3d{0.9, -0.2, 0.4},
+      Vec3d{-0.3, 0.6, 0.7}
   );
 }

@@ -10,6 +10,7 @@
 #include "glint/core/rng.h"
 #include "tests/support/gradcheck.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/random_values.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -18,12 +19,6 @@ namespace {
 
 constexpr int kWidth = 4, kHeight = 3;
 constexpr std::size_t kInterfaceChannels = 5;  // colour, t, s
-
-Image random_image(Rng& rng, int channels, float low, float high) {
-  Image image(kWidth, kHeight, channels);
-  for (float& value : image.values()) value = rng.uniform(low, high);
-  return image;
-}
 
 struct Fixture {
   Camera camera;
@@ -35,14 +30,15 @@ struct Fixture {
     Rng rng(seed);
     camera = random_camera(rng, {kWidth, kHeight});
     options.channels = {.transparency = 3, .specular = 4};
-    interface.features = random_image(rng, static_cast<int>(kInterfaceChannels), 0.1f, 0.9f);
-    interface.alpha = random_image(rng, 1, 0.5f, 1);
-    interface.depth_sum = random_image(rng, 1, 1, 2);
-    interface.normal = random_image(rng, 3, -0.3f, 0.3f);
+    interface.features =
+        random_map(rng, camera.size(), static_cast<int>(kInterfaceChannels), 0.1f, 0.9f);
+    interface.alpha = random_map(rng, camera.size(), 1, 0.5f, 1);
+    interface.depth_sum = random_map(rng, camera.size(), 1, 1, 2);
+    interface.normal = random_map(rng, camera.size(), 3, -0.3f, 0.3f);
     for (std::size_t i = 0; i < interface.normal.num_pixels(); ++i)
       interface.normal.data()[3 * i + 2] -= 0.7f;
-    transmission = random_image(rng, 3, 0, 1);
-    weights = random_image(rng, 3, -1, 1);
+    transmission = random_map(rng, camera.size(), 3, 0, 1);
+    weights = random_map(rng, camera.size(), 3, -1, 1);
   }
   // Smooth in origin and direction.
   static Vec3f reflected(Vec3f o, Vec3f d) {

@@ -33,15 +33,13 @@ TEST_CASE("Where nothing was hit, or a plane is seen edge-on or from behind, the
 
 TEST_CASE("Plane depth has the gradient of its differences") {
   const Vec3d ray{0.3, -0.2, 1};
-  check_vjp(
-      {1.8, 0.2, 0.1, -0.7},
-      [&](const Vector& x) { return Vector{plane_depth(x[0], vec3(x, 1), ray)}; },
-      [&](const Vector& x, const Vector& g) {
-        double dL_dd = 0;
-        Vec3d dL_dn{};
-        plane_depth_vjp(x[0], vec3(x, 1), ray, g[0], dL_dd, dL_dn);
-        return Vector{dL_dd, dL_dn.x, dL_dn.y, dL_dn.z};
-      }
+  check_formula(
+      [&](double distance, Vec3d n) { return plane_depth(distance, n, ray); },
+      [&](double distance, Vec3d n, double g, double& dL_dd, Vec3d& dL_dn) {
+        plane_depth_vjp(distance, n, ray, g, dL_dd, dL_dn);
+      },
+      1.8,
+      Vec3d{0.2, 0.1, -0.7}
   );
 }
 

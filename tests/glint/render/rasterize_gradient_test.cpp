@@ -14,6 +14,7 @@
 
 #include "glint/render/rasterize.h"
 #include "glint/render/splat_hit.h"
+#include "tests/support/facing_layers.h"
 #include "tests/support/golden_surfel.h"
 #include "tests/support/gradcheck.h"
 
@@ -348,9 +349,7 @@ TEST_CASE("The absolute screen gradient sums what each pixel says of a shift of 
 TEST_CASE("The absolute screen gradient of a facing surfel does not cancel") {
   // dL/ds = sum alpha (p - c) / sigma^2 vanishes by symmetry; its absolute value does not.
   Case c;
-  c.camera.width = c.camera.height = 21;
-  c.camera.fx = c.camera.fy = 20;
-  c.camera.cx = c.camera.cy = 10.5;
+  c.camera = small_camera();
   c.settings.with_statistics = true;
   c.surfels.add({0, 0, 2}, {0.3, 0.3}, {1, 0, 0, 0}, 0.8, {1, 1, 1});  // sigma 3 pixels
   c.dL_doutput.alpha = Image(21, 21, 1, 1.0f);

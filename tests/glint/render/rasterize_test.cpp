@@ -6,10 +6,11 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "glint/core/parallel.h"
 #include "tests/support/compare_render.h"
+#include "tests/support/facing_layers.h"
 #include "tests/support/forward_backward.h"
 #include "tests/support/golden_surfel.h"
+#include "tests/support/threads.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -48,27 +49,6 @@ void check_errors(const RenderErrors& errors, double tolerance) {
   CHECK(static_cast<double>(errors.flipped) <= 1 + 0.02 * static_cast<double>(errors.near_cutoff));
   CHECK(errors.clean > errors.near_cutoff);
 }
-
-// Parallel to the image plane of a camera at the origin; feature = `value` in one channel.
-void add_facing(SurfelArrays& surfels, Vec3d mean, double scale, double opacity, float value) {
-  surfels.channels = 1;
-  surfels.add(mean, {scale, scale}, {1, 0, 0, 0}, opacity, {value});
-}
-
-// 21 x 21 pixels, focal length 20: the middle pixel's centre looks along the axis.
-Camera small_camera() {
-  Camera camera;
-  camera.width = camera.height = 21;
-  camera.fx = camera.fy = 20;
-  camera.cx = camera.cy = 10.5;
-  return camera;
-}
-
-// Equal to the bit: NaN equals itself, 0 and -0 differ.
-struct ThreadCount {
-  explicit ThreadCount(int n) { set_num_threads(n); }
-  ~ThreadCount() { set_num_threads(0); }
-};
 
 }  // namespace
 
@@ -468,13 +448,10 @@ TEST_CASE("Bytes do not depend on the number of threads or on repetition") {
   options.count = 3000;
   const SurfelArrays surfels = random_surfels(options, camera, rng);
   Rasterizer rasterizer;
-  const auto with_threads = [&](int threads) {
-    const ThreadCount guard(threads);
-    return forward_backward(rasterizer, surfels, camera);
-  };
-  const ForwardBackward one = with_threads(1);
+  const auto run = [&] { return forward_backward(rasterizer, surfels, camera); };
+  const ForwardBackward one = with_threads(1, run);
   for (const int threads : {2, 2, 5, 1}) {
-    const ForwardBackward other = with_threads(threads);
+    const ForwardBackward other = with_threads(threads, run);
     check_same_bytes(one.output, other.output);
     check_same_bytes(one.gradient, other.gradient);
   }

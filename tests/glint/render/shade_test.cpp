@@ -6,22 +6,14 @@
 #include "glint/render/activations.h"
 #include "glint/render/spherical_harmonics.h"
 #include "tests/support/check_vjp.h"
+#include "tests/support/random_values.h"
 
 using namespace glint;
 using namespace glint::test;
 
 namespace {
 
-SurfelCloud random_cloud(std::size_t count) {
-  SurfelCloud cloud;
-  cloud.extra_names = {"transparency", "specular"};
-  cloud.resize(count);
-  Rng rng(3);
-  cloud.for_each_array([&](const char*, FloatArray& array, std::size_t) {
-    for (float& value : array) value = rng.uniform(-1, 1);
-  });
-  return cloud;
-}
+const std::vector<std::string> kExtras = {"transparency", "specular"};
 
 double extra_in_double(const SurfelCloud& cloud, std::size_t i, std::size_t e) {
   const auto x = static_cast<double>(cloud.extra_logits[2 * i + e]);
@@ -65,7 +57,8 @@ std::vector<double> activate_one(
 }  // namespace
 
 TEST_CASE("Activated clouds equal the formulas in double at every degree and lane") {
-  const SurfelCloud cloud = random_cloud(21);  // two full groups of eight and five left over
+  const SurfelCloud cloud =
+      random_cloud(21, kExtras);  // two full groups of eight and five left over
   for (int degree = 0; degree <= 3; ++degree) {
     ActivatedSurfels a;
     activate(cloud, {0.1f, 0.2f, -3}, degree, a);
@@ -155,11 +148,11 @@ void check_activate_vjp(SurfelCloud cloud, const ActivationOptions& options) {
 }  // namespace
 
 TEST_CASE("activate_vjp matches central differences of the formulas in double") {
-  check_activate_vjp(random_cloud(11), {});
+  check_activate_vjp(random_cloud(11, kExtras), {});
 }
 
 TEST_CASE("Other activations and passes have their gradients, too") {
-  SurfelCloud cloud = random_cloud(11);
+  SurfelCloud cloud = random_cloud(11, kExtras);
   cloud.extra_activations = {Activation::kTanh, Activation::kCappedExp};
   for (float& x : cloud.extra_logits) x *= 2;
   check_activate_vjp(cloud, {});
@@ -172,7 +165,7 @@ TEST_CASE("Other activations and passes have their gradients, too") {
 }
 
 TEST_CASE("Activated clouds have other activations, opacity factors and channels in all lanes") {
-  SurfelCloud cloud = random_cloud(21);
+  SurfelCloud cloud = random_cloud(21, kExtras);
   cloud.extra_activations = {Activation::kTanh, Activation::kCappedExp};
   for (float& x : cloud.extra_logits) x *= 6;  // beyond the cap
   for (const ActivationOptions& options :
@@ -194,7 +187,7 @@ TEST_CASE("Activated clouds have other activations, opacity factors and channels
 }
 
 TEST_CASE("Offsets of colours are added behind the clamp, and hide no gradient and add none") {
-  SurfelCloud cloud = random_cloud(11);
+  SurfelCloud cloud = random_cloud(11, kExtras);
   for (std::size_t c = 0; c < 3; ++c) cloud.sh_dc[3 * 7 + c] = -9;  // clamped
   FloatArray offsets(33);
   Rng rng(8);
@@ -217,7 +210,7 @@ TEST_CASE("Offsets of colours are added behind the clamp, and hide no gradient a
 }
 
 TEST_CASE("Activations that are not one a channel are refused") {
-  SurfelCloud cloud = random_cloud(3);
+  SurfelCloud cloud = random_cloud(3, kExtras);
   ActivatedSurfels a;
   cloud.extra_activations = {Activation::kTanh};
   CHECK_THROWS_WITH(activate(cloud, {}, 0, a), Catch::Contains("1 kinds of activation"));

@@ -105,7 +105,7 @@ TEST_CASE("Passes that share their lists make the bytes of passes that do not") 
 }
 
 TEST_CASE("A pass that sees a set again projects, lists and activates nothing") {
-  use_host_kernels();
+  const OnHost on_host;
   Step step;
   step.run(true);
   const auto launches = [&](const std::type_info& kernel, bool again) {
@@ -119,7 +119,6 @@ TEST_CASE("A pass that sees a set again projects, lists and activates nothing") 
   CHECK(launches(typeid(gpu::WritePairs), true) == 1);
   CHECK(launches(typeid(ActivateFeatures), false) == 2);
   CHECK(launches(typeid(ActivateFeatures), true) == 1);
-  use_cpu();
 }
 
 TEST_CASE("On the CPU, too, a pass that sees a set again looks at the lists of the first") {
@@ -135,17 +134,16 @@ TEST_CASE("On the CPU, too, a pass that sees a set again looks at the lists of t
 }
 
 TEST_CASE("On a GPU lists of a set that was written since are not used") {
-  use_host_kernels();
+  const OnHost on_host;
   Step step;
   step.set.forward(kCamera, 2);
   for (float& v : step.set.cloud().means) v += 100;
   step.set.forward_again(step.second, step.set.pass());
   CHECK(step.second.rasterizer.num_pairs() == 0);
-  use_cpu();
 }
 
 TEST_CASE("Shared lists without room make the step void, and both passes see nothing") {
-  use_host_kernels();
+  const OnHost on_host;
   Step step;
   SurfelCloud& cloud = step.set.cloud();
   const FloatArray scales = cloud.log_scales;
@@ -170,5 +168,4 @@ TEST_CASE("Shared lists without room make the step void, and both passes see not
     return step.run(true);
   };
   CHECK(run_from_zero() == expected);
-  use_cpu();
 }

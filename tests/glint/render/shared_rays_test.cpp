@@ -8,6 +8,7 @@
 #include "glint/core/error.h"
 #include "glint/core/rng.h"
 #include "tests/support/gpu_backends.h"
+#include "tests/support/random_values.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -30,13 +31,6 @@ GlassBuffer buffer_of(ImageSize size) {
       b.reflected.directions.at(x, y, 0) = 1 + static_cast<float>(x + 100 * y);
     }
   return b;
-}
-
-Image random_image(ImageSize size, std::uint64_t seed) {
-  Rng rng(seed);
-  Image image(size.width, size.height, 3);
-  for (float& value : image.values()) value = rng.uniform(-1, 1);
-  return image;
 }
 
 bool has_ray(const Rays& rays, std::size_t i) { return rays.directions.data()[3 * i] != 0; }
@@ -145,7 +139,7 @@ TEST_CASE("Pixels show what their ray met, and its gradient is the sum of theirs
   SharedRays shared;
   for (int step = 0; step < 8; ++step) {
     const Rays& rays = shared.choose(buffer, {.below = 0.2f, .block = block}, {}, step);
-    const Image traced = random_image(size, 1), dL_dcolor = random_image(size, 2);
+    const Image traced = random_map(size, 3, -1, 1, 1), dL_dcolor = random_map(size, 3, -1, 1, 2);
     Image color, dL_dtraced;
     shared.spread(traced, color);
     shared.spread_vjp(dL_dcolor, dL_dtraced);
@@ -167,8 +161,8 @@ TEST_CASE("Sharing gives the same on every backend") {
     found["directions"] = read(rays.directions);
     found["stops"] = read(rays.stops);
     Image color, dL_dtraced;
-    shared.spread(random_image(size, 1), color);
-    shared.spread_vjp(random_image(size, 2), dL_dtraced);
+    shared.spread(random_map(size, 3, -1, 1, 1), color);
+    shared.spread_vjp(random_map(size, 3, -1, 1, 2), dL_dtraced);
     found["color"] = read(color);
     found["dL_dtraced"] = read(dL_dtraced);
     return found;

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <numbers>
 
-#include "glint/core/parallel.h"
 #include "glint/render/spherical_lookup.h"
 #include "tests/support/check_vjp.h"
 #include "tests/support/gpu_backends.h"
+#include "tests/support/random_values.h"
+#include "tests/support/threads.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -22,13 +23,6 @@ Vec3d direction(double u, double v) {
       std::sin(kPi * v) * std::cos(2 * kPi * u),
       std::sin(kPi * v) * std::sin(2 * kPi * u),
       std::cos(kPi * v)};
-}
-
-FloatArray random_array(std::size_t count, std::uint64_t seed) {
-  Rng rng(seed);
-  FloatArray array(count);
-  for (float& value : array) value = rng.uniform(-1, 1);
-  return array;
 }
 
 // The mean over the texels of level 0 that a texel of a level covers.
@@ -367,11 +361,7 @@ TEST_CASE("A map over directions is the same for any number of threads and on a 
     return results;
   };
   check_same_as_cpu(1e-5, run);
-  set_num_threads(1);
-  const auto one = run();
-  set_num_threads(4);
-  CHECK(run() == one);
-  set_num_threads(0);
+  CHECK(with_threads(4, run) == with_threads(1, run));
 }
 
 TEST_CASE("Maps of no size and texels of another are refused") {

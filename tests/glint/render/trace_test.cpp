@@ -13,6 +13,7 @@
 #include "tests/support/gradcheck.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/reference_trace.h"
+#include "tests/support/same_bytes.h"
 #include "tests/support/trace_arrays.h"
 
 using namespace glint;
@@ -59,11 +60,6 @@ Rays random_rays(int width, int height, Rng& rng) {
         uniform(rng, 0.5, 2) * random_direction(rng)
     );
   return rays;
-}
-
-bool same_bytes(const Image& a, const Image& b) {
-  return a.values().size() == b.values().size() &&
-         std::memcmp(a.data(), b.data(), a.values().size() * sizeof(float)) == 0;
 }
 
 // Checks every output of every ray that is `guard` away from a jump; returns the share of those.

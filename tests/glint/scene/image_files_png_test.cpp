@@ -7,6 +7,7 @@
 #include "glint/core/rng.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/image_files_formats.h"
+#include "tests/support/same_bytes.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -20,11 +21,6 @@ Image random_bytes(int width, int height, int channels) {
   Image image(width, height, channels);
   for (float& value : image.values()) value = static_cast<float>(rng.below(256)) / 255.0f;
   return image;
-}
-
-bool same(const Image& a, const Image& b) {
-  return a.size() == b.size() && a.channels() == b.channels() &&
-         std::memcmp(a.data(), b.data(), a.values().size_bytes()) == 0;
 }
 
 std::uint32_t checksum(const std::string& bytes) {  // CRC-32 of the PNG specification
@@ -213,7 +209,7 @@ TEST_CASE("what is written as PNG is read back, grey and colour") {
   for (const int channels : {1, 3}) {
     const Image image = random_bytes(13, 7, channels);
     write_png(folder / "x.png", image);
-    CHECK(same(read_image(folder / "x.png"), image));
+    CHECK(same_bytes(read_image(folder / "x.png"), image));
     CHECK(read_image_size(folder / "x.png") == ImageSize{13, 7});
   }
 }
@@ -274,7 +270,7 @@ TEST_CASE("interlaced pictures smaller than a pass are read") {
     for (const int height : {1, 2, 3, 5, 9}) {
       INFO(width << " x " << height);
       const Samples samples({8, 2, 3}, width, height);
-      CHECK(same(
+      CHECK(same_bytes(
           detail::decode_png("x.png", samples.file(true)),
           detail::decode_png("x.png", samples.file(false))
       ));
@@ -289,7 +285,7 @@ TEST_CASE("what a picture does not need is passed over: suggested palettes, tran
         chunk("tRNS", "\0\1\0\2\0\3"s),
         chunk("tEXt", "a\0b"s).substr(0, 11) + "none"}) {  // nobody needs its checksum, either
     const std::string more = file.substr(0, 33) + extra + file.substr(33);
-    CHECK(same(detail::decode_png("x.png", more), detail::decode_png("x.png", file)));
+    CHECK(same_bytes(detail::decode_png("x.png", more), detail::decode_png("x.png", file)));
   }
 }
 

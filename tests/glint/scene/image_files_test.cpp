@@ -15,6 +15,9 @@
 
 #include "glint/core/rng.h"
 #include "glint/scene/image_files_formats.h"
+#include "tests/support/image_difference.h"
+#include "tests/support/random_values.h"
+#include "tests/support/same_bytes.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -22,27 +25,6 @@ using namespace glint::test;
 using Catch::Contains;
 
 namespace {
-
-Image random_image(int width, int height, int channels, float low = 0, float high = 1) {
-  Rng rng(7);
-  Image image(width, height, channels);
-  for (float& value : image.values()) value = rng.uniform(low, high);
-  return image;
-}
-
-bool same(const Image& a, const Image& b) {
-  return a.size() == b.size() && a.channels() == b.channels() &&
-         std::equal(a.values().begin(), a.values().end(), b.values().begin());
-}
-
-float largest_difference(const Image& a, const Image& b) {
-  REQUIRE(a.size() == b.size());
-  REQUIRE(a.channels() == b.channels());
-  float largest = 0;
-  for (std::size_t i = 0; i < a.values().size(); ++i)
-    largest = std::max(largest, std::abs(a.values()[i] - b.values()[i]));
-  return largest;
-}
 
 void write_any(const fs::path& path, const Image& image) {
   if (path.extension() == ".png") write_png(path, image);
@@ -95,14 +77,14 @@ TEST_CASE("16-bit PNG rounds to the nearest of 65535 steps and is one channel") 
 
 TEST_CASE("PNG keeps channel order and is off by at most half a step") {
   const TempFolder folder;
-  const Image image = random_image(13, 7, 3);
+  const Image image = random_map({13, 7}, 3, 0, 1, 7);
   write_png(folder / "x.png", image);
   CHECK(largest_difference(read_image(folder / "x.png"), image) <= 0.5f / 255 + 1e-6f);
 }
 
 TEST_CASE("the same picture gives the same bytes") {
   const TempFolder folder;
-  const Image image = random_image(13, 7, 3);
+  const Image image = random_map({13, 7}, 3, 0, 1, 7);
   for (const char* name : {"a.png", "a.exr", "a.npy"}) {
     write_any(folder / name, image);
     const std::string first = read_file(folder / name);
@@ -127,15 +109,15 @@ TEST_CASE("grey pictures have one channel, which a caller may ask to repeat") {
 TEST_CASE("EXR and NPY keep every float") {
   const TempFolder folder;
   for (const int channels : {1, 3}) {
-    const Image image = random_image(17, 9, channels, -1000, 1000);
+    const Image image = random_map({17, 9}, channels, -1000, 1000, 7);
     write_exr(folder / "x.exr", image);
-    CHECK(same(read_image(folder / "x.exr"), image));
+    CHECK(same_bytes(read_image(folder / "x.exr"), image));
     write_npy(folder / "x.npy", image);
-    CHECK(same(read_image(folder / "x.npy"), image));
+    CHECK(same_bytes(read_image(folder / "x.npy"), image));
   }
-  const Image normal = random_image(17, 9, 3, -1, 1);
+  const Image normal = random_map({17, 9}, 3, -1, 1, 7);
   write_exr(folder / "n.exr", normal, true);
-  CHECK(same(read_image(folder / "n.exr"), normal));
+  CHECK(same_bytes(read_image(folder / "n.exr"), normal));
 }
 
 TEST_CASE("EXR half channels, tiles and shifted windows are read; crops are an error") {
@@ -236,7 +218,7 @@ TEST_CASE("NPY arrays in Fortran order are read as those in C order") {
 
 TEST_CASE("every cut-off PNG, EXR and NPY is an error that names the file") {
   const TempFolder folder;
-  const Image image = random_image(9, 6, 3);
+  const Image image = random_map({9, 6}, 3, 0, 1, 7);
   for (const std::string extension : {".png", ".exr", ".npy"}) {
     write_any(folder / ("x" + extension), image);
     const std::string file = read_file(folder / ("x" + extension));
@@ -256,7 +238,7 @@ TEST_CASE("damaged files are read or are errors, and nothing else") {
   Rng rng(11);
   for (const std::string extension : {".png", ".exr", ".npy"}) {
     const fs::path path = folder / ("x" + extension);
-    write_any(path, random_image(8, 5, 3));
+    write_any(path, random_map({8, 5}, 3, 0, 1, 7));
     const std::string good = read_file(path);
     for (int round = 0; round < 300; ++round) {
       std::string file = good;
@@ -348,7 +330,7 @@ std::string little_endian(std::initializer_list<std::uint32_t> numbers) {
 
 TEST_CASE("an EXR's header is believed only as far as the file can hold") {
   const TempFolder folder;
-  write_exr(folder / "x.exr", random_image(8, 6, 3));
+  write_exr(folder / "x.exr", random_map({8, 6}, 3, 0, 1, 7));
   const std::string good = read_file(folder / "x.exr");
   const auto error_of_file = [&](const std::string& bytes) {
     write_file(folder / "bad.exr", bytes);

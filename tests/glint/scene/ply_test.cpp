@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "glint/core/rng.h"
+#include "tests/support/random_values.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -13,17 +14,6 @@ using namespace glint::test;
 using Catch::Contains;
 
 namespace {
-
-SurfelCloud random_cloud(std::size_t count, std::vector<std::string> extra_names) {
-  SurfelCloud cloud;
-  cloud.extra_names = std::move(extra_names);
-  cloud.resize(count);
-  Rng rng(3);
-  cloud.for_each_array([&](const char*, FloatArray& array, std::size_t) {
-    for (float& value : array) value = rng.uniform(-2, 2);
-  });
-  return cloud;
-}
 
 void check_same(const SurfelCloud& a, const SurfelCloud& b) {
   std::vector<FloatArray> arrays;

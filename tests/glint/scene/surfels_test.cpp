@@ -5,9 +5,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "glint/core/parallel.h"
 #include "glint/core/rng.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/threads.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -77,11 +77,8 @@ TEST_CASE("surfels start at the points with their colour, spacing and a random r
 
 TEST_CASE("the same seed gives the same surfels with any number of threads") {
   const PointCloud points = random_points(2000);
-  set_num_threads(1);
-  const SurfelCloud one = surfels_from_points(points, {});
-  set_num_threads(2);
-  const SurfelCloud two = surfels_from_points(points, {});
-  set_num_threads(0);
+  const auto made = [&] { return surfels_from_points(points, {}); };
+  const SurfelCloud one = test::with_threads(1, made), two = test::with_threads(2, made);
   CHECK(one.log_scales == two.log_scales);
   CHECK(one.rotations == two.rotations);
   InitialSurfels other;

@@ -8,77 +8,22 @@
 
 #include "glint/core/error.h"
 #include "glint/render/activations.h"
-#include "glint/train/densify.h"
+#include "tests/support/densified_set.h"
 
 using namespace glint;
+using namespace glint::test;
 
 namespace {
-
-constexpr float kSmall = 0.001f, kLarge = 0.5f;
-
-// Opaque surfels in the plane z = 0, facing z, that nothing asks to clone or to prune.
-SurfelCloud cloud_of(std::size_t count) {
-  SurfelCloud cloud;
-  cloud.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    cloud.rotations[4 * i] = 1;
-    cloud.means[3 * i] = static_cast<float>(i);
-    cloud.opacity_logits[i] = 1;
-    cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(kSmall);
-  }
-  return cloud;
-}
-// An optimiser that knows the cloud, and has not moved it.
-SurfelAdam adam_of(SurfelCloud& cloud) {
-  SurfelCloud gradient;
-  gradient.resize(cloud.size());
-  SurfelAdam adam;
-  adam.step(cloud, gradient, {}, 1);
-  return adam;
-}
-void enlarge(SurfelCloud& cloud, std::size_t i) {
-  cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(kLarge);
-}
-
-// One view; a surfel of weight 0 is not in it.
-void observe(
-    Densifier& densifier, const std::vector<float>& weights, const std::vector<float>& gradients
-) {
-  RasterOutput output;
-  RasterGradient gradient;
-  output.alpha = Image(960, 540, 1);
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    output.in_view.push_back(weights[i] > 0);
-    output.visibility.push_back(weights[i]);
-    for (const float value : {gradients[i], 0.0f}) gradient.screen.push_back(value);
-  }
-  densifier.observe(output, gradient);
-}
-void observe(Densifier& densifier, const std::vector<float>& weights) {
-  observe(densifier, weights, std::vector<float>(weights.size(), 0.0f));
-}
-
-DensifyConfig every_step() {
-  DensifyConfig config;
-  config.from = 0;
-  config.interval = 1;
-  config.until = 1000;
-  config.reset_interval = 10;
-  config.prune_holiday = 0;
-  return config;
-}
 
 // The step in which surfels that stay as a reset leaves them are pruned.
 int pruned_in_step(int holiday) {
   DensifyConfig config = every_step();
   config.prune_holiday = holiday;
-  SurfelCloud cloud = cloud_of(2);
-  SurfelAdam adam = adam_of(cloud);
-  Densifier densifier(config, 1, 0);
+  DensifiedSet set(config, 2);
   for (int step = 1; step <= 30; ++step) {
-    observe(densifier, {1, 1});
-    if (densifier.update(step, cloud, adam).pruned > 0) return step;
-    if (step == config.reset_interval) cloud.opacity_logits[1] = 1;
+    set.observe({1, 1});
+    if (set.update(step).pruned > 0) return step;
+    if (step == config.reset_interval) set.cloud.opacity_logits[1] = 1;
   }
   return 0;
 }
@@ -99,12 +44,11 @@ TEST_CASE("Before the first reset, and without any, there is no holiday") {
     DensifyConfig config = every_step();
     config.prune_holiday = 1000;
     config.resets = resets;
-    SurfelCloud cloud = cloud_of(1);
-    cloud.opacity_logits[0] = logit(0.01f);
-    SurfelAdam adam = adam_of(cloud);
-    Densifier densifier(config, 1, 0);
-    observe(densifier, {1});
-    CHECK(densifier.update(resets ? 5 : 15, cloud, adam).pruned == 1);
+    SurfelCloud surfels = cloud_of(1);
+    surfels.opacity_logits[0] = logit(0.01f);
+    DensifiedSet set(config, surfels);
+    set.observe({1});
+    CHECK(set.update(resets ? 5 : 15).pruned == 1);
   }
 }
 
@@ -149,25 +93,24 @@ TEST_CASE("A large surfel becomes five in its plane, unless it is among the leas
   for (const float weight : {5.0f, 0.5f}) {
     DensifyConfig config = every_step();
     config.split_large = true;
-    SurfelCloud cloud = cloud_of(12);
-    enlarge(cloud, 0);
-    SurfelAdam adam = adam_of(cloud);
-    Densifier densifier(config, 1, 0);
+    SurfelCloud surfels = cloud_of(12);
+    enlarge(surfels, 0);
+    DensifiedSet set(config, surfels);
     std::vector<float> weights(12, 1.0f);
     weights[0] = weight;
-    observe(densifier, weights);
-    const DensifyCounts counts = densifier.update(1, cloud, adam);
+    set.observe(weights);
+    const DensifyCounts counts = set.update(1);
     const bool split = weight > 1;
     CHECK(counts.split == (split ? 1 : 0));
     CHECK(counts.pruned == (split ? 0 : 1));
-    REQUIRE(cloud.size() == (split ? 16 : 11));
-    CHECK(adam.first().size() == cloud.size());
-    CHECK(cloud.means[0] == 1.0f);  // the parent is gone
-    for (std::size_t child = 11; child < cloud.size(); ++child) {
-      CHECK(std::exp(cloud.log_scales[2 * child]) == Approx(kLarge / 2.5f));
-      CHECK(cloud.means[3 * child + 2] == 0.0f);
-      CHECK(cloud.means[3 * child] != 0.0f);
-      CHECK(std::abs(cloud.means[3 * child]) < 5 * kLarge);
+    REQUIRE(set.cloud.size() == (split ? 16 : 11));
+    CHECK(set.adam.first().size() == set.cloud.size());
+    CHECK(set.cloud.means[0] == 1.0f);  // the parent is gone
+    for (std::size_t child = 11; child < set.cloud.size(); ++child) {
+      CHECK(std::exp(set.cloud.log_scales[2 * child]) == Approx(kLarge / 2.5f));
+      CHECK(set.cloud.means[3 * child + 2] == 0.0f);
+      CHECK(set.cloud.means[3 * child] != 0.0f);
+      CHECK(std::abs(set.cloud.means[3 * child]) < 5 * kLarge);
     }
   }
 }
@@ -177,14 +120,13 @@ TEST_CASE("Large surfels become five as long as there is room for them") {
   config.split_large = true;
   const auto split_with = [&](int max_surfels) {
     config.max_surfels = max_surfels;
-    SurfelCloud cloud = cloud_of(12);
-    for (std::size_t i = 0; i < 3; ++i) enlarge(cloud, i);
-    SurfelAdam adam = adam_of(cloud);
-    Densifier densifier(config, 1, 0);
-    observe(densifier, std::vector<float>(12, 1.0f));
-    const DensifyCounts counts = densifier.update(1, cloud, adam);
+    SurfelCloud surfels = cloud_of(12);
+    for (std::size_t i = 0; i < 3; ++i) enlarge(surfels, i);
+    DensifiedSet set(config, surfels);
+    set.observe(std::vector<float>(12, 1.0f));
+    const DensifyCounts counts = set.update(1);
     CHECK(counts.pruned == 0);
-    CHECK(cloud.size() == 12 + 4 * counts.split);
+    CHECK(set.cloud.size() == 12 + 4 * counts.split);
     return counts.split;
   };
   CHECK(split_with(100) == 3);
@@ -197,22 +139,21 @@ TEST_CASE("Weights are means over the views that saw a surfel") {
   // Two large surfels: the first is seen often and faintly, the second once and well.
   DensifyConfig config = every_step();
   config.split_large = true;
-  SurfelCloud cloud = cloud_of(12);
-  enlarge(cloud, 0);
-  enlarge(cloud, 1);
-  SurfelAdam adam = adam_of(cloud);
-  Densifier densifier(config, 1, 0);
+  SurfelCloud surfels = cloud_of(12);
+  enlarge(surfels, 0);
+  enlarge(surfels, 1);
+  DensifiedSet set(config, surfels);
   std::vector<float> weights(12, 3.0f);
   weights[0] = 2;
   weights[1] = 4;
-  observe(densifier, weights);
+  set.observe(weights);
   weights[1] = 0;
-  observe(densifier, weights);
-  observe(densifier, weights);  // sums: 6 and 4
-  const DensifyCounts counts = densifier.update(1, cloud, adam);
+  set.observe(weights);
+  set.observe(weights);  // sums: 6 and 4
+  const DensifyCounts counts = set.update(1);
   CHECK(counts.pruned == 1);
   CHECK(counts.split == 1);
-  CHECK(cloud.means[0] == 2.0f);
+  CHECK(set.cloud.means[0] == 2.0f);
 }
 
 TEST_CASE("Rows of the least weight go, new ones last") {
@@ -233,20 +174,18 @@ TEST_CASE("A cap by visibility lets surfels grow, and takes those least seen dow
   DensifyConfig config = every_step();
   config.cap_by_visibility = true;
   config.max_surfels = 10;
-  SurfelCloud cloud = cloud_of(10);
-  SurfelAdam adam = adam_of(cloud);
-  Densifier densifier(config, 1, 0);
+  DensifiedSet set(config, 10);
   std::vector<float> weights(10), gradients(10, 0.0f);
   std::iota(weights.begin(), weights.end(), 1.0f);
   gradients[0] = gradients[9] = 1;
-  observe(densifier, weights, gradients);
-  const DensifyCounts counts = densifier.update(1, cloud, adam);
+  set.observe(weights, gradients);
+  const DensifyCounts counts = set.update(1);
   CHECK(counts.cloned == 2);
   CHECK(counts.pruned == 3);
-  REQUIRE(cloud.size() == 9);
-  CHECK(cloud.means[0] == 3.0f);  // 0, 1 and 2 went, the clone of 0 did not
-  CHECK(cloud.means[3 * 7] == 0.0f);
-  CHECK(cloud.means[3 * 8] == 9.0f);
+  REQUIRE(set.cloud.size() == 9);
+  CHECK(set.cloud.means[0] == 3.0f);  // 0, 1 and 2 went, the clone of 0 did not
+  CHECK(set.cloud.means[3 * 7] == 0.0f);
+  CHECK(set.cloud.means[3 * 8] == 9.0f);
 }
 
 TEST_CASE("An opacity reset lowers the channels that it names, from their step on") {
@@ -315,12 +254,10 @@ TEST_CASE("A view that is rasterised twice counts with the length of the summed 
   RasterGradient a, b;
   a.screen = {0.5f, 0, 0.5f, 0, 0, 0};
   b.screen = {0.5f, 0, -0.5f, 0, 0, 0.5f};
-  SurfelCloud cloud = cloud_of(3);
-  SurfelAdam adam = adam_of(cloud);
-  Densifier densifier(config, 1, 0);
-  densifier.observe(output, a, &b);
-  CHECK(densifier.update(1, cloud, adam).cloned == 1);
-  CHECK(cloud.means[3 * 3] == 0.0f);  // the first, whose gradients agree
+  DensifiedSet set(config, 3);
+  set.densifier.observe(output, a, &b);
+  CHECK(set.update(1).cloned == 1);
+  CHECK(set.cloud.means[3 * 3] == 0.0f);  // the first, whose gradients agree
 }
 
 TEST_CASE("A densifier knows how near a step is to a reset") {
@@ -337,16 +274,15 @@ TEST_CASE("A densifier knows how near a step is to a reset") {
 TEST_CASE("A set is not pruned below its least, and the faintest go first") {
   DensifyConfig config = every_step();
   config.min_surfels = 3;
-  SurfelCloud cloud = cloud_of(5);
+  SurfelCloud surfels = cloud_of(5);
   for (std::size_t i = 0; i < 4; ++i)
-    cloud.opacity_logits[i] = logit(0.04f - 0.01f * static_cast<float>(i));
-  SurfelAdam adam = adam_of(cloud);
-  Densifier densifier(config, 1, 0);
-  observe(densifier, std::vector<float>(5, 1.0f));
-  CHECK(densifier.update(1, cloud, adam).pruned == 2);
-  REQUIRE(cloud.size() == 3);
-  for (std::size_t i = 0; i < 2; ++i) CHECK(cloud.means[3 * i] == static_cast<float>(i));
-  CHECK(cloud.means[6] == 4);
+    surfels.opacity_logits[i] = logit(0.04f - 0.01f * static_cast<float>(i));
+  DensifiedSet set(config, surfels);
+  set.observe(std::vector<float>(5, 1.0f));
+  CHECK(set.update(1).pruned == 2);
+  REQUIRE(set.cloud.size() == 3);
+  for (std::size_t i = 0; i < 2; ++i) CHECK(set.cloud.means[3 * i] == static_cast<float>(i));
+  CHECK(set.cloud.means[6] == 4);
 }
 
 TEST_CASE("The least of a set is a share of what it starts with, or a number") {
@@ -360,17 +296,16 @@ TEST_CASE("The least of a set is a share of what it starts with, or a number") {
 TEST_CASE("Of large surfels only the lightest tenth and those not seen go, if asked for") {
   DensifyConfig config = every_step();
   config.prune_light_large = true;
-  SurfelCloud cloud = cloud_of(20);
-  for (const std::size_t i : {0u, 1u, 5u, 19u}) enlarge(cloud, i);
-  SurfelAdam adam = adam_of(cloud);
-  Densifier densifier(config, 1, 0);
+  SurfelCloud surfels = cloud_of(20);
+  for (const std::size_t i : {0u, 1u, 5u, 19u}) enlarge(surfels, i);
+  DensifiedSet set(config, surfels);
   std::vector<float> weights(20);
   std::iota(weights.begin(), weights.end(), 0.0f);  // 0: not seen; 1: among the lightest tenth
-  observe(densifier, weights);
+  set.observe(weights);
   const int step = config.reset_interval + 1;
-  CHECK(densifier.update(step, cloud, adam).pruned == 2);
-  CHECK(cloud.means[0] == 2);
-  CHECK(cloud.means[3 * 3] == 5);  // large, and seen
+  CHECK(set.update(step).pruned == 2);
+  CHECK(set.cloud.means[0] == 2);
+  CHECK(set.cloud.means[3 * 3] == 5);  // large, and seen
 }
 
 TEST_CASE("A quantile of the observed gradients lowers the threshold, and never raises it") {
@@ -378,27 +313,23 @@ TEST_CASE("A quantile of the observed gradients lowers the threshold, and never 
     DensifyConfig config = every_step();
     config.gradient_threshold = 1e-3f;
     config.gradient_quantile = 0.5f;
-    SurfelCloud cloud = cloud_of(5);
-    SurfelAdam adam = adam_of(cloud);
-    Densifier densifier(config, 1, 0);
+    DensifiedSet set(config, 5);
     std::vector<float> gradients;
     for (int i = 1; i <= 5; ++i) gradients.push_back(scale * 1e-4f * static_cast<float>(i));
-    observe(densifier, std::vector<float>(5, 1.0f), gradients);
-    CHECK(densifier.update(1, cloud, adam).cloned == (scale == 1 ? 3 : 5));
+    set.observe(std::vector<float>(5, 1.0f), gradients);
+    CHECK(set.update(1).cloned == (scale == 1 ? 3 : 5));
   }
 }
 
 TEST_CASE("Where there is no room for all, the largest gradients grow") {
   DensifyConfig config = every_step();
   config.max_surfels = 6;
-  SurfelCloud cloud = cloud_of(4);
-  SurfelAdam adam = adam_of(cloud);
-  Densifier densifier(config, 1, 0);
-  observe(densifier, {1, 1, 1, 1}, {0.1f, 0.4f, 0.2f, 0.3f});
-  densifier.update(1, cloud, adam);
-  REQUIRE(cloud.size() == 6);
-  CHECK(cloud.means[3 * 4] == 1);
-  CHECK(cloud.means[3 * 5] == 3);
+  DensifiedSet set(config, 4);
+  set.observe({1, 1, 1, 1}, {0.1f, 0.4f, 0.2f, 0.3f});
+  set.update(1);
+  REQUIRE(set.cloud.size() == 6);
+  CHECK(set.cloud.means[3 * 4] == 1);
+  CHECK(set.cloud.means[3 * 5] == 3);
 }
 
 TEST_CASE("Scales above their limit are lowered to it, and their moments forgotten") {

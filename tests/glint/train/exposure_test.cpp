@@ -116,7 +116,7 @@ TEST_CASE("Exposure does the same on a GPU, and asks for nothing in a silent ste
 }
 
 TEST_CASE("A void step leaves exposure as it is") {
-  use_host_kernels();
+  const OnHost on_host;
   Pair pair;
   ExposureLoss loss(config_with(0.9f), 1);
   const auto step = [&] { loss.evaluate(0, 10, pair.render, pair.photo, kWeights, pair.gradient); };
@@ -134,5 +134,4 @@ TEST_CASE("A void step leaves exposure as it is") {
   CHECK(loss.exposures()[0].log_gain == before.log_gain);
   step();
   CHECK(loss.exposures()[0].steps == 2);
-  use_cpu();
 }

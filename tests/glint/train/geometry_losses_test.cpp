@@ -5,6 +5,7 @@
 
 #include "glint/render/map_ops.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/random_values.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -12,12 +13,6 @@ using namespace glint::test;
 namespace {
 
 constexpr ImageSize kSize{12, 9};
-
-Image random_map(Rng& rng, int channels, float low, float high) {
-  Image image(kSize.width, kSize.height, channels);
-  for (float& value : image.values()) value = rng.uniform(low, high);
-  return image;
-}
 
 struct Fixture {
   Scene scene;
@@ -28,14 +23,14 @@ struct Fixture {
     Rng rng(5);
     View view;
     view.camera = random_camera(rng, kSize);
-    view.rgb = random_map(rng, 3, 0, 1);
-    view.priors["depth"] = random_map(rng, 1, 1, 2);
-    view.priors["normal"] = random_map(rng, 3, -1, 1);
+    view.rgb = random_map(rng, kSize, 3, 0, 1);
+    view.priors["depth"] = random_map(rng, kSize, 1, 1, 2);
+    view.priors["normal"] = random_map(rng, kSize, 3, -1, 1);
     scene.name = "test";
     scene.train = {view};
-    output.alpha = random_map(rng, 1, 0.5f, 1);
-    output.depth_sum = random_map(rng, 1, 1, 2);
-    output.normal = random_map(rng, 3, -1, 1);
+    output.alpha = random_map(rng, kSize, 1, 0.5f, 1);
+    output.depth_sum = random_map(rng, kSize, 1, 1, 2);
+    output.normal = random_map(rng, kSize, 3, -1, 1);
     expected_depth_map(output, depth);
   }
   // Terms at an iteration, and the gradient.

@@ -188,7 +188,7 @@ TEST_CASE("The mean gradient may be over views where the surfel has weight") {
 }
 
 TEST_CASE("A void step leaves what was observed as it is") {
-  test::use_host_kernels();
+  const test::OnHost on_host;
   SurfelCloud cloud = cloud_of(2);
   SurfelAdam adam;
   Densifier densifier(splitting_by_abs(10), 1, 5);
@@ -203,7 +203,6 @@ TEST_CASE("A void step leaves what was observed as it is") {
   const DensifyCounts counts = densifier.update(1, cloud, adam);
   CHECK(counts.cloned == 0);
   CHECK(counts.split == 0);
-  use_cpu();
 }
 
 TEST_CASE("Splits by the absolute gradient ask for the statistics they need") {
@@ -313,7 +312,6 @@ TEST_CASE("Trimming in a silent step of a GPU sees all of each view, whatever th
   };
   const std::vector<float> expected = trimmed();
   CHECK(expected.size() > 5);
-  test::use_host_kernels();
+  const test::OnHost on_host;
   CHECK(trimmed() == expected);
-  use_cpu();
 }

@@ -7,19 +7,14 @@
 
 #include "tests/support/check_vjp.h"
 #include "tests/support/gpu_backends.h"
+#include "tests/support/random_values.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/threads.h"
 
 using namespace glint;
 using namespace glint::test;
 
 namespace {
-
-FloatArray random_array(std::size_t count, float low, float high, std::uint64_t seed) {
-  Rng rng(seed);
-  FloatArray array(count);
-  for (float& value : array) value = rng.uniform(low, high);
-  return array;
-}
 
 LobeAppearanceConfig small_config(bool reflection) {
   LobeAppearanceConfig config;
@@ -35,14 +30,14 @@ constexpr std::size_t kSurfels = 9;
 
 struct Fixture {
   LobeAppearance appearance;
-  FloatArray means = random_array(3 * kSurfels, -1, 1, 2);
-  FloatArray normals = random_array(3 * kSurfels, -1, 1, 3);
+  FloatArray means = random_array(3 * kSurfels, 2);
+  FloatArray normals = random_array(3 * kSurfels, 3);
   Array<std::uint8_t> visible = {1, 0, 1, 1, 0, 0, 1, 1, 0};
-  FloatArray g = random_array(3 * kSurfels, -1, 1, 4);
+  FloatArray g = random_array(3 * kSurfels, 4);
   Vec3f eye{0.2f, -3, 0.5f};
 
   explicit Fixture(const LobeAppearanceConfig& config) : appearance(config, kSurfels, 1) {
-    appearance.features().values = random_array(appearance.features().size(), -1, 1, 5);
+    appearance.features().values = random_array(appearance.features().size(), 5);
     for (std::size_t i = 0; i < kSurfels; ++i)
       put3(normals.data(), i, normalize(get3(normals.data(), i)));
   }
@@ -205,10 +200,9 @@ TEST_CASE("Appearance from lobes is the same for any number of threads and on a 
   const auto run = [] {
     const std::size_t count = 2000;
     LobeAppearance a({}, count, 3);
-    a.features().values = random_array(a.features().size(), -1, 1, 1);
-    const FloatArray means = random_array(3 * count, -1, 1, 2),
-                     g = random_array(3 * count, -1, 1, 4);
-    FloatArray normals = random_array(3 * count, -1, 1, 3);
+    a.features().values = random_array(a.features().size(), 1);
+    const FloatArray means = random_array(3 * count, 2), g = random_array(3 * count, 4);
+    FloatArray normals = random_array(3 * count, 3);
     for (std::size_t i = 0; i < count; ++i)
       put3(normals.data(), i, normalize(get3(normals.data(), i)));
     Array<std::uint8_t> visible(count);
@@ -222,11 +216,7 @@ TEST_CASE("Appearance from lobes is the same for any number of threads and on a 
     return results;
   };
   check_same_as_cpu(5e-5, run);
-  set_num_threads(1);
-  const auto one = run();
-  set_num_threads(3);
-  CHECK(run() == one);
-  set_num_threads(0);
+  CHECK(with_threads(3, run) == with_threads(1, run));
 }
 
 TEST_CASE("Appearance from lobes learns, and comes back from a file") {
@@ -262,10 +252,10 @@ TEST_CASE("Surfels that reach a pixel are among those in the pyramid, most other
   SurfelCloud cloud;
   const std::size_t count = 4000;
   cloud.resize(count);
-  cloud.means = random_array(3 * count, -4, 4, 1);
-  cloud.log_scales = random_array(2 * count, -7, 0, 2);
-  cloud.rotations = random_array(4 * count, -1, 1, 3);
-  cloud.opacity_logits = random_array(count, -6, -3, 4);
+  cloud.means = random_array(3 * count, 1, -4, 4);
+  cloud.log_scales = random_array(2 * count, 2, -7, 0);
+  cloud.rotations = random_array(4 * count, 3);
+  cloud.opacity_logits = random_array(count, 4, -6, -3);
   SurfelSet set(cloud);
   std::size_t marked = 0, reached = 0;
   for (const Vec3d eye : {Vec3d{0, 0, 0}, Vec3d{3, 1, -2}, Vec3d{0, -6, 1}}) {
@@ -293,11 +283,11 @@ TEST_CASE("A cloud and a camera give what their arrays give, there and back") {
   cloud.resize(kSurfels);
   cloud.means = f.means;
   cloud.log_scales = FloatArray(2 * kSurfels, -2.0f);
-  cloud.rotations = random_array(4 * kSurfels, -1, 1, 8);
+  cloud.rotations = random_array(4 * kSurfels, 8);
   const Camera camera = look_at({0.2, -3, 0.5}, {0, 0, 0}, {0, 0, 1}, {64, 36}, 30);
   const FloatArray offsets = f.appearance.forward(cloud, camera);
   RasterGradient gradient;
-  gradient.features = random_array(4 * kSurfels, -1, 1, 9);
+  gradient.features = random_array(4 * kSurfels, 9);
   f.appearance.backward(gradient, 4);
   const FloatArray dL_dfeatures = f.appearance.features().gradient;
 

@@ -10,8 +10,10 @@
 #include "glint/core/rng.h"
 #include "glint/render/spherical_harmonics.h"
 #include "glint/train/training_state.h"
+#include "tests/support/same_bytes.h"
 
 using namespace glint;
+using test::same_bytes;
 
 namespace {
 
@@ -42,11 +44,6 @@ GlassBuffer wall(Rng& rng) {
       b.reflected.directions.at(x, y, 2) = 1;
     }
   return b;
-}
-
-bool same_bytes(const Image& a, const Image& b) {
-  return a.values().size() == b.values().size() &&
-         std::memcmp(a.data(), b.data(), a.values().size() * sizeof(float)) == 0;
 }
 
 }  // namespace

@@ -2,22 +2,16 @@
 // The network against a plain loop in double, whose gradient is taken by central differences.
 #include "glint/train/mlp.h"
 
-#include "glint/core/parallel.h"
 #include "tests/support/check_vjp.h"
 #include "tests/support/gpu_backends.h"
+#include "tests/support/random_values.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/threads.h"
 
 using namespace glint;
 using namespace glint::test;
 
 namespace {
-
-FloatArray random_array(std::size_t count, std::uint64_t seed) {
-  Rng rng(seed);
-  FloatArray array(count);
-  for (float& value : array) value = rng.uniform(-1, 1);
-  return array;
-}
 
 // parameters: layer after layer, weights [in][out], biases [out].
 Vector plain_outputs(const std::vector<int>& widths, const Vector& parameters, const Vector& x) {
@@ -131,20 +125,16 @@ TEST_CASE("Gradients of weights are added to, those of inputs may be left out") 
 }
 
 TEST_CASE("A network gives the same bytes for any number of threads") {
-  struct RestoreThreads {
-    ~RestoreThreads() { set_num_threads(0); }
-  } restore;
-  const auto run = [](int threads) {
-    set_num_threads(threads);
+  const auto run = [] {
     Fixture f({80, 64, 64, 3}, 3000);
     const FloatArray y = f.net.forward(f.x);
     f.net.backward(f.g, &f.dL_dx);
     f.net.parameters().step(1e-3f);
     return std::vector<FloatArray>{y, f.dL_dx, f.net.parameters().values};
   };
-  const auto one = run(1);
-  CHECK(run(2) == one);
-  CHECK(run(5) == one);
+  const auto one = with_threads(1, run);
+  CHECK(with_threads(2, run) == one);
+  CHECK(with_threads(5, run) == one);
 }
 
 TEST_CASE("The kernels of a network give what the CPU's products give") {

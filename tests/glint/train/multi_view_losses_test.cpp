@@ -91,12 +91,6 @@ double dissimilarity_at(
   return std::clamp(1 - pq * pq / (pp * qq + 1e-8), 0.0, 2.0);
 }
 
-ImageD in_double(const Image& image) {
-  ImageD out(image.width(), image.height(), image.channels());
-  std::copy(image.values().begin(), image.values().end(), out.data());
-  return out;
-}
-
 struct Patches {
   ImageD dL_dnormal, dL_ddistance;
   CountedSum sum;
@@ -314,21 +308,15 @@ TEST_CASE("Both terms are means over the pixels that count, and gradients carry 
 
 TEST_CASE("Two evaluations with one object give the same bytes, with any number of threads") {
   const TwoViews views;
-  MultiViewLosses losses;
-  set_num_threads(1);
-  const LossMaps one = evaluated(views, 0.03);
+  const auto run = [&] { return evaluated(views, 0.03); };
+  const LossMaps one = with_threads(1, run);
   for (const int threads : {2, 5}) {
-    set_num_threads(threads);
-    const LossMaps again = evaluated(views, 0.03);
-    const auto same = [](const Image& a, const Image& b) {
-      return std::equal(a.values().begin(), a.values().end(), b.values().begin());
-    };
-    CHECK(same(one.dL_ddepth, again.dL_ddepth));
-    CHECK(same(one.dL_dother, again.dL_dother));
-    CHECK(same(one.dL_dnormal, again.dL_dnormal));
+    const LossMaps again = with_threads(threads, run);
+    CHECK(same_bytes(one.dL_ddepth, again.dL_ddepth));
+    CHECK(same_bytes(one.dL_dother, again.dL_dother));
+    CHECK(same_bytes(one.dL_dnormal, again.dL_dnormal));
     CHECK(one.terms.geometric == again.terms.geometric);
   }
-  set_num_threads(0);
 }
 
 TEST_CASE("Of many pixels a share of the patches is drawn, the same for a seed") {
@@ -359,42 +347,25 @@ TEST_CASE("Views that see nothing in common have no loss and no gradient") {
 TEST_CASE("Each step of a reprojection has the gradient of its differences") {
   const TwoViews views;
   const auto pair = camera_pair<double>(views.reference, views.neighbor);
-  check_vjp(
-      {0.3, -0.2, 2.1},
-      [&](const Vector& x) {
-        const Vec2d p = pair.neighbor.project(vec3(x, 0));
-        return Vector{p.x, p.y};
-      },
-      [&](const Vector& x, const Vector& g) {
-        Vec3d dL_dp{};
-        pair.neighbor.project_vjp(vec3(x, 0), {g[0], g[1]}, dL_dp);
-        return Vector{dL_dp.x, dL_dp.y, dL_dp.z};
-      }
+  const Vec3d p{0.3, -0.2, 2.1};
+  check_formula(
+      [&](Vec3d x) { return pair.neighbor.project(x); },
+      [&](Vec3d x, Vec2d g, Vec3d& dL_dp) { pair.neighbor.project_vjp(x, g, dL_dp); },
+      p
   );
-  check_vjp(
-      {0.3, -0.2, 2.1, 1.7},
-      [&](const Vector& x) {
-        Vector out;
-        push(out, moved_to_depth(pair, vec3(x, 0), x[3]));
-        return out;
+  check_formula(
+      [&](Vec3d x, double z) { return moved_to_depth(pair, x, z); },
+      [&](Vec3d x, double z, Vec3d g, Vec3d& dL_dp, double& dL_dz) {
+        moved_to_depth_vjp(pair, x, z, g, dL_dp, dL_dz);
       },
-      [&](const Vector& x, const Vector& g) {
-        Vec3d dL_dp{};
-        double dL_dz = 0;
-        moved_to_depth_vjp(pair, vec3(x, 0), x[3], vec3(g, 0), dL_dp, dL_dz);
-        return Vector{dL_dp.x, dL_dp.y, dL_dp.z, dL_dz};
-      }
+      p,
+      1.7
   );
-  check_vjp(
-      {3.2, 4.1},
-      [](const Vector& x) {
-        return Vector{pixel_distance(Vec2d{x[0], x[1]}, Vec2d{3.5, 3.5})};
-      },
-      [](const Vector& x, const Vector& g) {
-        Vec2d dL_da{};
-        pixel_distance_vjp(Vec2d{x[0], x[1]}, Vec2d{3.5, 3.5}, g[0], dL_da);
-        return Vector{dL_da.x, dL_da.y};
-      }
+  const Vec2d at{3.5, 3.5};
+  check_formula(
+      [&](Vec2d a) { return pixel_distance(a, at); },
+      [&](Vec2d a, double g, Vec2d& dL_da) { pixel_distance_vjp(a, at, g, dL_da); },
+      Vec2d{3.2, 4.1}
   );
 }
 

@@ -7,47 +7,12 @@
 #include <utility>
 
 #include "glint/render/activations.h"
-#include "glint/train/densify.h"
 #include "glint/train/pixel_losses.h"
 #include "glint/train/trainable_set.h"
+#include "tests/support/densified_set.h"
 
 using namespace glint;
-
-namespace {
-
-SurfelCloud cloud_of(std::size_t count) {
-  SurfelCloud cloud;
-  cloud.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    cloud.rotations[4 * i] = 1;
-    cloud.means[3 * i] = static_cast<float>(i);
-    cloud.opacity_logits[i] = 1;
-    cloud.log_scales[2 * i] = cloud.log_scales[2 * i + 1] = std::log(0.001f);
-  }
-  return cloud;
-}
-
-// One view that saw every surfel with the given screen gradients.
-void observe(Densifier& densifier, const std::vector<float>& norms) {
-  RasterOutput output;
-  output.in_view.assign(norms.size(), 1);
-  output.alpha = Image(960, 540, 1);  // the size that the threshold is for
-  RasterGradient gradient;
-  for (const float norm : norms)
-    for (const float value : {0.6f * norm, 0.8f * norm}) gradient.screen.push_back(value);
-  densifier.observe(output, gradient);
-}
-
-DensifyConfig every_step() {
-  DensifyConfig config;
-  config.from = 0;
-  config.interval = 1;
-  config.until = 1000;
-  config.reset_interval = 1000;
-  return config;
-}
-
-}  // namespace
+using namespace glint::test;
 
 TEST_CASE("Adam follows its recurrence in double and clears the gradient") {
   SurfelCloud cloud = cloud_of(3), gradient = cloud_of(3);
@@ -116,15 +81,12 @@ TEST_CASE("The position rate falls log-linearly to its final value") {
 }
 
 TEST_CASE("A small surfel with a large gradient is cloned, a large one split, others stay") {
-  SurfelCloud cloud = cloud_of(3);
-  cloud.log_scales[4] = cloud.log_scales[5] = std::log(0.05f);
-  SurfelAdam adam;
-  SurfelCloud gradient;
-  gradient.resize(3);
-  adam.step(cloud, gradient, {}, 1);
-  Densifier densifier(every_step(), 1, 0);
-  observe(densifier, {0, 1, 1});
-  const DensifyCounts counts = densifier.update(1, cloud, adam);
+  SurfelCloud surfels = cloud_of(3);
+  surfels.log_scales[4] = surfels.log_scales[5] = std::log(0.05f);
+  DensifiedSet set(every_step(), surfels);
+  set.observe({1, 1, 1}, {0, 1, 1});
+  const DensifyCounts counts = set.update(1);
+  const SurfelCloud& cloud = set.cloud;
   CHECK(counts.cloned == 1);
   CHECK(counts.split == 1);
   REQUIRE(cloud.size() == 5);  // 0, 1, clone of 1, two children of 2
@@ -134,71 +96,59 @@ TEST_CASE("A small surfel with a large gradient is cloned, a large one split, ot
   // Children lie in the parent's plane (its normal is z).
   CHECK(cloud.means[3 * 3 + 2] == Approx(cloud.means[2]).margin(1e-6));
   CHECK(cloud.means[3 * 3] != cloud.means[3 * 4]);
-  CHECK(adam.first().size() == 5);
+  CHECK(set.adam.first().size() == 5);
 }
 
 TEST_CASE("Faint surfels are pruned and moments keep to their rows") {
-  SurfelCloud cloud = cloud_of(4);
-  cloud.opacity_logits[1] = logit(0.01f);
-  SurfelAdam adam;
-  SurfelCloud gradient = cloud_of(4);
+  SurfelCloud surfels = cloud_of(4), gradient = cloud_of(4);
+  surfels.opacity_logits[1] = logit(0.01f);
+  DensifiedSet set(every_step(), surfels);
   for (std::size_t i = 0; i < 4; ++i) gradient.means[3 * i] = static_cast<float>(i + 1);
-  adam.step(cloud, gradient, {}, 1);
-  Densifier densifier(every_step(), 1, 0);
-  observe(densifier, {0, 0, 0, 0});
-  CHECK(densifier.update(1, cloud, adam).pruned == 1);
-  REQUIRE(cloud.size() == 3);
-  CHECK(adam.first().means[3] == Approx(0.3f));  // surfel 2 moved to row 1
+  set.adam.step(set.cloud, gradient, {}, 1);
+  set.observe({1, 1, 1, 1});
+  CHECK(set.update(1).pruned == 1);
+  REQUIRE(set.cloud.size() == 3);
+  CHECK(set.adam.first().means[3] == Approx(0.3f));  // surfel 2 moved to row 1
 }
 
 TEST_CASE("Large surfels are pruned only after the first opacity reset; resets lower opacities") {
   DensifyConfig config = every_step();
   config.reset_interval = 2;
-  SurfelCloud cloud = cloud_of(2);
-  cloud.log_scales[0] = std::log(0.5f);
-  SurfelAdam adam;
-  SurfelCloud gradient = cloud_of(2);
-  adam.step(cloud, gradient, {}, 1);
-  Densifier densifier(config, 1, 0);
-  observe(densifier, {0, 0});
-  densifier.update(1, cloud, adam);
-  CHECK(cloud.size() == 2);
-  observe(densifier, {0, 0});
-  densifier.update(2, cloud, adam);
-  CHECK(sigmoid(cloud.opacity_logits[1]) == Approx(0.01f));
-  cloud.opacity_logits = {1, 1};
-  observe(densifier, {0, 0});
-  CHECK(densifier.update(3, cloud, adam).pruned == 1);
+  SurfelCloud surfels = cloud_of(2);
+  surfels.log_scales[0] = std::log(kLarge);
+  DensifiedSet set(config, surfels);
+  set.observe({1, 1});
+  set.update(1);
+  CHECK(set.cloud.size() == 2);
+  set.observe({1, 1});
+  set.update(2);
+  CHECK(sigmoid(set.cloud.opacity_logits[1]) == Approx(0.01f));
+  set.cloud.opacity_logits = {1, 1};
+  set.observe({1, 1});
+  CHECK(set.update(3).pruned == 1);
 }
 
 TEST_CASE(
     "The gradient statistic does not depend on the image size for surfels of equal size in pixels"
 ) {
   // Half the rows: every surfel's NDC gradient doubles, and so may the one that just stays below.
-  SurfelCloud cloud = cloud_of(2), gradient = cloud_of(2);
-  SurfelAdam adam;
-  adam.step(cloud, gradient, {}, 1);
-  Densifier densifier(every_step(), 1, 0);
+  DensifiedSet set(every_step(), 2);
   RasterOutput output;
   output.in_view = {1, 1};
   output.alpha = Image(480, 270, 1);
   RasterGradient statistic;
   statistic.screen = {3.8e-4f, 0, 4.2e-4f, 0};
-  densifier.observe(output, statistic);
-  CHECK(densifier.update(1, cloud, adam).cloned == 1);
+  set.densifier.observe(output, statistic);
+  CHECK(set.update(1).cloned == 1);
 }
 
 TEST_CASE("Growth stops at the cap") {
   DensifyConfig config = every_step();
   config.max_surfels = 12;
-  SurfelCloud cloud = cloud_of(10);
-  SurfelAdam adam;
-  SurfelCloud gradient = cloud_of(10);
-  adam.step(cloud, gradient, {}, 1);
-  Densifier densifier(config, 1, 0);
-  observe(densifier, std::vector<float>(10, 1.0f));
-  densifier.update(1, cloud, adam);
-  CHECK(cloud.size() == 12);
+  DensifiedSet set(config, 10);
+  set.observe(std::vector<float>(10, 1.0f), std::vector<float>(10, 1.0f));
+  set.update(1);
+  CHECK(set.cloud.size() == 12);
 }
 
 TEST_CASE("Shorter runs move faster by the fourth root, longer ones as published") {
@@ -218,17 +168,15 @@ TEST_CASE("Without opacity resets opacities stay, and large surfels go as they w
   DensifyConfig config = every_step();
   config.reset_interval = 2;
   config.resets = false;
-  SurfelCloud cloud = cloud_of(2), gradient = cloud_of(2);
-  cloud.log_scales[0] = std::log(0.5f);
-  SurfelAdam adam;
-  adam.step(cloud, gradient, {}, 1);
-  const FloatArray before = cloud.opacity_logits;
-  Densifier densifier(config, 1, 0);
-  observe(densifier, {0, 0});
-  densifier.update(2, cloud, adam);
-  CHECK(cloud.opacity_logits == before);
-  observe(densifier, {0, 0});
-  CHECK(densifier.update(3, cloud, adam).pruned == 1);
+  SurfelCloud surfels = cloud_of(2);
+  surfels.log_scales[0] = std::log(kLarge);
+  DensifiedSet set(config, surfels);
+  const FloatArray before = set.cloud.opacity_logits;
+  set.observe({1, 1});
+  set.update(2);
+  CHECK(set.cloud.opacity_logits == before);
+  set.observe({1, 1});
+  CHECK(set.update(3).pruned == 1);
 }
 
 TEST_CASE("Each extra channel has its own rate") {

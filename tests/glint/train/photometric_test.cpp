@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/photometric.h"
 
-#include "glint/core/parallel.h"
 #include "metrics/ssim.h"
 #include "tests/support/check_vjp.h"
+#include "tests/support/random_values.h"
+#include "tests/support/same_bytes.h"
+#include "tests/support/threads.h"
 
 using namespace glint;
 using namespace glint::test;
 
 namespace {
 
-Image random_image(int width, int height, std::uint64_t seed) {
-  Image image(width, height, 3);
-  Rng rng(seed);
-  for (float& value : image.values()) value = rng.uniform(0.1f, 0.9f);
-  return image;
-}
+Image photo(ImageSize size, std::uint64_t seed) { return random_map(size, 3, 0.1f, 0.9f, seed); }
 
 // The loss in double, straight from its definition: no separable filter, no tricks.
 double loss_by_definition(const Image& x, const Image& y, PhotometricWeights weights) {
@@ -49,8 +46,7 @@ double loss_by_definition(const Image& x, const Image& y, PhotometricWeights wei
 
 TEST_CASE("The photometric loss equals its definition at sizes around the window and the lanes") {
   for (const ImageSize size : {ImageSize{3, 2}, {8, 11}, {19, 13}, {33, 7}}) {
-    const Image x = random_image(size.width, size.height, 1),
-                y = random_image(size.width, size.height, 2);
+    const Image x = photo(size, 1), y = photo(size, 2);
     Image gradient(size.width, size.height, 3);
     const PhotometricWeights weights{0.8f, 0.2f};
     const PhotometricTerms terms = PhotometricLoss().evaluate(x, y, weights, gradient);
@@ -59,8 +55,8 @@ TEST_CASE("The photometric loss equals its definition at sizes around the window
 }
 
 TEST_CASE("The gradient of the photometric loss matches central differences of the definition") {
-  Image x = random_image(17, 12, 1);
-  const Image y = random_image(17, 12, 2);
+  Image x = photo({17, 12}, 1);
+  const Image y = photo({17, 12}, 2);
   Image gradient(17, 12, 3);
   const PhotometricWeights weights{0.8f, 0.2f};
   PhotometricLoss().evaluate(x, y, weights, gradient);
@@ -78,7 +74,7 @@ TEST_CASE("The gradient of the photometric loss matches central differences of t
 }
 
 TEST_CASE("Identical images have no loss, and the gradient is added, not assigned") {
-  const Image x = random_image(20, 20, 1);
+  const Image x = photo({20, 20}, 1);
   Image gradient(20, 20, 3, 5.0f);
   const PhotometricTerms terms = PhotometricLoss().evaluate(x, x, {}, gradient);
   CHECK(terms.l1 == 0.0);
@@ -88,15 +84,15 @@ TEST_CASE("Identical images have no loss, and the gradient is added, not assigne
 }
 
 TEST_CASE("The photometric loss has the same bytes with one and two threads") {
-  const Image x = random_image(50, 41, 1), y = random_image(50, 41, 2);
-  Image one(50, 41, 3), two(50, 41, 3);
-  set_num_threads(1);
-  const PhotometricTerms first = PhotometricLoss().evaluate(x, y, {}, one);
-  set_num_threads(2);
-  const PhotometricTerms second = PhotometricLoss().evaluate(x, y, {}, two);
-  set_num_threads(0);
-  CHECK(first.ssim_loss == second.ssim_loss);
-  CHECK(std::equal(one.values().begin(), one.values().end(), two.values().begin()));
+  const Image x = photo({50, 41}, 1), y = photo({50, 41}, 2);
+  const auto evaluated = [&] {
+    Image gradient(50, 41, 3);
+    const PhotometricTerms terms = PhotometricLoss().evaluate(x, y, {}, gradient);
+    return std::pair(terms.ssim_loss, gradient);
+  };
+  const auto one = with_threads(1, evaluated), two = with_threads(2, evaluated);
+  CHECK(one.first == two.first);
+  CHECK(same_bytes(one.second, two.second));
 }
 
 TEST_CASE("Images of different size are refused") {
@@ -106,8 +102,8 @@ TEST_CASE("Images of different size are refused") {
 
 TEST_CASE("Pixels that do not count are right: no loss of theirs, no gradient, in windows neither"
 ) {
-  const Image y = random_image(17, 12, 2);
-  Image x = random_image(17, 12, 1), counted(17, 12, 1, 1.0f), gradient(17, 12, 3, 5.0f);
+  const Image y = photo({17, 12}, 2);
+  Image x = photo({17, 12}, 1), counted(17, 12, 1, 1.0f), gradient(17, 12, 3, 5.0f);
   for (int row = 3; row < 9; ++row)
     for (int col = 4; col < 11; ++col) counted.at(col, row) = 0;
   const auto with_photo = [&](const Image& image) {

@@ -7,19 +7,7 @@ using namespace glint;
 using namespace glint::test;
 
 TEST_CASE("The normalisation of a composited normal has the gradient of its differences") {
-  check_vjp(
-      {0.3, -0.2, -0.5},
-      [](const Vector& x) {
-        Vector y;
-        push(y, unit_normal(vec3(x, 0)));
-        return y;
-      },
-      [](const Vector& x, const Vector& g) {
-        Vec3d dL_dn{};
-        unit_normal_vjp(vec3(x, 0), vec3(g, 0), dL_dn);
-        return Vector{dL_dn.x, dL_dn.y, dL_dn.z};
-      }
-  );
+  check_formula(unit_normal<double>, unit_normal_vjp<double>, Vec3d{0.3, -0.2, -0.5});
 }
 
 TEST_CASE("No normal stays no normal, without gradient") {
@@ -43,17 +31,11 @@ TEST_CASE("The cosine loss has no value and no gradient below its gate") {
 
 TEST_CASE("Cross-entropy and entropy have the gradients of their differences") {
   for (const double p : {0.02, 0.3, 0.98}) {
-    check_vjp(
-        {p},
-        [](const Vector& x) {
-          return Vector{binary_cross_entropy(x[0], 0.9), binary_entropy(x[0])};
-        },
-        [](const Vector& x, const Vector& g) {
-          double dL_dp = 0;
-          binary_cross_entropy_vjp(x[0], 0.9, g[0], dL_dp);
-          binary_entropy_vjp(x[0], g[1], dL_dp);
-          return Vector{dL_dp};
-        }
+    check_formula(binary_entropy<double>, binary_entropy_vjp<double>, p);
+    check_formula(
+        [](double x) { return binary_cross_entropy(x, 0.9); },
+        [](double x, double g, double& dL_dp) { binary_cross_entropy_vjp(x, 0.9, g, dL_dp); },
+        p
     );
   }
 }
@@ -81,19 +63,14 @@ TEST_CASE("An image edge's weight is the exponential of its mean contrast") {
 }
 
 TEST_CASE("The normal loss has the gradient of its differences, with and without its L1 part") {
+  const Vec3d prior{0.1, 0.7, -0.7};
   for (const double l1 : {0.0, 1.0})
-    check_vjp(
-        {0.5, 0.3, -0.8},
-        [=](const Vector& x) {
-          return Vector{gated_normal_loss(Vec3d{x[0], x[1], x[2]}, Vec3d{0.1, 0.7, -0.7}, 0.2, l1)};
+    check_formula(
+        [=](Vec3d unit) { return gated_normal_loss(unit, prior, 0.2, l1); },
+        [=](Vec3d unit, double g, Vec3d& dL_dunit) {
+          gated_normal_loss_vjp(unit, prior, 0.2, l1, g, dL_dunit);
         },
-        [=](const Vector& x, const Vector& dL_dy) {
-          Vec3d g{};
-          gated_normal_loss_vjp(
-              Vec3d{x[0], x[1], x[2]}, Vec3d{0.1, 0.7, -0.7}, 0.2, l1, dL_dy[0], g
-          );
-          return Vector{g.x, g.y, g.z};
-        }
+        Vec3d{0.5, 0.3, -0.8}
     );
   CHECK(gated_normal_loss(Vec3d{1, 0, 0}, Vec3d{0, 0, -1}, -2.0, 0.5) == Approx(2));
 }

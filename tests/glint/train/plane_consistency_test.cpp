@@ -41,13 +41,6 @@ struct Inputs {
   Image flatness = random_map<float>(size, 1, 0.1f, 1, 6);
 };
 
-template <class From>
-ImageD in_double(const From& image) {
-  ImageD out(image.width(), image.height(), image.channels());
-  std::copy(image.values().begin(), image.values().end(), out.data());
-  return out;
-}
-
 }  // namespace
 
 TEST_CASE("The loss and its gradients are the formula's") {

@@ -11,6 +11,7 @@
 #include "tests/support/gpu_backends.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/threads.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -211,11 +212,7 @@ TEST_CASE("Reflections from a map are the same for any number of threads and on 
     return results;
   };
   check_same_as_cpu(1e-4, run);
-  set_num_threads(1);
-  const auto one = run();
-  set_num_threads(3);
-  CHECK(run() == one);
-  set_num_threads(0);
+  CHECK(with_threads(3, run) == with_threads(1, run));
 }
 
 TEST_CASE("Reflections come back from a file with the same bytes") {

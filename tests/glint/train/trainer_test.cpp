@@ -107,43 +107,54 @@ Scene one_view() {
   return scene;
 }
 
+// In a folder of its own, with a checkpoint after every step.
+struct Training {
+  test::TempFolder temporary;
+  fs::path folder = temporary.path();
+  TrainOptions options;
+
+  explicit Training(int iterations, int log_interval = TrainOptions().log_interval) {
+    set_quiet(true);
+    options.run.iterations = iterations;
+    options.folder = folder;
+    options.log_interval = log_interval;
+    options.checkpoint_seconds = 0;
+  }
+  TrainReport run(Method& method) const { return train(method, one_view(), options); }
+  std::vector<Json> log() const {
+    std::vector<Json> lines;
+    std::istringstream in(read_file(folder / "log.jsonl"));
+    for (std::string line; std::getline(in, line);) lines.push_back(Json::parse(line));
+    return lines;
+  }
+  // A number of each line.
+  std::vector<int> logged(const char* name) const {
+    std::vector<int> numbers;
+    for (const Json& line : log()) numbers.push_back(line.at(name));
+    return numbers;
+  }
+};
+
 }  // namespace
 
 TEST_CASE(
     "A loss that stops being finite ends training, names the term and keeps the last good state"
 ) {
-  set_quiet(true);
-  const test::TempFolder temporary;
-  const fs::path& folder = temporary.path();
+  const Training training(100);
   Exploding method(25);
-  TrainOptions options;
-  options.run.iterations = 100;
-  options.folder = folder;
-  options.checkpoint_seconds = 0;
-  try {
-    train(method, one_view(), options);
-    FAIL("training went on");
-  } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::kBadPrediction);
-    CHECK(std::string(error.what()).find("iteration 25") != std::string::npos);
-    CHECK(std::string(error.what()).find("sharpness") != std::string::npos);
-  }
-  CHECK(steps_in(folder) == count_to(25));
+  const std::string message =
+      test::error_of(ExitCode::kBadPrediction, [&] { training.run(method); });
+  CHECK_THAT(message, Catch::Contains("iteration 25") && Catch::Contains("sharpness"));
+  CHECK(steps_in(training.folder) == count_to(25));
 }
 
 TEST_CASE("A device that is lost ends training with the last checkpoint kept whole") {
-  set_quiet(true);
-  const test::TempFolder temporary;
-  const fs::path& folder = temporary.path();
-  TrainOptions options;
-  options.run.iterations = 100;
-  options.folder = folder;
-  options.checkpoint_seconds = 0;
+  const Training training(100);
   const auto message_of = [&](int in_step, int in_save) {
     Losing method(in_step, in_save);
     return test::error_of(ExitCode::kEnvironment, [&] {
       try {
-        train(method, one_view(), options);
+        training.run(method);
       } catch (const DeviceLost&) {
         throw;  // still known as such
       } catch (...) {
@@ -153,30 +164,22 @@ TEST_CASE("A device that is lost ends training with the last checkpoint kept who
   };
   CHECK_THAT(message_of(0, -1), Catch::Contains("iteration 0, before the first checkpoint: gone"));
   CHECK_THAT(message_of(25, -1), Catch::Contains("iteration 25, the last checkpoint is "));
-  CHECK(steps_in(folder) == count_to(25));
-  fs::remove(folder / kCheckpointFile);
+  CHECK(steps_in(training.folder) == count_to(25));
+  fs::remove(training.folder / kCheckpointFile);
   // Lost while a checkpoint is written: the one before is there.
   CHECK_THAT(message_of(-1, 3), Catch::Contains("iteration 3, the last checkpoint is "));
-  CHECK(steps_in(folder) == count_to(2));
+  CHECK(steps_in(training.folder) == count_to(2));
 }
 
 TEST_CASE("The log has events with their iteration, and the surfels of each of several sets") {
-  set_quiet(true);
-  const test::TempFolder temporary;
+  const Training training(20, 10);
   Exploding method(25);
-  TrainOptions options;
-  options.run.iterations = 20;
-  options.folder = temporary.path();
-  options.log_interval = 10;
-  train(method, one_view(), options);
-  std::istringstream log(read_file(options.folder / "log.jsonl"));
-  std::string first, second;
-  std::getline(log, first);
-  std::getline(log, second);
-  CHECK(Json::parse(first)["events"] == Json({{{"iteration", 3}, {"text", "opacities reset"}}}));
-  CHECK_FALSE(Json::parse(second).contains("events"));
-  CHECK_FALSE(Json::parse(first).contains("sets"));
-  CHECK(Json::parse(second)["sets"] == Json({{"base", 2}, {"environment", 3}}));
+  training.run(method);
+  const std::vector<Json> log = training.log();
+  CHECK(log.at(0)["events"] == Json({{{"iteration", 3}, {"text", "opacities reset"}}}));
+  CHECK_FALSE(log.at(1).contains("events"));
+  CHECK_FALSE(log.at(0).contains("sets"));
+  CHECK(log.at(1)["sets"] == Json({{"base", 2}, {"environment", 3}}));
 }
 
 TEST_CASE("Training without views is refused") {
@@ -208,45 +211,31 @@ TEST_CASE("Published schedules scale with the run's iterations") {
 
 TEST_CASE("A training goes on from the checkpoint of its own run, its log without gaps or repeats"
 ) {
-  set_quiet(true);
-  const test::TempFolder temporary;
-  TrainOptions options;
-  options.run.iterations = 40;
-  options.folder = temporary.path();
-  options.log_interval = 4;
-  options.checkpoint_seconds = 0;
-  options.identity = "this run";
+  Training training(40, 4);
+  training.options.identity = "this run";
   Losing first(25, -1);
-  CHECK_THROWS_AS(train(first, one_view(), options), DeviceLost);
-  const auto log = [&] {
-    std::istringstream in(read_file(options.folder / "log.jsonl"));
-    std::vector<int> iterations;
-    for (std::string line; std::getline(in, line);)
-      iterations.push_back(Json::parse(line).at("iteration").get<int>());
-    return iterations;
-  };
-  CHECK(log() == std::vector<int>{3, 7, 11, 15, 19, 23});
+  CHECK_THROWS_AS(training.run(first), DeviceLost);
+  CHECK(training.logged("iteration") == std::vector<int>{3, 7, 11, 15, 19, 23});
   // As if it had been killed between the log and the checkpoint.
-  append_line(options.folder / "log.jsonl", R"({"iteration": 27})");
-  append_line(options.folder / "log.jsonl", "torn");
+  append_line(training.folder / "log.jsonl", R"({"iteration": 27})");
+  append_line(training.folder / "log.jsonl", "torn");
   SECTION("the same run") {
     Exploding second(-1);
-    const TrainReport report = train(second, one_view(), options);
-    CHECK(report.iterations == 40);
+    CHECK(training.run(second).iterations == 40);
     CHECK(second.steps == count_to(40));
-    CHECK(log() == std::vector<int>{3, 7, 11, 15, 19, 23, 27, 31, 35, 39});
+    CHECK(training.logged("iteration") == std::vector<int>{3, 7, 11, 15, 19, 23, 27, 31, 35, 39});
   }
   SECTION("another run starts anew") {
-    options.identity = "another";
+    training.options.identity = "another";
     Exploding second(-1);
-    train(second, one_view(), options);
+    training.run(second);
     CHECK(second.steps == count_to(40));
   }
   SECTION("a damaged one starts anew") {
-    std::string bytes = read_file(options.folder / kCheckpointFile);
-    write_file(options.folder / kCheckpointFile, bytes.substr(0, bytes.size() - 4));
+    std::string bytes = read_file(training.folder / kCheckpointFile);
+    write_file(training.folder / kCheckpointFile, bytes.substr(0, bytes.size() - 4));
     Exploding second(-1);
-    CHECK(train(second, one_view(), options).iterations == 40);
+    CHECK(training.run(second).iterations == 40);
   }
   SECTION("one of another method starts anew") {
     struct Other final : Exploding {
@@ -257,20 +246,15 @@ TEST_CASE("A training goes on from the checkpoint of its own run, its log withou
         return Exploding::visit_state(state);
       }
     } second;
-    CHECK(train(second, one_view(), options).iterations == 40);
+    CHECK(training.run(second).iterations == 40);
     CHECK(second.steps == count_to(40));
   }
 }
 
 TEST_CASE("Without room for a checkpoint training goes on and the last good one stays") {
-  set_quiet(true);
-  const test::TempFolder temporary;
-  TrainOptions options;
-  options.run.iterations = 3;
-  options.folder = temporary.path();
-  options.checkpoint_seconds = 0;
+  Training training(3);
   Exploding first(-1);
-  train(first, one_view(), options);
+  training.run(first);
   struct Full final : Exploding {
     Full() : Exploding(-1) {}
     bool visit_state(TrainingState& state) override {
@@ -278,51 +262,35 @@ TEST_CASE("Without room for a checkpoint training goes on and the last good one 
       return Exploding::visit_state(state);
     }
   } second;
-  options.run.iterations = 6;
-  train(second, one_view(), options);
+  training.options.run.iterations = 6;
+  training.run(second);
   CHECK(second.steps == count_to(6));
-  CHECK(steps_in(options.folder) == count_to(3));
+  CHECK(steps_in(training.folder) == count_to(3));
 }
 
 TEST_CASE("Steps without room are counted, with the last one's iteration, also by one that goes on"
 ) {
-  set_quiet(true);
-  test::use_host_kernels();
-  const test::TempFolder temporary;
-  TrainOptions options;
-  options.run.iterations = 50;
-  options.folder = temporary.path();
-  options.log_interval = 10;
-  options.checkpoint_seconds = 0;
+  const test::OnHost on_host;
+  const Training training(50, 10);
   const std::set<int> without_room{7, 13, 14, 23, 33};
   // Of 23 the checkpoint, of step 20, knows nothing.
   Cramped first(without_room, 25);
-  CHECK_THROWS_AS(train(first, one_view(), options), DeviceLost);
+  CHECK_THROWS_AS(training.run(first), DeviceLost);
   Cramped second(without_room, -1);
-  const TrainReport report = train(second, one_view(), options);
+  const TrainReport report = training.run(second);
   CHECK(report.void_steps.count == 5);
   CHECK(report.void_steps.last == 33);
-  std::istringstream log(read_file(options.folder / "log.jsonl"));
-  std::vector<int> counts;
-  for (std::string line; std::getline(log, line);)
-    counts.push_back(Json::parse(line).at("void_steps").get<int>());
-  CHECK(counts == std::vector<int>{1, 3, 4, 5, 5});
-  use_cpu();
+  CHECK(training.logged("void_steps") == std::vector<int>{1, 3, 4, 5, 5});
 }
 
 TEST_CASE("Events between a line of the log and a checkpoint stand in the next line") {
-  set_quiet(true);
-  const test::TempFolder temporary;
-  TrainOptions options;
-  options.run.iterations = 10;
-  options.folder = temporary.path();
-  options.log_interval = 10;
-  options.checkpoint_seconds = 0;
+  const Training training(10, 10);
   Losing first(6, -1);  // the event is that of step 3
-  CHECK_THROWS_AS(train(first, one_view(), options), DeviceLost);
+  CHECK_THROWS_AS(training.run(first), DeviceLost);
   Exploding second(-1);
-  train(second, one_view(), options);
-  const Json line = Json::parse(read_file(options.folder / "log.jsonl"));
+  training.run(second);
+  REQUIRE(training.log().size() == 1);
+  const Json line = training.log().front();
   REQUIRE(line.at("events").size() == 1);
   CHECK(line.at("events")[0].at("iteration") == 3);
 }
@@ -358,29 +326,23 @@ Scene with_test_views() {
 
 TEST_CASE("The PSNR of at most eight test views is in the log where it is asked for, else nowhere"
 ) {
-  set_quiet(true);
-  const test::TempFolder temporary;
   const Scene scene = with_test_views();
-  TrainOptions options;
-  options.run.iterations = 20;
-  options.log_interval = 10;
   for (const int every : {0, 8}) {
+    Training training(20, 10);
     White method;
-    options.folder = temporary / std::to_string(every);
-    fs::create_directories(options.folder);
-    options.test_psnr_every = every;
-    train(method, scene, options);
-    std::vector<int> iterations, tested;
-    std::istringstream log(read_file(options.folder / "log.jsonl"));
-    for (std::string line; std::getline(log, line);) {
-      const Json json = Json::parse(line);
-      iterations.push_back(json["iteration"]);
-      if (!json.contains("test_psnr")) continue;
-      tested.push_back(json["iteration"]);
-      CHECK(json["test_psnr"] == 100.0 / 8);  // seven black views, 0 dB, and the white one
+    training.options.test_psnr_every = every;
+    train(method, scene, training.options);
+    std::vector<int> tested;
+    for (const Json& line : training.log()) {
+      if (!line.contains("test_psnr")) continue;
+      tested.push_back(line["iteration"]);
+      CHECK(line["test_psnr"] == 100.0 / 8);  // seven black views, 0 dB, and the white one
     }
     CHECK(method.renders == (every == 0 ? 0 : 3 * 8));
     CHECK(tested == (every == 0 ? std::vector<int>{} : std::vector<int>{7, 15, 19}));
-    CHECK(iterations == (every == 0 ? std::vector<int>{9, 19} : std::vector<int>{7, 9, 15, 19}));
+    CHECK(
+        training.logged("iteration") ==
+        (every == 0 ? std::vector<int>{9, 19} : std::vector<int>{7, 9, 15, 19})
+    );
   }
 }

@@ -85,6 +85,10 @@ struct Store {
     options.load = [](const RunSpec&) { return fake_scene("room_1"); };
   }
   void add(const Record& record) const { append_record(options.folder / "records.jsonl", record); }
+  void add_run(const std::string& method) const {
+    add(record_of("room_1", method));
+    write_run(options.folder, record_of("room_1", method));
+  }
   fs::path write() const {
     const auto records = read_records(options.folder / "records.jsonl");
     std::vector<Table> tables;
@@ -120,8 +124,7 @@ std::size_t count_of(const std::string& text, const std::string& word) {
 
 TEST_CASE("a store becomes pictures, values, scores, curves and commands of every run") {
   const Store store;
-  store.add(record_of("room_1", "fake"));
-  write_run(store.options.folder, record_of("room_1", "fake"));
+  store.add_run("fake");
   store.write();
 
   const Json scene = part(store, "scene_0");
@@ -205,8 +208,7 @@ TEST_CASE("without the data there is no reference, and the renders are shown all
   store.options.load = [](const RunSpec&) -> Scene {
     throw Error(ExitCode::kBadReference, "the folder is gone");
   };
-  store.add(record_of("room_1", "fake"));
-  write_run(store.options.folder, record_of("room_1", "fake"));
+  store.add_run("fake");
   store.write();
   const Json scene = part(store, "scene_0");
   CHECK(scene["note"] == "No reference: the folder is gone");
@@ -258,8 +260,7 @@ TEST_CASE("hostile names stay text") {
 TEST_CASE("a single file needs nothing beside it") {
   Store store;
   store.options.single_file = true;
-  store.add(record_of("room_1", "fake"));
-  write_run(store.options.folder, record_of("room_1", "fake"));
+  store.add_run("fake");
   const std::string page = read_file(store.write());
   CHECK(!fs::exists(store.options.folder / "report" / "assets"));
   CHECK(page.find("src=\"assets") == std::string::npos);
@@ -272,8 +273,7 @@ TEST_CASE("a single file needs nothing beside it") {
 
 TEST_CASE("meshes of a page have as many faces as were asked for, fewer in a single file") {
   Store store;
-  store.add(record_of("room_1", "fake"));
-  write_run(store.options.folder, record_of("room_1", "fake"));
+  store.add_run("fake");
   TriangleMesh fan;  // in steps, so that neighbours can be merged
   for (int i = 0; i < 1000; ++i)
     fan.vertices.push_back({std::sqrt(static_cast<float>(i)), i % 2 ? 0.1f : 0.0f, 0});
@@ -300,8 +300,7 @@ TEST_CASE("a view says how much of it is glass, and methods have their titles") 
     scene.test[0].truth["glass"] = glass;
     return scene;
   };
-  store.add(record_of("room_1", "fake"));
-  write_run(store.options.folder, record_of("room_1", "fake"));
+  store.add_run("fake");
   store.write();
   const Json views = part(store, "scene_0")["views"];
   CHECK(views[0]["glass"].get<double>() == Approx(8.0 / (16 * 12)).epsilon(1e-3));
@@ -395,8 +394,7 @@ TEST_CASE("ten thousand records give a small summary") {
 
 TEST_CASE("a full disk while meshes are written is an error, not a missing mesh") {
   Store store;
-  store.add(record_of("room_1", "fake"));
-  write_run(store.options.folder, record_of("room_1", "fake"));
+  store.add_run("fake");
   Rng rng(1);  // noise does not compress
   TriangleMesh noise;
   for (int i = 0; i < 60'000; ++i)

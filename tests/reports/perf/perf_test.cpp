@@ -99,9 +99,8 @@ TEST_CASE("LPIPS is timed on a GPU alone") {
   PerfOptions options = small_options();
   options.only = "LPIPS*";
   CHECK_THROWS_WITH(make_perf_cases(options), Catch::Contains("fits no op"));
-  test::use_host_kernels();
+  const test::OnHost on_host;
   CHECK(make_perf_cases(options).size() == 1);
-  use_cpu();
 }
 
 TEST_CASE("the timed scene can be written for other programs to be timed on") {

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/table_parts.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -10,11 +11,7 @@ using namespace glint;
 namespace {
 
 Record record_of(std::uint64_t seed, std::map<std::string, double> metrics) {
-  Record record;
-  record.dataset = "glassroom";
-  record.cell = {"room_1", "2dgs", seed};
-  record.metrics = std::move(metrics);
-  return record;
+  return test::record_of({"room_1", "2dgs", seed}, std::move(metrics));
 }
 
 // One metric, a record a seed.

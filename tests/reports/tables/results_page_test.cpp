@@ -3,7 +3,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/table_parts.h"
+
 using namespace glint;
+using namespace glint::test;
 
 TEST_CASE("docs/RESULTS.md and the README's table are what the committed records give") {
   const ResultsInfo info = read_results_info(results_parts(".").front());
@@ -25,10 +28,7 @@ TEST_CASE("Results stand between the README's markers, and nothing else changes"
 }
 
 TEST_CASE("The page says which revision trained and which scored") {
-  Record record;
-  record.dataset = "glassroom";
-  record.cell = {"room_1", "glint", 0};
-  record.metrics = {{"psnr", 30.0}};
+  Record record = record_of("glint", 30);
   record.warnings = {"trained by revision abc1234"};
   record.environment = {{"git_revision", "def5678"}, {"date", "2026-01-01T00:00:00Z"}};
   const std::string page = results_part({"r.jsonl", "glint-bench all", "a remark"}, {record});
@@ -39,9 +39,7 @@ TEST_CASE("The page says which revision trained and which scored") {
 }
 
 TEST_CASE("The page says that cells shared a card") {
-  Record record;
-  record.cell = {"room_1", "glint", 0};
-  record.metrics = {{"psnr", 30.0}};
+  Record record = record_of("glint", 30);
   record.environment = {{"device", "a card"}, {"cells_on_card", 6}};
   CHECK_THAT(
       results_part({"r.jsonl", "glint-bench all", ""}, {record}),
@@ -50,10 +48,7 @@ TEST_CASE("The page says that cells shared a card") {
 }
 
 TEST_CASE("A part of the page may have a title and some tables alone") {
-  Record record;
-  record.dataset = "glassroom";
-  record.cell = {"room_1", "glint", 0};
-  record.metrics = {{"psnr", 30.0}};
+  const Record record = record_of("glint", 30);
   const ResultsInfo info{"r.jsonl", "glint-bench all", "", "Captures", {"summary"}};
   const std::string part = results_part(info, {record});
   CHECK(part.starts_with("# Captures\n\n- Command"));

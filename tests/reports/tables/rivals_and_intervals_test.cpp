@@ -14,13 +14,8 @@ namespace {
 
 // Two rooms, one seed.
 void add_rooms(std::vector<Record>& records, const std::string& method, double psnr) {
-  for (const char* room : {"room_1", "room_2"}) {
-    Record record;
-    record.dataset = "glassroom";
-    record.cell = {room, method, 0};
-    record.metrics["psnr"] = psnr;
-    records.push_back(record);
-  }
+  for (const char* room : {"room_1", "room_2"})
+    records.push_back(record_of({room, method, 0}, {{"psnr", psnr}}));
 }
 
 }  // namespace
@@ -69,11 +64,7 @@ TEST_CASE("a method that was given the truth has no say in the scenes of means")
 TEST_CASE("means have an interval over scenes and seeds in every format, from three pairs on") {
   std::vector<Record> records;
   const auto add = [&](const char* room, std::uint64_t seed, double psnr) {
-    Record record;
-    record.dataset = "glassroom";
-    record.cell = {room, "2dgs", seed};
-    record.metrics["psnr"] = psnr;
-    records.push_back(record);
+    records.push_back(record_of({room, "2dgs", seed}, {{"psnr", psnr}}));
   };
   const auto table = [&] { return build_table(definition_of("table1_photometric"), records); };
   add("a", 0, 30);
