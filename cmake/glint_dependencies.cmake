@@ -70,20 +70,14 @@ add_library(bullet INTERFACE)
 target_include_directories(bullet SYSTEM INTERFACE ${BULLET_INCLUDE_DIRS})
 target_link_libraries(bullet INTERFACE ${BULLET_LIBRARIES})
 
-# minizip (tests write zips with it) has no CMake config; oneDNN's wants OpenCL's headers, which its CPU engine does not need.
-macro(glint_find_library name header library)
-  find_path(GLINT_${name}_INCLUDE ${header} REQUIRED)
-  find_library(GLINT_${name} ${library} REQUIRED)
-  add_library(${name} UNKNOWN IMPORTED)
-  set_target_properties(
-    ${name} PROPERTIES IMPORTED_LOCATION ${GLINT_${name}} INTERFACE_INCLUDE_DIRECTORIES
-                                                          ${GLINT_${name}_INCLUDE}
-  )
-endmacro()
-if(GLINT_TESTS)
-  glint_find_library(minizip minizip/zip.h minizip)
-endif()
-glint_find_library(onednn oneapi/dnnl/dnnl.hpp dnnl)
+# oneDNN's own config wants OpenCL's headers, which its CPU engine does not need.
+find_path(GLINT_onednn_INCLUDE oneapi/dnnl/dnnl.hpp REQUIRED)
+find_library(GLINT_onednn dnnl REQUIRED)
+add_library(onednn UNKNOWN IMPORTED)
+set_target_properties(
+  onednn PROPERTIES IMPORTED_LOCATION ${GLINT_onednn} INTERFACE_INCLUDE_DIRECTORIES
+                                                      ${GLINT_onednn_INCLUDE}
+)
 
 # Letters and lines: pango places them, cairo draws them, as pixels and as PDF.
 find_package(PkgConfig REQUIRED)

@@ -12,7 +12,7 @@ namespace {
 int out_extent(int extent, const FeatureStep& step) {
   const int room = extent + 2 * step.padding - step.kernel;
   if (room < 0) return 0;
-  return (room + (step.round_up ? step.stride - 1 : 0)) / step.stride + 1;
+  return room / step.stride + 1;
 }
 
 int reach_beyond(int in, int out, const FeatureStep& step) {

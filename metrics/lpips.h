@@ -28,7 +28,7 @@ struct LpipsProtocol {
   static constexpr bool clamp = true;
   template <class V>
   void visit(V&& v) {
-    v("network", network, "alex, squeeze or vgg");
+    v("network", network, "alex or vgg");
     v("range", range, "of what the network is fed");
     v("mean", mean, "spatial mean");
     v("clamp", clamp, "the prediction is clamped to [0, 1]");

@@ -6,21 +6,20 @@
 #include "glint/core/error.h"
 #include "glint/core/progress.h"
 #include "glint/core/sha256.h"
+#include "glint/scene/safetensors.h"
 #include "metrics/lpips_weights.h"
 
 namespace glint {
 namespace {
 
-std::size_t num_known_names(const LpipsNetwork& network, const NpzArrays& arrays) {
+std::size_t num_known_names(const LpipsNetwork& network, const LpipsArrays& arrays) {
   std::size_t count = 0;
-  for (const LpipsLayer& layer : network.layers)
-    count +=
-        arrays.contains(layer.name + ".weight") + arrays.contains(layer.name + ".squeeze.weight");
+  for (const LpipsLayer& layer : network.layers) count += arrays.contains(layer.name + ".weight");
   return count;
 }
 
 // The network most of whose layers have arrays.
-const LpipsNetwork& recognise(const NpzArrays& arrays, const fs::path& path) {
+const LpipsNetwork& recognise(const LpipsArrays& arrays, const fs::path& path) {
   const auto& networks = lpips_networks();
   const auto best = std::max_element(
       networks.begin(),
@@ -39,10 +38,28 @@ const LpipsNetwork& recognise(const NpzArrays& arrays, const fs::path& path) {
   return *best;
 }
 
+LpipsArrays read_arrays(const fs::path& path) {
+  GLINT_CHECK(
+      path.extension() != ".npz",
+      kBadReference,
+      "{0}: weights are .safetensors files now; make one of this one by "
+      "scripts/convert_lpips_weights.py --npz {0}, or run scripts/fetch_lpips_weights.sh again, "
+      "which takes what it has downloaded",
+      path.string()
+  );
+  SafetensorsFile file(path);
+  LpipsArrays arrays;
+  for (const std::string& name : file.names()) {
+    const std::vector<std::size_t> shape = file.find(name)->shape;
+    arrays[name] = {shape, file.read<float>(name, shape)};
+  }
+  return arrays;
+}
+
 }  // namespace
 
 LpipsWeights load_lpips_weights(const fs::path& path) {
-  const NpzArrays arrays = read_npz(path);
+  const LpipsArrays arrays = read_arrays(path);
   const std::string where = path.string();
   LpipsWeights weights = make_lpips_weights(recognise(arrays, path), arrays, where);
   weights.sha256 = sha256(read_file(path));
@@ -72,7 +89,8 @@ std::shared_ptr<const LpipsWeights> lpips_weights_at(const fs::path& place, std:
   std::error_code code;
   const bool folder = fs::is_directory(place, code);
   if (folder && network.empty()) network = "alex";
-  const fs::path file = folder ? place / fmt::format("lpips_{}_v0.1.npz", network) : place;
+  fs::path file = folder ? place / fmt::format("lpips_{}_v0.1.safetensors", network) : place;
+  if (folder && !fs::exists(file, code)) file.replace_extension(".npz");  // says what to do
   if (!fs::exists(file, code)) return nullptr;
   try {
     auto weights = std::make_shared<const LpipsWeights>(load_lpips_weights(file));

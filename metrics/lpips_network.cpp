@@ -21,24 +21,6 @@ Layers alex_layers() {
       convolution("features.10", 256, 3, 1, 1).tapped()};
 }
 
-// [Iandola16], version 1.1.
-Layers squeeze_layers() {
-  const LpipsLayer pool = max_pool(3, 2, true);
-  return {
-      convolution("features.0", 64, 3, 2, 0).tapped(),
-      pool,
-      fire("features.3", 16, 64),
-      fire("features.4", 16, 64).tapped(),
-      pool,
-      fire("features.6", 32, 128),
-      fire("features.7", 32, 128).tapped(),
-      pool,
-      fire("features.9", 48, 192).tapped(),
-      fire("features.10", 48, 192).tapped(),
-      fire("features.11", 64, 256).tapped(),
-      fire("features.12", 64, 256).tapped()};
-}
-
 // [Simonyan15], configuration D.
 Layers vgg_layers() {
   const LpipsLayer pool = max_pool(2, 2);
@@ -75,25 +57,11 @@ LpipsLayer convolution(std::string name, int channels, int kernel, int stride, i
   return layer;
 }
 
-LpipsLayer fire(std::string name, int squeeze, int expand) {
-  LpipsLayer layer = convolution(std::move(name), 2 * expand, 3, 1, 1);
-  layer.kind = LpipsLayer::Kind::kFire;
-  layer.squeeze = squeeze;
-  return layer;
-}
-
-LpipsLayer max_pool(int kernel, int stride, bool round_up) {
-  LpipsLayer layer = convolution({}, 0, kernel, stride, 0);
-  layer.kind = LpipsLayer::Kind::kMaxPool;
-  layer.round_up = round_up;
-  return layer;
-}
+LpipsLayer max_pool(int kernel, int stride) { return convolution({}, 0, kernel, stride, 0); }
 
 const std::vector<LpipsNetwork>& lpips_networks() {
   static const std::vector<LpipsNetwork> networks = {
-      {"alex", "AlexNet", alex_layers()},
-      {"squeeze", "SqueezeNet 1.1", squeeze_layers()},
-      {"vgg", "VGG16", vgg_layers()}};
+      {"alex", "AlexNet", alex_layers()}, {"vgg", "VGG16", vgg_layers()}};
   return networks;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The convolutional networks of LPIPS [Zhang18] as chains of layers, with the names of
-// torchvision's `features` (AlexNet, SqueezeNet 1.1, VGG16), up to the last layer that LPIPS looks
-// at.
+// torchvision's `features` (AlexNet, VGG16), up to the last layer that LPIPS looks at.
 #pragma once
 
 #include <string>
@@ -10,20 +9,14 @@
 
 namespace glint {
 
+// A convolution with bias, followed by ReLU, or the largest of each window.
 struct LpipsLayer {
-  enum class Kind {
-    kConvolution,  // with bias, followed by ReLU
-    kFire,         // [Iandola16]: 1x1 squeeze, then 1x1 and 3x3 expansions side by side, ReLU each
-    kMaxPool
-  };
-  Kind kind = Kind::kConvolution;
   std::string name;  // "features.3"; empty: pooling
   int channels = 0;  // of the output; 0: as the input
   int kernel = 3, stride = 1, padding = 0;
-  int squeeze = 0;        // channels between (kFire)
-  bool round_up = false;  // windows may leave the image at its end (kMaxPool)
-  bool tap = false;       // LPIPS compares its output
+  bool tap = false;  // LPIPS compares its output
 
+  bool pools() const { return name.empty(); }
   LpipsLayer tapped() const {
     LpipsLayer layer = *this;
     layer.tap = true;
@@ -38,11 +31,9 @@ struct LpipsNetwork {
 };
 
 LpipsLayer convolution(std::string name, int channels, int kernel, int stride, int padding);
-// `expand`: channels of each of the two expansions.
-LpipsLayer fire(std::string name, int squeeze, int expand);
-LpipsLayer max_pool(int kernel, int stride, bool round_up = false);
+LpipsLayer max_pool(int kernel, int stride);
 
-// alex, squeeze, vgg.
+// alex, vgg.
 const std::vector<LpipsNetwork>& lpips_networks();
 
 }  // namespace glint

@@ -1,28 +1,33 @@
 // SPDX-License-Identifier: MIT
-// The weights of an LPIPS network, a file that the user has (scripts/convert_lpips_weights.py makes
-// it). Arrays are named as in the published files: features.N.weight [out][in][k][k],
-// features.N.bias [out], linK.weight [channels] of the K-th tap.
+// The weights of an LPIPS network, a file of safetensors that the user has
+// (scripts/convert_lpips_weights.py makes it). Arrays are named as in the published files:
+// features.N.weight [out][in][k][k], features.N.bias [out], linK.weight [channels] of the K-th tap.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "glint/core/files.h"
 #include "metrics/lpips_network.h"
-#include "metrics/npz.h"
 
 namespace glint {
 
-// One step of the chain, ready to run: fire modules are two convolutions.
+// One step of the chain, ready to run.
 struct FeatureStep {
   bool pools = false;  // max pooling; otherwise a convolution with bias and ReLU
   int in_channels = 3, out_channels = 3;
   int kernel = 1, stride = 1, padding = 0;
-  bool round_up = false;
   bool tap = false;
   std::vector<float> weight, bias;  // [out][in][kernel][kernel], [out]
 };
+
+struct LpipsArray {
+  std::vector<std::size_t> shape;
+  std::vector<float> values;
+};
+using LpipsArrays = std::map<std::string, LpipsArray>;  // by name
 
 struct LpipsWeights {
   std::string network;  // "alex"
@@ -38,19 +43,21 @@ struct LpipsWeights {
 // Errors (kBadReference): a missing or unknown name, another shape, negative lin weights or values
 // that are not finite. `where` opens messages.
 LpipsWeights make_lpips_weights(
-    const LpipsNetwork& network, const NpzArrays& arrays, const std::string& where
+    const LpipsNetwork& network, const LpipsArrays& arrays, const std::string& where
 );
 
 // Which network it is, the names say. Warns where the checksum is not known: values are then not
-// comparable with published ones. Errors: as above, and of read_npz().
+// comparable with published ones. Errors: as above, and of
+// SafetensorsFile.
 LpipsWeights load_lpips_weights(const fs::path& path);
 
 // Where weights are looked for: the file or folder that GLINT_LPIPS_WEIGHTS names, otherwise
 // $XDG_CACHE_HOME/glint-bench/lpips (~/.cache/...). Empty: no home either.
 fs::path lpips_weights_place();
-// The weights of `network` in a place: a file, or lpips_<network>_v0.1.npz in a folder. Nothing
-// where there is no such file, or the file is of another network. An empty `network` means the
-// file's own, in a folder alex. Errors (kEnvironment): a file that cannot be used.
+// The weights of `network` in a place: a file, or lpips_<network>_v0.1.safetensors in a folder.
+// Nothing where there is no such file, or the file is of another network. An empty `network` means
+// the file's own, in a folder alex. Errors (kEnvironment): a file that cannot be used, an .npz of
+// earlier versions.
 std::shared_ptr<const LpipsWeights> lpips_weights_at(const fs::path& place, std::string network);
 
 }  // namespace glint

@@ -2,33 +2,36 @@
 # SPDX-License-Identifier: MIT
 """Makes the weights file of glint-lpips from the published files, which you download yourself:
 
-  features   torchvision: alexnet-owt-*.pth, squeezenet1_1-*.pth or vgg16-*.pth
-  lin        LPIPS 0.1: lpips/weights/v0.1/{alex,squeeze,vgg}.pth of the PerceptualSimilarity repository
+  features   torchvision: alexnet-owt-*.pth or vgg16-*.pth
+  lin        LPIPS 0.1: lpips/weights/v0.1/{alex,vgg}.pth of the PerceptualSimilarity repository
 
   convert_lpips_weights.py --net alex --features alexnet-owt-7be5be79.pth --lin alex.pth \\
       --out ~/.cache/glint-bench/lpips
 
-scripts/fetch_lpips_weights.sh downloads and converts all of them. Needs neither PyTorch nor NumPy. The result,
-lpips_<net>_v0.1.npz, holds the same bytes whenever it is made. Sums: torchvision's files have the first digits of their
-SHA-256 in their names; AlexNet's and SqueezeNet's arrays are known as a whole, VGG16's are not.
+or, beside it, from the .npz that earlier versions made: convert_lpips_weights.py --npz FILE.
+
+scripts/fetch_lpips_weights.sh downloads and converts both. Needs neither PyTorch nor NumPy. The result,
+lpips_<net>_v0.1.safetensors, holds the same bytes whenever it is made. Sums: torchvision's files have the first digits of
+their SHA-256 in their names; AlexNet's arrays are known as a whole, VGG16's are not.
 """
 import argparse
+import ast
 import hashlib
+import json
+import math
 import pathlib
 import re
 import struct
 import sys
 import zipfile
 
-from torch_files import BadFile, tensors
+from torch_files import BadFile, floats_of, tensors
 
-NUM_TAPS = {"alex": 5, "squeeze": 7, "vgg": 5}
-FIRST_SHAPE = {"alex": (64, 3, 11, 11), "squeeze": (64, 3, 3, 3), "vgg": (64, 3, 3, 3)}
+NUM_TAPS = 5
+FIRST_SHAPE = {"alex": (64, 3, 11, 11), "vgg": (64, 3, 3, 3)}
 KNOWN_ARRAYS = {  # SHA-256 of names and values, as metrics/lpips_weights.cpp has them
     "alex": "0ef71af41cc957e07f0eaf349e2ec748453cce1a8f60ed9a6c878328338496a7",
-    "squeeze": "2ca1ac118a52387307bd9d1c829d83b8f5c2214a4e6569e89b1a149ef5a2c533",
 }
-EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date that a zip can hold
 
 
 def fail(message):
@@ -62,23 +65,32 @@ def feature_arrays(path, net):
 def lin_arrays(path, net):
     state = arrays_in(path)
     arrays = {}
-    for tap in range(NUM_TAPS[net]):
+    for tap in range(NUM_TAPS):
         name = f"lin{tap}.model.1.weight"
         if name not in state:
             fail(f"{path}: no '{name}'; expected the v0.1 file of {net}")
         _, values = state[name]  # [1][channels][1][1]
         arrays[f"lin{tap}.weight"] = ((len(values),), values)
-    if f"lin{NUM_TAPS[net]}.model.1.weight" in state:
-        fail(f"{path}: more than {NUM_TAPS[net]} taps; this is not the file of {net}")
+    if f"lin{NUM_TAPS}.model.1.weight" in state:
+        fail(f"{path}: more than {NUM_TAPS} taps; this is not the file of {net}")
     return arrays
 
 
-def npy_bytes(shape, values):
-    """A float32 array in NumPy's format 1.0: values start at a multiple of 64 bytes."""
-    text = ", ".join(map(str, shape)) + ("," if len(shape) == 1 else "")
-    header = f"{{'descr': '<f4', 'fortran_order': False, 'shape': ({text}), }}"
-    header += " " * (-(10 + len(header) + 1) % 64) + "\n"
-    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + little_endian(values)
+def npz_arrays(path):
+    """Of NumPy's zip of arrays, float32 in C order."""
+    arrays = {}
+    try:
+        archive = zipfile.ZipFile(path)
+        for name in archive.namelist():
+            data = archive.read(name)
+            (length,) = struct.unpack_from("<H", data, 8)  # of the header of format 1.0
+            header = ast.literal_eval(data[10:10 + length].decode("latin-1"))
+            arrays[name.removesuffix(".npy")] = (tuple(header["shape"]), floats_of(data[10 + length:]))
+            if header["descr"] != "<f4" or header["fortran_order"]:
+                raise BadFile(f"{name}: not float32 in C order")
+    except (OSError, ValueError, SyntaxError, KeyError, TypeError, struct.error, zipfile.BadZipFile, BadFile) as error:
+        raise BadFile(f"{path}: no .npz of LPIPS weights: {error}") from None
+    return arrays
 
 
 def little_endian(values):
@@ -100,29 +112,46 @@ def check_known(arrays, net):
              "download the files again, or give --unpublished")
 
 
-def write_npz(path, arrays):
+def write_safetensors(path, arrays):
+    header, at = {}, 0
+    for name, (shape, values) in arrays.items():
+        if math.prod(shape) != len(values):
+            fail(f"{name}: {len(values)} values do not fill {shape}")
+        header[name] = {"dtype": "F32", "shape": shape, "data_offsets": (at, at + 4 * len(values))}
+        at += 4 * len(values)
+    text = json.dumps(header).encode()
+    text += b" " * (-len(text) % 8)
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_suffix(".tmp")
-    with zipfile.ZipFile(temporary, "w") as archive:
-        for name, (shape, values) in arrays.items():
-            archive.writestr(zipfile.ZipInfo(f"{name}.npy", EPOCH), npy_bytes(shape, values))
+    with open(temporary, "wb") as file:
+        file.write(struct.pack("<Q", len(text)) + text)
+        for _, values in arrays.values():
+            file.write(little_endian(values))
     temporary.replace(path)
 
 
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--net", required=True, choices=sorted(NUM_TAPS))
-    parser.add_argument("--features", required=True, type=pathlib.Path, help="torchvision's .pth file")
-    parser.add_argument("--lin", required=True, type=pathlib.Path, help="the .pth file of LPIPS 0.1")
-    parser.add_argument("--out", default=".", type=pathlib.Path, help="folder of the result")
+    parser.add_argument("--net", choices=sorted(FIRST_SHAPE))
+    parser.add_argument("--features", type=pathlib.Path, help="torchvision's .pth file")
+    parser.add_argument("--lin", type=pathlib.Path, help="the .pth file of LPIPS 0.1")
+    parser.add_argument("--npz", type=pathlib.Path, help="lpips_<net>_v0.1.npz, instead of the other three")
+    parser.add_argument("--out", type=pathlib.Path, help="folder of the result; otherwise the .npz's, or this one")
     parser.add_argument("--unpublished", action="store_true", help="take weights that are not those of LPIPS 0.1")
     options = parser.parse_args()
-    arrays = feature_arrays(options.features, options.net) | lin_arrays(options.lin, options.net)
+    if options.npz:
+        net = "alex" if "lpips_alex" in options.npz.name else "vgg"
+        arrays, out = npz_arrays(options.npz), options.out or options.npz.parent
+    elif options.net and options.features and options.lin:
+        net, out = options.net, options.out or pathlib.Path(".")
+        arrays = feature_arrays(options.features, net) | lin_arrays(options.lin, net)
+    else:
+        parser.error("give --net, --features and --lin, or --npz")
     if not options.unpublished:
-        check_known(arrays, options.net)
-    path = options.out.expanduser() / f"lpips_{options.net}_v0.1.npz"
-    write_npz(path, arrays)
+        check_known(arrays, net)
+    path = out.expanduser() / f"lpips_{net}_v0.1.safetensors"
+    write_safetensors(path, arrays)
     print(path)
 
 

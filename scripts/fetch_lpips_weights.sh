@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Downloads the published weights of LPIPS 0.1, checks their sums and converts them for glint-bench and glint-lpips:
-#   scripts/fetch_lpips_weights.sh [--out FOLDER] [--downloads FOLDER] [alex] [squeeze] [vgg]
-# Without a name: all three. VGG16's file has 528 MB, the others 233 MB and 5 MB. FOLDER is by default where they are looked
+#   scripts/fetch_lpips_weights.sh [--out FOLDER] [--downloads FOLDER] [alex] [vgg]
+# Without a name: both. VGG16's file has 528 MB, AlexNet's 233 MB. FOLDER is by default where they are looked
 # for: $GLINT_LPIPS_WEIGHTS, else ~/.cache/glint-bench/lpips. Files that lie in the folder of downloads already (fetched on another
 # machine, say) are taken. Without a network it says which file to put where, and exits with 6.
 # Licences: the linear layers BSD-2-Clause (R. Zhang et al., PerceptualSimilarity), the networks BSD-3-Clause
@@ -13,12 +13,12 @@ while [ $# -gt 0 ]; do
   case $1 in
     --out) out=$2; shift 2 ;;
     --downloads) downloads=$2; shift 2 ;;
-    alex | squeeze | vgg) nets+=("$1"); shift ;;
+    alex | vgg) nets+=("$1"); shift ;;
     *) sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 1 ;;
   esac
 done
 [ ! -f "$out" ] || out=$(dirname "$out")
-[ ${#nets[@]} -gt 0 ] || nets=(alex squeeze vgg)
+[ ${#nets[@]} -gt 0 ] || nets=(alex vgg)
 downloads=${downloads:-$out/downloads}
 command -v python3 >/dev/null || { echo "fetch_lpips_weights: python3 is missing" >&2; exit 6; }
 
@@ -27,7 +27,6 @@ linear=${GLINT_LPIPS_LINEAR:-https://raw.githubusercontent.com/richzhang/Percept
 features_of() {
   case $1 in
     alex) echo alexnet-owt-7be5be79.pth ;;
-    squeeze) echo squeezenet1_1-b8a52dc0.pth ;;
     vgg) echo vgg16-397923af.pth ;;
   esac
 }

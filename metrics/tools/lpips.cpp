@@ -13,12 +13,12 @@ class LpipsTool final : public MetricTool {
  public:
   std::string name() const override { return "glint-lpips"; }
   std::string description() const override {
-    return "LPIPS 0.1: distance in the features of AlexNet, SqueezeNet 1.1 or VGG16. Weights are a "
+    return "LPIPS 0.1: distance in the features of AlexNet or VGG16. Weights are a "
            "file of yours: scripts/fetch_lpips_weights.sh fetches them, "
            "scripts/convert_lpips_weights.py makes one of downloaded files.";
   }
   std::string example() const override {
-    return "glint-lpips renders/ images/ --weights lpips_alex_v0.1.npz --mask masks/";
+    return "glint-lpips renders/ images/ --weights lpips_alex_v0.1.safetensors --mask masks/";
   }
   FolderLayout prediction_layout() const override { return {{"renders"}, {"rgb.exr", "rgb.png"}}; }
   std::string reference_map() const override { return "rgb"; }
@@ -30,11 +30,11 @@ class LpipsTool final : public MetricTool {
     app.add_option(
         "--weights",
         place_,
-        "npz file, or folder of lpips_<net>_v0.1.npz; otherwise GLINT_LPIPS_WEIGHTS, then "
+        "file, or folder of lpips_<net>_v0.1.safetensors; otherwise GLINT_LPIPS_WEIGHTS, then "
         "~/.cache/glint-bench/lpips"
     );
-    app.add_option("--net", network_, "alex, squeeze or vgg; otherwise the file's, or alex")
-        ->check(CLI::IsMember({"alex", "squeeze", "vgg"}));
+    app.add_option("--net", network_, "alex or vgg; otherwise the file's, or alex")
+        ->check(CLI::IsMember({"alex", "vgg"}));
     app.add_option(
            "--range", range_, "lpips: the network is fed [-1, 1]; 3dgs: [0, 1], as 3DGS does"
     )
@@ -50,7 +50,8 @@ class LpipsTool final : public MetricTool {
         weights != nullptr,
         kEnvironment,
         "no LPIPS weights of {0} at '{1}'; scripts/fetch_lpips_weights.sh fetches them, or make "
-        "lpips_{0}_v0.1.npz with scripts/convert_lpips_weights.py and put it there, or name it by "
+        "lpips_{0}_v0.1.safetensors with scripts/convert_lpips_weights.py and put it there, or "
+        "name it by "
         "--weights or GLINT_LPIPS_WEIGHTS",
         network,
         place.string()

@@ -36,10 +36,7 @@ struct Variant {
   LpipsProtocol protocol() const { return {network, range}; }
 };
 constexpr Variant kVariants[] = {
-    {"alex", LpipsRange::kSymmetric},
-    {"squeeze", LpipsRange::kSymmetric},
-    {"vgg", LpipsRange::kSymmetric},
-    {"vgg", LpipsRange::kUnit}};
+    {"alex", LpipsRange::kSymmetric}, {"vgg", LpipsRange::kSymmetric}, {"vgg", LpipsRange::kUnit}};
 
 using WeightsByNetwork = std::map<std::string, std::shared_ptr<const LpipsWeights>>;
 

@@ -12,10 +12,11 @@ namespace glint {
 
 namespace {
 
-NpzArray random_weights(Rng& rng, std::vector<std::int64_t> shape, float low, float high) {
+LpipsArray random_weights(Rng& rng, const std::vector<int>& shape, float low, float high) {
+  LpipsArray array{{shape.begin(), shape.end()}, {}};
   std::size_t count = 1;
-  for (const std::int64_t extent : shape) count *= static_cast<std::size_t>(extent);
-  NpzArray array{std::move(shape), std::vector<float>(count)};
+  for (const std::size_t extent : array.shape) count *= extent;
+  array.values.resize(count);
   for (float& value : array.values) value = rng.uniform(low, high);
   return array;
 }
@@ -23,10 +24,10 @@ NpzArray random_weights(Rng& rng, std::vector<std::int64_t> shape, float low, fl
 // Of a network of convolutions and poolings; features neither grow nor die out on the way.
 LpipsWeights random_lpips_weights(const LpipsNetwork& network) {
   Rng rng(1);
-  NpzArrays arrays;
+  LpipsArrays arrays;
   int channels = 3, num_taps = 0;
   for (const LpipsLayer& layer : network.layers) {
-    if (layer.kind == LpipsLayer::Kind::kMaxPool) continue;
+    if (layer.pools()) continue;
     const int kernel = layer.kernel;
     const float bound = std::sqrt(6.0f / static_cast<float>(channels * kernel * kernel));
     arrays[layer.name + ".weight"] =

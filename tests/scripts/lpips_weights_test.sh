@@ -45,7 +45,23 @@ convert --features features.pth --out none >said 2>&1 && fail "made-up weights p
 grep -q "other values than those that were published" said && [ ! -e none ] || fail "$(cat said)"
 convert --features features.pth --out a --unpublished >/dev/null
 convert --features features_row.pth --out b --unpublished >/dev/null
-cmp a/lpips_alex_v0.1.npz b/lpips_alex_v0.1.npz || fail "the two formats gave other bytes"
+cmp a/lpips_alex_v0.1.safetensors b/lpips_alex_v0.1.safetensors || fail "the two formats gave other bytes"
+python3 - <<'PYTHON'
+import json, struct, zipfile
+data = open("a/lpips_alex_v0.1.safetensors", "rb").read()
+(length,) = struct.unpack_from("<Q", data)
+with zipfile.ZipFile("lpips_alex_v0.1.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+    for name, tensor in json.loads(data[8:8 + length]).items():
+        begin, end = tensor["data_offsets"]
+        header = repr({"descr": "<f4", "fortran_order": False, "shape": tuple(tensor["shape"])}).encode()
+        values = data[8 + length + begin:8 + length + end]
+        archive.writestr(name + ".npy", b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + values)
+PYTHON
+convert --npz lpips_alex_v0.1.npz --out c --unpublished >/dev/null
+cmp a/lpips_alex_v0.1.safetensors c/lpips_alex_v0.1.safetensors || fail "an .npz of earlier versions gave other bytes"
+head -c 1000 lpips_alex_v0.1.npz >lpips_alex_cut.npz
+convert --npz lpips_alex_cut.npz --out none --unpublished >said 2>&1 && fail "a cut .npz was taken"
+grep -q "lpips_alex_cut.npz: no .npz of LPIPS weights" said || fail "$(cat said)"
 head -c 1000000 features_row.pth >cut.pth
 convert --features cut.pth --out none --unpublished >said 2>&1 && fail "a cut file was taken"
 grep -q "cut off" said || fail "$(cat said)"
@@ -60,6 +76,6 @@ for name, shift in (("a.png", 0), ("b.png", 40)):
     open(name, "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", 64, 64, 8, 2, 0, 0, 0)) +
                            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 PYTHON
-"$lpips" a.png b.png --net alex --weights a/lpips_alex_v0.1.npz --quiet >value
+"$lpips" a.png b.png --net alex --weights a/lpips_alex_v0.1.safetensors --quiet >value
 grep -Eq "[0-9]\.[0-9]" value || fail "no distance: $(cat value)"
 echo "weights are fetched, checked and converted"

@@ -6,14 +6,13 @@
 
 #include "tests/metrics/tiny_lpips.h"
 #include "tests/support/temp_folder.h"
-#include "tests/support/write_npz.h"
 
 namespace glint::test {
 
 struct LpipsWeightsHere {
   TempFolder folder;
   LpipsWeightsHere() {
-    write_npz(folder / "lpips_alex_v0.1.npz", random_arrays(lpips_networks()[0]));
+    write_weights(folder / "lpips_alex_v0.1.safetensors", random_arrays(lpips_networks()[0]));
     ::setenv("GLINT_LPIPS_WEIGHTS", folder.path().c_str(), 1);
   }
   ~LpipsWeightsHere() { ::unsetenv("GLINT_LPIPS_WEIGHTS"); }

@@ -64,8 +64,8 @@ TEST_CASE("a predicted run that is none exits with 2, a dataset that is none wit
 
 TEST_CASE("doctor exits with 6 where weights of LPIPS cannot be used") {
   const test::TempFolder folder;
-  write_file(folder / "lpips_alex_v0.1.npz", "not an archive");
-  ::setenv("GLINT_LPIPS_WEIGHTS", (folder / "lpips_alex_v0.1.npz").c_str(), 1);
+  write_file(folder / "lpips_alex_v0.1.safetensors", "no weights");
+  ::setenv("GLINT_LPIPS_WEIGHTS", (folder / "lpips_alex_v0.1.safetensors").c_str(), 1);
   CHECK(run({"doctor"}) == 6);
   ::setenv("GLINT_LPIPS_WEIGHTS", (folder / "nothing_there").c_str(), 1);
   CHECK(run({"doctor"}) == 0);
