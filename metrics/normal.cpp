@@ -103,11 +103,9 @@ std::optional<NormalErrors> normal_errors_from_angles(
   errors.num_pixels = angles.scored.size();
   for (const double angle : angles.scored) {
     errors.mean_deg += angle / n;
-    errors.rms_deg += angle * angle / n;
     for (std::size_t i = 0; i < errors.below.size(); ++i)
       errors.below[i] += angle < kNormalThresholdsDeg[i] ? 1 : 0;
   }
-  errors.rms_deg = std::sqrt(errors.rms_deg);
   for (double& share : errors.below) share *= 100 / n;
   errors.coverage = 100 * static_cast<double>(angles.predicted) / n;
   const double dropped = static_cast<double>(angles.dropped);

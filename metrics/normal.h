@@ -28,7 +28,7 @@ struct NormalProtocol {
 };
 
 struct NormalErrors {
-  double mean_deg = 0, median_deg = 0, rms_deg = 0;
+  double mean_deg = 0, median_deg = 0;
   // Mean over background, too, which the others leave out: pixels without a true normal count as 0
   // where nothing is predicted and as missing_deg where something is. Empty pictures thus score
   // well: papers that average over whole pictures print such numbers.

@@ -4,7 +4,7 @@
 
 Every value comes from NumPy, SciPy or scikit-image, or from a closed form that is stated with it;
 none from this project's programs. `glint-bench selftest` runs the vectors. Needs Debian's
-python3-skimage; LPIPS vectors need --weights lpips_alex_v0.1.npz (else the old values stay).
+python3-skimage; LPIPS vectors need --weights lpips_alex_v0.1.safetensors (else the old values stay).
 Run from the repository's root: scripts/make_conformance.py [--weights FILE]
 """
 
@@ -18,10 +18,8 @@ import scipy
 import skimage
 from numpy.lib.stride_tricks import sliding_window_view
 from PIL import Image
-from scipy.ndimage import maximum_filter
-from skimage.metrics import peak_signal_noise_ratio
-
-import make_metric_goldens as goldens
+from scipy.ndimage import correlate1d, maximum_filter
+from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 ROOT = Path("metrics/conformance")
 NUMPY = f"NumPy {np.__version__}"
@@ -96,15 +94,166 @@ def write_ply(name, vertices, faces):
     path.write_bytes(header.encode() + np.asarray(vertices, "<f4").tobytes() + rows)
 
 
+# --- formulas on integers, which tests/metrics/golden_images.h repeats ---------------------------
+
+def hashed(x, y, c, salt):
+    """32 scrambled bits per pixel and channel."""
+    v = x * 374761393 + y * 668265263 + c * 40503 + salt * 974711
+    v = v & 0xFFFFFFFF
+    v = ((v ^ (v >> 13)) * 1274126177) & 0xFFFFFFFF
+    return v ^ (v >> 16)
+
+
+def grid(width, height, channels):
+    y, x, c = np.meshgrid(
+        np.arange(height), np.arange(width), np.arange(channels), indexing="ij"
+    )
+    return x.astype(np.int64), y.astype(np.int64), c.astype(np.int64)
+
+
+def triangle_wave(t):
+    t = t % 256
+    return np.where(t < 128, 2 * t, 510 - 2 * t)
+
+
+def reference_bytes(width, height, channels):
+    x, y, c = grid(width, height, channels)
+    value = triangle_wave(3 * x + 2 * y + 30 * c) + hashed(x, y, c, 1) % 41 - 20
+    return np.clip(value, 0, 255)
+
+
+def prediction_bytes(width, height, channels):
+    x, y, c = grid(width, height, channels)
+    wave = (3 * triangle_wave(3 * x + 2 * y + 30 * c + 5) + 64) // 4
+    return np.clip(wave + hashed(x, y, c, 2) % 61 - 30, 0, 255)
+
+
+def mask_of(width, height):
+    x, y, c = grid(width, height, 1)
+    return (hashed(x // 4, y // 4, c, 3) % 3 != 0)[:, :, 0]
+
+
+def stored(bytes_):
+    """As an 8-bit file is read: float32."""
+    return bytes_.astype(np.float32) / np.float32(255)
+
+
+def as_rendered(bytes_):
+    """Float values that leave [0, 1]."""
+    return (bytes_.astype(np.float64) * (1.1 / 255) - 0.03).astype(np.float32)
+
+
+def wang_map(prediction, reference):
+    return structural_similarity(
+        prediction, reference, data_range=1, channel_axis=2, gaussian_weights=True, sigma=1.5,
+        use_sample_covariance=False, full=True,
+    )
+
+
+def zero_padded_map(x, y):
+    d = np.arange(11) - 5
+    w = np.exp(-d * d / (2 * 1.5 ** 2))
+    w /= w.sum()
+
+    def mean(image):
+        rows = correlate1d(image, w, axis=0, mode="constant")
+        return correlate1d(rows, w, axis=1, mode="constant")
+
+    mx, my = mean(x), mean(y)
+    vx, vy, cxy = mean(x * x) - mx * mx, mean(y * y) - my * my, mean(x * y) - mx * my
+    c1, c2 = 0.01 ** 2, 0.03 ** 2
+    ssim = (2 * mx * my + c1) * (2 * cxy + c2) / ((mx * mx + my * my + c1) * (vx + vy + c2))
+    return ssim.mean(axis=2)
+
+
+def depth_maps(width, height):
+    """Metres; some pixels without depth (0, NaN), some beyond 20 m."""
+    x, y, c = grid(width, height, 1)
+    h, g = hashed(x, y, c, 4), hashed(x, y, c, 5)
+    reference = (1000 + h % 4000) / 1000.0
+    reference = np.where(h % 29 == 0, 25.0, np.where(h % 17 == 0, 0.0, reference))
+    prediction = reference * (1 + (g % 401 - 150) / 500.0) + 0.05
+    prediction = np.where(g % 13 == 0, 0.0, np.where(g % 31 == 0, np.nan, prediction))
+    return prediction.astype(np.float32)[:, :, 0], reference.astype(np.float32)[:, :, 0]
+
+
+def align(mode, p, r):
+    if mode == "median":
+        return p * (np.median(r) / np.median(p))
+    if mode == "scale":
+        return p * ((p * r).sum() / (p * p).sum())
+    if mode == "affine":
+        return np.polyval(np.polyfit(p, r, 1), p)
+    return p
+
+
+def depth_values(p, r):
+    ratio = np.maximum(p, 1e-300) / r
+    ratio = np.maximum(ratio, 1 / ratio)
+    return {
+        "absrel": (np.abs(p - r) / r).mean(),
+        "rmse": np.sqrt(((p - r) ** 2).mean()),
+        "delta1": 100 * (ratio < 1.25).mean(),
+    }
+
+
+def depth_case(prediction, reference):
+    prediction, reference = prediction.astype(np.float64), reference.astype(np.float64)
+    valid = reference > 0
+    predicted = valid & np.isfinite(prediction) & (prediction > 0)
+    case = {"coverage": 100 * predicted.sum() / valid.sum()}
+    for mode in ["none", "median", "scale", "affine"]:
+        aligned = np.zeros_like(reference)
+        aligned[predicted] = align(mode, prediction[predicted], reference[predicted])
+        case[mode] = depth_values(aligned[valid], reference[valid])
+    near = predicted & (prediction < 20) & (reference < 20)
+    p, r = prediction[near], reference[near]
+    case["release"] = depth_values(align("median", p, r), r)
+    case["release"]["rmse"] /= r.mean()
+    return case
+
+
+def normal_maps(width, height):
+    """Unit vectors; some missing, some of the reference's blended (not of unit length)."""
+    x, y, c = grid(width, height, 3)
+    n = (hashed(x, y, c, 6) % 2001 - 1000) / 1000.0
+    n[:, :, 2] = -1.0
+    # Summed as the C++ side does, so that both round alike.
+    norm = np.sqrt(n[:, :, 0] * n[:, :, 0] + n[:, :, 1] * n[:, :, 1] + n[:, :, 2] * n[:, :, 2])
+    reference = n / norm[:, :, None]
+    pick = hashed(x, y, 0 * c, 7)
+    prediction = 0.5 * (reference + (hashed(x, y, c, 8) % 801 - 400) / 1000.0)
+    prediction = np.where(pick % 11 == 0, 0.0, prediction)
+    reference = np.where(pick % 7 == 0, 0.8 * reference, reference)
+    reference = np.where(pick % 19 == 0, 0.0, reference)
+    return prediction.astype(np.float32), reference.astype(np.float32)
+
+
+def normal_case(prediction, reference):
+    prediction, reference = prediction.astype(np.float64), reference.astype(np.float64)
+    norm = np.linalg.norm(reference, axis=2)
+    unit = (norm > 0) & (np.abs(norm - 1) < 0.05)
+    p, r = prediction[unit], reference[unit]
+    angle = np.degrees(np.arctan2(np.linalg.norm(np.cross(p, r), axis=1), (p * r).sum(axis=1)))
+    missing = np.linalg.norm(p, axis=1) == 0
+    angle[missing] = 90
+    case = {
+        "mean": angle.mean(), "median": np.median(angle),
+        "coverage": 100 * (1 - missing.mean()),
+        "dropped": 100 * ((norm > 0) & ~unit).sum() / (norm > 0).sum(),
+    }
+    case["below"] = [100 * (angle < t).mean() for t in [5, 7.5, 11.25, 22.5, 30]]
+    return case
+
+
 # --- pictures ------------------------------------------------------------------------------------
 
-def picture_pair():
+def picture_pair(width=WIDTH, height=HEIGHT):
     """8-bit prediction and reference, a float prediction that leaves [0, 1], and a mask."""
-    reference = goldens.reference_bytes(WIDTH, HEIGHT, 3).astype(np.uint8)
-    prediction = goldens.prediction_bytes(WIDTH, HEIGHT, 3).astype(np.uint8)
-    rendered = goldens.rendered(prediction.astype(np.int64))
-    mask = (goldens.mask_of(WIDTH, HEIGHT) * 255).astype(np.uint8)
-    return prediction, reference, rendered, mask
+    reference = reference_bytes(width, height, 3).astype(np.uint8)
+    prediction = prediction_bytes(width, height, 3).astype(np.uint8)
+    mask = (mask_of(width, height) * 255).astype(np.uint8)
+    return prediction, reference, as_rendered(prediction.astype(np.int64)), mask
 
 
 def image_vectors():
@@ -151,8 +300,8 @@ def image_vectors():
     add("psnr/16bit", run("glint-psnr", "prediction_16bit.png",
                           reference="image/reference_grey.png"),
         "psnr-8bit", grey, tight, SKIMAGE, "16-bit integers are divided by 65535")
-    wang, _ = goldens.wang_map(p, r)
-    padded = goldens.zero_padded_map(p, r)
+    wang, _ = wang_map(p, r)
+    padded = zero_padded_map(p, r)
     add("ssim/wang", run("glint-ssim", "prediction.png", "--variant", "wang"),
         "ssim-wang", wang, tight, SKIMAGE,
         "Gaussian window 11, sigma 1.5, population covariance, valid region, mean over channels")
@@ -161,16 +310,29 @@ def image_vectors():
     add("ssim/3dgs-mask", run("glint-ssim", "prediction.png", "--mask", "image/mask.png"),
         "ssim-3dgs", padded[chosen].mean(), tight, SCIPY, "the map is averaged over the mask")
     add("ssim/clamped", run("glint-ssim", "rendered.npy"), "ssim-3dgs",
-        goldens.zero_padded_map(clamped, r).mean(), tight, SCIPY, "predictions are clamped")
+        zero_padded_map(clamped, r).mean(), tight, SCIPY, "predictions are clamped")
+    for width, height in [(37, 53), (11, 11)]:
+        size = f"{width}x{height}"
+        names = f"prediction_{size}.png", f"image/reference_{size}.png"
+        odd = picture_pair(width, height)[:2]
+        for name, bytes_ in zip([f"image/{names[0]}", names[1]], odd):
+            write_png(name, bytes_)
+        p, r = odd[0] / 255.0, odd[1] / 255.0
+        add(f"psnr/{size}", run("glint-psnr", names[0], reference=names[1]), "psnr-8bit",
+            psnr(p, r), tight, SKIMAGE, "any size")
+        add(f"ssim/wang-{size}", run("glint-ssim", names[0], "--variant", "wang", reference=names[1]),
+            "ssim-wang", wang_map(p, r)[0], tight, SKIMAGE, "any size, down to the window's")
+        add(f"ssim/3dgs-{size}", run("glint-ssim", names[0], reference=names[1]), "ssim-3dgs",
+            zero_padded_map(p, r).mean(), tight, SCIPY, "any size")
 
 
 # --- depth and normals ---------------------------------------------------------------------------
 
 def depth_vectors():
-    prediction, reference = goldens.depth_maps(WIDTH, HEIGHT)
+    prediction, reference = depth_maps(WIDTH, HEIGHT)
     write_npy("depth/prediction.npy", prediction)
     write_npy("depth/reference.npy", reference)
-    case = goldens.depth_case(WIDTH, HEIGHT)
+    case = depth_case(prediction, reference)
     pair = ["depth/prediction.npy", "depth/reference.npy"]
     what = {
         "none": "no alignment; pixels without prediction count with the whole depth as error",
@@ -196,10 +358,10 @@ def depth_vectors():
 
 
 def normal_vectors():
-    prediction, reference = goldens.normal_maps(WIDTH, HEIGHT)
+    prediction, reference = normal_maps(WIDTH, HEIGHT)
     write_npy("normal/prediction.npy", prediction)
     write_npy("normal/reference.npy", reference)
-    case = goldens.normal_case(WIDTH, HEIGHT)
+    case = normal_case(prediction, reference)
     run = ["glint-normal", "normal/prediction.npy", "normal/reference.npy"]
     add("normal/mae", run, "normal-mae", case["mean"], 1e-5, NUMPY,
         "atan2(|a x b|, a . b) in degrees; missing predictions count as 90; reference normals that "
@@ -324,8 +486,8 @@ def write_cameras():
 
 
 def bounded(salt, low, high, channels=1):
-    x, y, c = goldens.grid(WIDTH, HEIGHT, channels)
-    value = low + (high - low) * (goldens.hashed(x, y, c, salt) % 1001) / 1000.0
+    x, y, c = grid(WIDTH, HEIGHT, channels)
+    value = low + (high - low) * (hashed(x, y, c, salt) % 1001) / 1000.0
     return value.astype(np.float32) if channels > 1 else value.astype(np.float32)[:, :, 0]
 
 
@@ -336,7 +498,7 @@ def glass_maps():
     prediction, reference, rendered, _ = picture_pair()
     behind = bounded(21, 3, 5)
     depth = np.where(glass, np.float32(2) + behind / 10, behind).astype(np.float32)
-    predicted_normal, normal = goldens.normal_maps(WIDTH, HEIGHT)
+    predicted_normal, normal = normal_maps(WIDTH, HEIGHT)
     truth = {"depth": depth, "behind_depth": behind, "normal": normal,
              "transmitted": bounded(22, 0, 1, 3), "reflected": bounded(23, 0, 0.5, 3),
              "glass": glass, "rgb": reference / 255.0}
@@ -386,8 +548,8 @@ def glass_vectors():
     glass = truth["glass"]
     rgb = np.clip(d["rgb"], 0, 1)
     rounded = np.rint(rgb.astype(np.float32) * np.float32(255)) / 255.0
-    padded = goldens.zero_padded_map(rgb, t["rgb"])
-    wang = goldens.wang_map(rgb, t["rgb"])[1].mean(axis=2)
+    padded = zero_padded_map(rgb, t["rgb"])
+    wang = wang_map(rgb, t["rgb"])[1].mean(axis=2)
     inside = np.zeros_like(glass)
     inside[5:HEIGHT - 5, 5:WIDTH - 5] = True
     clipped = np.clip(d["transparency"], 0, 1)
@@ -404,28 +566,28 @@ def glass_vectors():
         vector("psnr-8bit" + at, psnr(rounded, t["rgb"], m), NUMPY, where + ", rounded to 8 bits")
         vector("ssim-3dgs" + at, padded[m].mean(), SCIPY, where)
         vector("ssim-wang" + at, wang[m & inside].mean(), SKIMAGE, where)
-        values = goldens.depth_values(d["depth"][m], t["depth"][m])
+        values = depth_values(d["depth"][m], t["depth"][m])
         for key in ["absrel", "rmse", "delta1"]:
             vector(f"depth-{key}{at}", values[key], NUMPY, where)
-        values = goldens.depth_values(d["first_mode"][m], t["depth"][m])
+        values = depth_values(d["first_mode"][m], t["depth"][m])
         vector("depth-absrel-first-mode" + at, values["absrel"], NUMPY,
                where + ", holes count as 0 metres")
         vector("depth-coverage-first-mode" + at, 100 * (d["first_mode"][m] > 0).mean(), NUMPY,
                where, 1e-9)
         vector("transparency-mae" + at, np.abs(clipped - glass)[m].mean(), NUMPY, where)
-    behind = goldens.depth_values(d["behind_depth"][glass], t["behind_depth"][glass])
+    behind = depth_values(d["behind_depth"][glass], t["behind_depth"][glass])
     vector("behind-absrel", behind["absrel"], NUMPY, "depth of what is behind glass, glass pixels")
     content = t["behind_depth"] - t["depth"] < 1.25
     for key, part in [("content", glass & content), ("beyond", glass & ~content)]:
         assert part.any()
-        values = goldens.depth_values(d["behind_depth"][part], t["behind_depth"][part])
+        values = depth_values(d["behind_depth"][part], t["behind_depth"][part])
         vector(f"behind-absrel-{key}", values["absrel"], NUMPY,
                "glass pixels with less than 1.25 m between the layers, and the others")
     for suffix, key in [("", "behind_depth"), ("-expected", "behind_expected"),
                         ("-median", "behind_median"), ("-last-mode", "last_mode")]:
         p = d[key][glass]
         if suffix:
-            values = goldens.depth_values(p, t["behind_depth"][glass])
+            values = depth_values(p, t["behind_depth"][glass])
             vector("behind-absrel" + suffix, values["absrel"], NUMPY,
                    "one rule for all methods, a hole counts as 0 metres")
         vector("behind-coverage" + suffix, 100 * (p > 0).mean(), NUMPY,
@@ -484,11 +646,17 @@ def lpips_vectors(path):
         old = json.loads((ROOT / "vectors.json").read_text())["vectors"]
         vectors.extend(v for v in old if v["id"].startswith("lpips/"))
         return
-    weights = {k: v.astype(np.float64) for k, v in np.load(path).items()}
-    x, y, c = goldens.grid(96, 80, 3)
-    reference = goldens.stored(np.clip(goldens.triangle_wave(3 * x + 2 * y + 30 * c), 0, 255))
-    noise = goldens.hashed(x, y, c, 31) % 81 - 40
-    prediction = goldens.stored(np.clip(np.rint(reference * 255) + noise, 0, 255))
+    data = path.read_bytes()
+    (length,) = struct.unpack_from("<Q", data)
+    header, weights = json.loads(data[8:8 + length]), {}
+    for key, tensor in header.items():
+        begin, end = tensor["data_offsets"]
+        values = np.frombuffer(data[8 + length + begin:8 + length + end], "<f4")
+        weights[key] = values.reshape(tensor["shape"]).astype(np.float64)
+    x, y, c = grid(96, 80, 3)
+    reference = stored(np.clip(triangle_wave(3 * x + 2 * y + 30 * c), 0, 255))
+    noise = hashed(x, y, c, 31) % 81 - 40
+    prediction = stored(np.clip(np.rint(reference * 255) + noise, 0, 255))
     for key, image in [("prediction", prediction), ("reference", reference)]:
         write_png(f"lpips/{key}.png", np.rint(image * 255).astype(np.uint8))
     value = alex_lpips(prediction.astype(np.float64), reference.astype(np.float64), weights)
@@ -499,7 +667,7 @@ def lpips_vectors(path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--weights", type=Path, help="lpips_alex_v0.1.npz")
+    parser.add_argument("--weights", type=Path, help="lpips_alex_v0.1.safetensors")
     options = parser.parse_args()
     image_vectors()
     depth_vectors()

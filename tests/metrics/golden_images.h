@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The images and maps of scripts/make_metric_goldens.py, by the same formulas on integers, and the
-// values that it computed for them.
+// The images and maps of scripts/make_conformance.py, by the same formulas on integers.
 #pragma once
 
 #include <algorithm>
@@ -8,17 +7,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "glint/core/config.h"
-#include "glint/core/files.h"
 #include "glint/core/image.h"
 
 namespace glint::golden {
-
-// The cases of one kind: "images", "depth" or "normal". A copy, safe to loop over.
-inline Json load(const char* kind) {
-  const Json goldens = Json::parse(read_file("tests/metrics/golden/metrics.json"));
-  return goldens.at(kind);
-}
 
 inline std::uint32_t hashed(int x, int y, int c, int salt) {
   std::uint32_t v =
@@ -68,13 +59,6 @@ inline Image rendered_image(int width, int height, int channels) {
     return static_cast<float>(prediction_byte(x, y, c) * (1.1 / 255) - 0.03);
   });
 }
-inline MaskImage mask_image(int width, int height) {
-  MaskImage mask(width, height, 1);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) mask.at(x, y) = below(3, x / 4, y / 4, 0, 3) != 0 ? 255 : 0;
-  return mask;
-}
-
 inline double true_depth(int x, int y) {
   if (below(29, x, y, 0, 4) == 0) return 25;
   if (below(17, x, y, 0, 4) == 0) return 0;

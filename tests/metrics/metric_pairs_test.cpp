@@ -2,10 +2,11 @@
 // Image pairs with values by independent code (../shared/data, not part of the project).
 #include <catch2/catch.hpp>
 
+#include "glint/core/config.h"
+#include "glint/core/files.h"
 #include "glint/scene/image_files.h"
 #include "metrics/psnr.h"
 #include "metrics/ssim.h"
-#include "tests/metrics/golden_images.h"
 
 using namespace glint;
 

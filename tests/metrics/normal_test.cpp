@@ -97,24 +97,6 @@ TEST_CASE("the angle does not depend on which map is the reference") {
   CHECK(normal_errors(a, b)->mean_deg == Approx(normal_errors(b, a)->mean_deg).epsilon(1e-14));
 }
 
-TEST_CASE("normal errors agree with NumPy") {
-  for (const Json& golden : golden::load("normal")) {
-    const int w = golden["width"], h = golden["height"];
-    const auto errors =
-        normal_errors(golden::predicted_normal_map(w, h), golden::true_normal_map(w, h));
-    const auto expected = [](const Json& value) {
-      return Approx(value.get<double>()).epsilon(1e-12);
-    };
-    CHECK(errors->mean_deg == expected(golden["mean"]));
-    CHECK(errors->median_deg == expected(golden["median"]));
-    CHECK(errors->rms_deg == expected(golden["rms"]));
-    CHECK(errors->coverage == expected(golden["coverage"]));
-    CHECK(errors->dropped == expected(golden["dropped"]));
-    for (std::size_t i = 0; i < errors->below.size(); ++i)
-      CHECK(errors->below[i] == expected(golden["below"][i]));
-  }
-}
-
 TEST_CASE("normal maps need three channels") {
   CHECK_THROWS_WITH(
       normal_errors(Image(2, 2, 1), Image(2, 2, 1)), Catch::Contains("1 channels, expected 3")
