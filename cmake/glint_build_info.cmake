@@ -40,6 +40,7 @@ glint_note_header(nettle "${GLINT_NETTLE_INCLUDE}" nettle/version.h NETTLE_VERSI
 if(NOT GLINT_LEAN)
   glint_note_version(Embree "${embree_VERSION}")
   glint_note_version(assimp "${assimp_VERSION}")
+  glint_note_version(yaml-cpp "${yaml-cpp_VERSION}")
   glint_note_version(Open3D "${Open3D_VERSION}")
   glint_note_version(TIFF "${TIFF_VERSION_STRING}")
   glint_note_version(pango "${PANGOCAIRO_pangocairo_VERSION}")

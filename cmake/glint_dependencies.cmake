@@ -55,6 +55,7 @@ find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to set how many threads one
 find_package(Bullet REQUIRED)  # module mode: the config mode has relative include folders
 find_package(TIFF QUIET MODULE)  # maps of other programs; without it they are refused by name
 find_package(assimp 5.2 REQUIRED CONFIG)  # glTF furniture
+find_package(yaml-cpp 0.7 REQUIRED CONFIG)  # cameras of EasyVolcap
 find_path(GLINT_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
 foreach(module core imgproc calib3d)
   find_library(GLINT_OPENCV_${module} opencv_${module} REQUIRED)
