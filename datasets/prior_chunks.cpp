@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/prior_chunks.h"
-
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <numeric>
 #include <set>
 
+#include "datasets/prior_files.h"
 #include "glint/core/error.h"
 
 namespace glint {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 
-#include "datasets/prior_chunks.h"
 #include "glint/core/error.h"
 
 namespace glint {

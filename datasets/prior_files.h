@@ -8,6 +8,8 @@
 //             normals/ is StableNormal's, diffrens/ the official GLINT release's.
 #pragma once
 
+#include <optional>
+
 #include "datasets/scene_index.h"
 
 namespace glint {
@@ -29,6 +31,23 @@ struct ChunkFrame {
 // Where picture i lies; of several copies that nearest to the middle of its chunk, where the
 // network saw most around it, and of two as near that of the later chunk. i < covered().
 ChunkFrame frame_of_picture(const ChunkGrid& grid, std::size_t i);
+
+// All that other programs left for the views of a scene.
+struct FoundPriors {
+  std::string program;             // "DiffusionRenderer, SVD"
+  std::vector<MapFiles> files;     // one a view; a kind that no view has is missing
+  std::vector<fs::path> metallic;  // one a view
+  PriorReading documented;         // how the program stores them
+  std::vector<std::string> notes;
+
+  explicit FoundPriors(std::size_t num_views) : files(num_views), metallic(num_views) {}
+};
+
+// Of files CCCC.FFFF.<pass>.png of one clip. Nothing: no such files. `overlap`: as in PriorOptions.
+// Errors (kBadReference): as attach_priors.
+std::optional<FoundPriors> find_chunked_priors(
+    const fs::path& folder, const SceneIndex& index, int overlap
+);
 
 // Adds priors of other programs to the views, with a note for each thing that people should know.
 // `options` go before index.stated_priors. Priors of a named folder take the place of others of

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// What loaders list views with; for the lean build, too: it has the import of photos.
+#include "datasets/scene_index.h"
+
+#include <algorithm>
+#include <map>
+
+#include "glint/core/error.h"
+#include "glint/core/rng.h"
+
+namespace glint {
+
+bool file_contains(const fs::path& file, std::string_view part) {
+  std::error_code code;
+  if (!fs::is_regular_file(file, code)) return false;
+  try {
+    return read_file(file).find(part) != std::string::npos;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+std::vector<fs::path> list_folders(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code))
+    if (entry.is_directory(code)) folders.push_back(entry.path());
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+fs::path picture_or_copy(const fs::path& path) {
+  std::error_code code;
+  if (fs::is_regular_file(path, code)) return path;
+  for (const char* smaller : {"_2", "_4", "_8"}) {
+    const fs::path copy = fs::path(path.parent_path().string() + smaller) / path.filename();
+    if (fs::is_regular_file(copy, code)) return copy;
+  }
+  return path;
+}
+
+std::string folder_name(const fs::path& folder) {
+  return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
+}
+
+std::string split_every(std::vector<ViewSource>& views, int test_every) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    views[i].is_test = test_every > 0 && i % static_cast<std::size_t>(test_every) == 0;
+    views[i].is_train = !views[i].is_test;
+  }
+  if (test_every <= 0) return "no test views";
+  return fmt::format("view 0, {0}, {1}, ... in the order of names", test_every, 2 * test_every);
+}
+
+std::string hold_out(std::set<std::string> names, std::vector<ViewSource>& views) {
+  for (ViewSource& view : views) {
+    view.is_test = names.erase(view.name) > 0;
+    view.is_train = !view.is_test;
+  }
+  return names.empty() ? "" : *names.begin();
+}
+
+void sort_naturally(std::vector<ViewSource>& views) {
+  std::sort(views.begin(), views.end(), [](const ViewSource& a, const ViewSource& b) {
+    return natural_less(a.name, b.name);
+  });
+}
+
+void sort_by_bytes(std::vector<ViewSource>& views) {
+  std::sort(views.begin(), views.end(), [](const ViewSource& a, const ViewSource& b) {
+    return a.name < b.name;
+  });
+}
+
+void shorten_names(std::vector<ViewSource>& views) {
+  std::map<std::string, int> count;
+  for (const ViewSource& view : views) ++count[fs::path(view.name).stem().string()];
+  for (ViewSource& view : views) {
+    const fs::path path(view.name);
+    const std::string stem = path.stem().string();
+    view.name = flat_view_name(count[stem] > 1 ? (path.parent_path() / stem).string() : stem);
+  }
+}
+
+std::string hash_of_files(const std::string& camera_text, const std::vector<ViewSource>& views) {
+  std::string text = camera_text;
+  for (const ViewSource& view : views) {
+    std::error_code code;
+    text += fmt::format(" {}:{}", view.name, fs::file_size(view.image, code));
+    if (!view.counted.empty()) text += fmt::format("/{}", fs::file_size(view.counted, code));
+  }
+  return fmt::format("{:016x}", hash_name(text));
+}
+
+std::string no_train_views(const SceneIndex& index) {
+  if (index.views.empty()) return "no train views; expected at least one image";
+  return fmt::format(
+      "no train views: by the split ({}) {} a test view; name the test views in {} as "
+      "\"test_views\": [...], which replaces the split (none: []), or add pictures",
+      index.split_rule,
+      index.views.size() == 1 ? "the only view is"
+                              : fmt::format("each of {} views is", index.views.size()),
+      (index.folder / "scene.json").string()
+  );
+}
+
+}  // namespace glint
