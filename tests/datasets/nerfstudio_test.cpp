@@ -181,44 +181,26 @@ TEST_CASE("a point cloud is read where the file names one") {
   CHECK_THAT(folder.load_error(), Contains("none.ply: no such file"));
 }
 
-TEST_CASE("cut-off and damaged transforms are errors that name file and field") {
+TEST_CASE("damaged transforms are errors that name file and field") {
+  const auto changes = Json::parse(R"([
+    ["remove", "/frames", null, "transforms.json: frames: expected a list"],
+    ["replace", "/frames", [], "no train views"],
+    ["remove", "/frames/4/transform_matrix", null, "frame 4: transform_matrix: expected 4 x 4"],
+    ["replace", "/frames/4/transform_matrix/1/3", null, "found null"],
+    ["replace", "/frames/4/transform_matrix/1/1", 5, "images/0004.png"],
+    ["replace", "/frames/4/transform_matrix/1/1", 5, "no rotation"],
+    ["replace", "/fl_x", "wide", "fl_x is \"wide\""],
+    ["remove", "/frames/4/file_path", null, "frame 4: file_path"],
+    ["add", "/camera_model", "OPENCV_FISHEYE", "undistort the images"],
+    ["replace", "/frames/4/file_path", "images/none.png", "images/none.png: no such file"]
+  ])");
   RoomFolder folder;
-  const std::string text = folder.json.dump();
-  for (std::size_t length = 0; length < text.size(); length += 101) {
-    write_file(folder / "transforms.json", std::string_view(text).substr(0, length));
-    CHECK_THAT(bad_reference([&] { load_scene(folder.path(), {}); }), Contains("transforms.json"));
+  const Json good = folder.json;
+  for (const Json& change : changes) {
+    const Json operation{{"op", change[0]}, {"path", change[1]}, {"value", change[2]}};
+    folder.json = good.patch(Json::array({operation}));
+    CHECK_THAT(folder.load_error(), Contains(change[3].get<std::string>()));
   }
-  const auto message = [](auto&& change) {
-    RoomFolder changed;
-    change(changed.json);
-    return changed.load_error();
-  };
-  CHECK_THAT(message([](Json& j) { j.erase("frames"); }), Contains("frames: expected a list"));
-  CHECK_THAT(message([](Json& j) { j["frames"] = Json::array(); }), Contains("no train views"));
-  CHECK_THAT(
-      message([](Json& j) { j["frames"][4].erase("transform_matrix"); }),
-      Contains("frame 4: transform_matrix: expected 4 x 4")
-  );
-  CHECK_THAT(
-      message([](Json& j) { j["frames"][4]["transform_matrix"][1][3] = nullptr; }),
-      Contains("found null")
-  );
-  CHECK_THAT(
-      message([](Json& j) { j["frames"][4]["transform_matrix"][1][1] = 5; }),
-      Contains("images/0004.png") && Contains("no rotation")
-  );
-  CHECK_THAT(message([](Json& j) { j["fl_x"] = "wide"; }), Contains("fl_x is \"wide\""));
-  CHECK_THAT(
-      message([](Json& j) { j["frames"][4].erase("file_path"); }), Contains("frame 4: file_path")
-  );
-  CHECK_THAT(
-      message([](Json& j) { j["camera_model"] = "OPENCV_FISHEYE"; }),
-      Contains("undistort the images")
-  );
-  CHECK_THAT(
-      message([](Json& j) { j["frames"][4]["file_path"] = "images/none.png"; }),
-      Contains("images/none.png: no such file")
-  );
 }
 
 TEST_CASE("undistortion looks up every pixel where the lens put it") {

@@ -9,7 +9,6 @@
 
 #include "datasets/view_maps.h"
 #include "glint/core/config.h"
-#include "glint/core/rng.h"
 #include "glint/scene/safetensors.h"
 #include "tests/support/box_room.h"
 #include "tests/support/same_scene.h"
@@ -387,26 +386,6 @@ TEST_CASE("values that are no scene's are errors, when packed and when read") {
   CHECK_THAT(
       write_error(good, [](Scene& s) { s.train[0].camera.width = 70000; }), Contains("70000 x 6")
   );
-}
-
-TEST_CASE("a damaged file is read or is an error, and nothing else") {
-  const PackedFile f;
-  const std::string good = read_file(f.file);
-  Rng rng(5);
-  const auto random = [&](std::size_t below) {
-    return rng.below(static_cast<std::uint32_t>(below));
-  };
-  for (int round = 0; round < 300; ++round) {
-    std::string text = good;
-    const std::size_t range = round % 2 == 0 ? 8 + PackedFile::length(good) : good.size();
-    for (int i = 0; i < 3; ++i) text[random(range)] = static_cast<char>(random(256));
-    write_file(f / "bad", text);
-    try {
-      read_packed_scene(f / "bad");
-    } catch (const Error& error) {
-      CHECK(error.code() == ExitCode::kBadReference);
-    }
-  }
 }
 
 TEST_CASE("names of a packed scene that would lead out of the results or share a folder are refused"

@@ -5,22 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "glint/core/npy.h"
 #include "glint/scene/scene.h"
 
 namespace glint::fuzz {
-
-// An array of NumPy, format 1. `type`: "<f4"; `shape`: "2, 3".
-inline std::string npy_bytes(
-    std::string_view type, std::string_view shape, std::string_view values
-) {
-  const std::string dictionary =
-      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}\n", type, shape);
-  std::string file(kNpyMagic);
-  for (const int byte : {1, 0, static_cast<int>(dictionary.size()), 0})
-    file += static_cast<char>(byte);
-  return file + dictionary + std::string(values);
-}
 
 // Two views of 3 x 2 pixels, four points.
 inline Scene tiny_scene() {

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "glint/core/rng.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -145,22 +144,9 @@ TEST_CASE("files that are no safetensors file are errors, and allocate nothing")
   CHECK_THAT(bad_reference([&] { SafetensorsFile file(f.path()); }), Contains("not a regular"));
 }
 
-TEST_CASE("every cut-off file is an error, and a damaged one is read or is an error") {
+TEST_CASE("every cut-off file is an error") {
   const HeaderFile f;
   write_safetensors(f / "good", {{"k", "v"}}, {tensor<float>("a", {2, 3}, {1, 2, 3, 4, 5, 6})});
   const std::string good = read_file(f / "good");
   for (std::size_t length = 0; length < good.size(); ++length) f.raw_error(good.substr(0, length));
-  Rng rng(3);
-  for (int round = 0; round < 500; ++round) {
-    std::string file = good;
-    for (int i = 0; i < 2; ++i)
-      file[rng.below(static_cast<std::uint32_t>(file.size()))] = static_cast<char>(rng.below(256));
-    write_file(f / "bad", file);
-    try {
-      SafetensorsFile read(f / "bad");
-      read.read<float>("a", {2, 3});
-    } catch (const Error& error) {
-      CHECK(error.code() == ExitCode::kBadReference);
-    }
-  }
 }
