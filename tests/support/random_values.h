@@ -43,4 +43,22 @@ inline SurfelCloud random_cloud(
   return cloud;
 }
 
+// Within a metre or so of the origin, of centimetres to decimetres, in all colours.
+inline SurfelCloud ball_of_surfels(
+    std::size_t count, std::uint64_t seed, std::vector<std::string> extra_names = {}
+) {
+  SurfelCloud cloud;
+  cloud.extra_names = std::move(extra_names);
+  cloud.resize(count);
+  Rng rng(seed);
+  for (float& v : cloud.means) v = rng.uniform(-1.2f, 1.2f);
+  for (float& v : cloud.log_scales) v = rng.uniform(-3.0f, -1.0f);
+  for (float& v : cloud.rotations) v = rng.normal();
+  for (float& v : cloud.opacity_logits) v = rng.uniform(-2.0f, 3.0f);
+  for (float& v : cloud.sh_dc) v = rng.normal();
+  for (float& v : cloud.sh_rest) v = 0.1f * rng.normal();
+  for (float& v : cloud.extra_logits) v = rng.normal();
+  return cloud;
+}
+
 }  // namespace glint::test

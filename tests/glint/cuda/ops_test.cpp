@@ -14,6 +14,7 @@
 #include "glint/train/transparency_prior.h"
 #include "tests/support/gpu_backends.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/random_values.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -27,10 +28,7 @@ constexpr double kReordered =
     1e-4;  // where sums over many pixels or hits are taken in another order
 
 Image noise(int channels, std::uint64_t seed, float low, float high) {
-  Rng rng(seed);
-  Image image(kSize.width, kSize.height, channels);
-  for (float& value : image.values()) value = rng.uniform(low, high);
-  return image;
+  return random_map(kSize, channels, low, high, seed);
 }
 Image unit_vectors(std::uint64_t seed) {
   Image image = noise(3, seed, -1, 1);
@@ -44,20 +42,7 @@ Image unit_vectors(std::uint64_t seed) {
 
 Camera test_camera() { return look_at({0, -3, 0.5}, {0, 0, 0}, {0, 0, 1}, kSize, 70); }
 
-SurfelCloud test_cloud(std::size_t count = 300) {
-  Rng rng(11);
-  SurfelCloud cloud;
-  cloud.extra_names = {"transparency", "specular"};
-  cloud.resize(count);
-  for (float& v : cloud.means) v = rng.uniform(-1.2f, 1.2f);
-  for (float& v : cloud.log_scales) v = rng.uniform(-3.0f, -1.0f);
-  for (float& v : cloud.rotations) v = rng.normal();
-  for (float& v : cloud.opacity_logits) v = rng.uniform(-2.0f, 3.0f);
-  for (float& v : cloud.sh_dc) v = rng.normal();
-  for (float& v : cloud.sh_rest) v = 0.1f * rng.normal();
-  for (float& v : cloud.extra_logits) v = rng.normal();
-  return cloud;
-}
+SurfelCloud test_cloud() { return ball_of_surfels(300, 11, {"transparency", "specular"}); }
 SetTraining training(const DensifyConfig& densify = {}) {
   SetTraining training{.densify = densify, .extent = 2, .seed = 7};
   training.rates.extra = {0.05f, 0.01f};

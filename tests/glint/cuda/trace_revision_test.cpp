@@ -8,7 +8,7 @@
 #include "glint/train/trainable_set.h"
 #include "tests/support/count_launches.h"
 #include "tests/support/gpu_backends.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random_values.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -17,17 +17,6 @@ namespace {
 
 constexpr ImageSize kSize{16, 12};
 
-SurfelCloud random_cloud(std::size_t count, std::uint64_t seed) {
-  Rng rng(seed);
-  SurfelCloud cloud;
-  cloud.resize(count);
-  for (float& v : cloud.means) v = rng.uniform(-1.0f, 1.0f);
-  for (float& v : cloud.log_scales) v = rng.uniform(-2.5f, -1.0f);
-  for (float& v : cloud.rotations) v = rng.normal();
-  for (float& v : cloud.opacity_logits) v = rng.uniform(-1.0f, 3.0f);
-  for (float& v : cloud.sh_dc) v = rng.normal();
-  return cloud;
-}
 Rays rays_of_camera() {
   Rays rays;
   camera_rays(look_at({0, -3, 0.5}, {0, 0, 0}, {0, 0, 1}, kSize, 60), rays);
@@ -57,7 +46,7 @@ TrainableSet training_set() {
   densify.interval = 1;
   densify.gradient_threshold = 1e-7f;
   return TrainableSet(
-      random_cloud(200, 1), SetTraining{.densify = densify, .extent = 2, .seed = 7}
+      ball_of_surfels(200, 1), SetTraining{.densify = densify, .extent = 2, .seed = 7}
   );
 }
 void train_one_step(TrainableSet& set, int step) {
@@ -69,8 +58,9 @@ void train_one_step(TrainableSet& set, int step) {
 const Change kChanges[] = {
     {"Adam", [](TrainableSet& set) { train_one_step(set, 1); }},
     {"density control", [](TrainableSet& set) { train_one_step(set, 2); }},
-    {"loading", [](TrainableSet& set) { set.load(random_cloud(150, 2)); }},
-    {"loading as many", [](TrainableSet& set) { set.load(random_cloud(set.cloud().size(), 3)); }},
+    {"loading", [](TrainableSet& set) { set.load(ball_of_surfels(150, 2)); }},
+    {"loading as many",
+     [](TrainableSet& set) { set.load(ball_of_surfels(set.cloud().size(), 3)); }},
     {"the host, means", [](TrainableSet& set) { add_to_first(set.cloud().means, 0.3f); }},
     {"the host, scales", [](TrainableSet& set) { add_to_first(set.cloud().log_scales, 1); }},
     {"the host, rotations", [](TrainableSet& set) { add_to_first(set.cloud().rotations, 1); }},
@@ -78,8 +68,8 @@ const Change kChanges[] = {
      [](TrainableSet& set) { add_to_first(set.cloud().opacity_logits, -2); }},
     {"a fill", [](TrainableSet& set) { set.cloud().log_scales.fill(-1.2f); }},
     {"an array of another set",
-     [](TrainableSet& set) { set.cloud().means = random_cloud(set.cloud().size(), 4).means; }},
-    {"fewer surfels", [](TrainableSet& set) { set.load(random_cloud(20, 5)); }},
+     [](TrainableSet& set) { set.cloud().means = ball_of_surfels(set.cloud().size(), 4).means; }},
+    {"fewer surfels", [](TrainableSet& set) { set.load(ball_of_surfels(20, 5)); }},
     {"the CPU",
      [](TrainableSet& set) {
        use_cpu();

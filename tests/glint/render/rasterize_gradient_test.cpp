@@ -177,29 +177,24 @@ TEST_CASE("The gradients of all maps together match central differences") {
   check_gradients(random_case(smooth_surfels(), kAll, seed));
 }
 
-TEST_CASE("Gradients match where the low-pass alone decides") {
-  const std::uint64_t seed = GENERATE(range(30, 35));
-  INFO("seed " << seed);
+TEST_CASE("Gradients match where the low-pass alone decides, edge-on, and across the camera plane"
+) {
+  struct Kind {
+    const char* name;
+    double RandomSurfels::*share;
+    std::size_t count;
+    std::uint64_t first_seed;
+  };
+  const Kind kind = GENERATE(
+      Kind{"tiny", &RandomSurfels::tiny, 12, 30},
+      Kind{"edge on", &RandomSurfels::edge_on, 8, 40},
+      Kind{"at the camera", &RandomSurfels::at_camera, 6, 50}
+  );
+  const std::uint64_t seed = kind.first_seed + GENERATE(0, 1, 2, 3, 4);
+  INFO(kind.name << ", seed " << seed);
   RandomSurfels options = smooth_surfels();
-  options.tiny = 1;
-  options.count = 12;
-  check_gradients(random_case(options, kAll, seed));
-}
-
-TEST_CASE("Gradients match for edge-on surfels") {
-  const std::uint64_t seed = GENERATE(range(40, 45));
-  INFO("seed " << seed);
-  RandomSurfels options = smooth_surfels();
-  options.edge_on = 1;
-  options.count = 8;
-  check_gradients(random_case(options, kAll, seed));
-}
-
-TEST_CASE("Gradients match for surfels that cross the camera plane") {
-  const std::uint64_t seed = GENERATE(range(50, 55));
-  INFO("seed " << seed);
-  RandomSurfels options = smooth_surfels();
-  options.at_camera = 1;
+  options.*kind.share = 1;
+  options.count = kind.count;
   check_gradients(random_case(options, kAll, seed));
 }
 

@@ -9,6 +9,7 @@
 #include "tests/support/count_launches.h"
 #include "tests/support/gpu_backends.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/random_values.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -18,18 +19,6 @@ namespace {
 constexpr ImageSize kSize{45, 31};
 const Camera kCamera = look_at({0, -3, 0.5}, {0, 0, 0}, {0, 0, 1}, kSize, 70);
 
-SurfelCloud random_cloud() {
-  Rng rng(11);
-  SurfelCloud cloud;
-  cloud.resize(300);
-  for (float& v : cloud.means) v = rng.uniform(-1.2f, 1.2f);
-  for (float& v : cloud.log_scales) v = rng.uniform(-3.0f, -1.0f);
-  for (float& v : cloud.rotations) v = rng.normal();
-  for (float& v : cloud.opacity_logits) v = rng.uniform(-2.0f, 3.0f);
-  for (float& v : cloud.sh_dc) v = rng.normal();
-  for (float& v : cloud.sh_rest) v = 0.1f * rng.normal();
-  return cloud;
-}
 RasterOutputGradient noise(std::uint64_t seed) {
   Rng rng(seed);
   RasterOutputGradient g;
@@ -73,7 +62,7 @@ void add_gradient(const SurfelCloud& gradient, Bytes& bytes) {
 // Behind a near limit, then without: maps and gradients of both, those of the second first, as in a
 // step of GLINT. seeing_again: the second pass shares.
 struct Step {
-  TrainableSet set{random_cloud(), SetTraining{}};
+  TrainableSet set{ball_of_surfels(300, 11), SetTraining{}};
   RasterPass second;
   Image near{kSize.width, kSize.height, 1, 2.8f};
 

@@ -2,6 +2,7 @@
 #include "glint/train/normal_consistency.h"
 
 #include "tests/support/check_vjp.h"
+#include "tests/support/random_values.h"
 
 using namespace glint;
 using namespace glint::test;
@@ -115,43 +116,6 @@ TEST_CASE("Factors weigh the pixels of normal consistency, and its mean is over 
   );
 }
 
-TEST_CASE("The gradients of normal consistency match central differences") {
-  const Camera camera = test_camera(9, 8);
-  Rng rng(3);
-  Image depth(9, 8, 1), normal(9, 8, 3), alpha(9, 8, 1), factors(9, 8, 1);
-  for (float& z : depth.values()) z = rng.uniform(3, 3.5f);
-  for (float& v : normal.values()) v = rng.uniform(-1, 1);
-  for (float& a : alpha.values()) a = rng.uniform(0.5f, 1);
-  for (float& m : factors.values()) m = rng.uniform(0, 1.5f);
-  Image dL_dn(9, 8, 3), dL_dz(9, 8, 1);
-  NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 0.5f, dL_dn, dL_dz, factors);
-  const auto loss = [&] {
-    Image a(9, 8, 3), b(9, 8, 1);
-    return 0.5 *
-           NormalConsistencyLoss().evaluate(camera, normal, depth, alpha, 0.5f, a, b, factors);
-  };
-  const auto slope_at = [&](float& x, float h) {
-    const float at = x;
-    x = at + h;
-    const double up = static_cast<double>(x), above = loss();
-    x = at - h;
-    const double slope = (above - loss()) / (up - static_cast<double>(x));
-    x = at;
-    return slope;
-  };
-  // Depth steps of 1/256: the value's float rounding (1e-7 x 72 pixels) stays below the tolerance.
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
-    CHECK(
-        static_cast<double>(dL_dz.data()[i]) ==
-        Approx(slope_at(depth.data()[i], 1.0f / 256)).epsilon(0.02).margin(2e-4)
-    );
-  for (std::size_t i = 0; i < normal.values().size(); ++i)
-    CHECK(
-        static_cast<double>(dL_dn.data()[i]) ==
-        Approx(slope_at(normal.data()[i], 1.0f / 16)).epsilon(1e-3).margin(1e-6)
-    );
-}
-
 TEST_CASE("As a cosine the loss is the weighted mean over pixels that have a normal of the depth") {
   const Camera camera = test_camera(12, 10);
   const Vec3d n = normalize(Vec3d{0.1, 0.2, -1});
@@ -173,36 +137,54 @@ TEST_CASE("As a cosine the loss is the weighted mean over pixels that have a nor
   );
 }
 
-TEST_CASE("The gradients of the cosine match central differences") {
+namespace {
+
+// A step of one array's differences, and how near the gradient has to come.
+struct Differences {
+  float step;
+  double relative, absolute;
+};
+
+// `loss` on random maps, of weight 0.5.
+void check_slopes(
+    NormalConsistencyLoss loss, float lowest_normal, Differences depths, Differences normals
+) {
   const Camera camera = test_camera(9, 8);
-  Rng rng(5);
-  Image depth(9, 8, 1), normal(9, 8, 3), alpha(9, 8, 1, 1.0f), factors(9, 8, 1);
-  for (float& z : depth.values()) z = rng.uniform(3, 3.2f);
-  for (float& v : normal.values()) v = rng.uniform(0.2f, 1);
-  for (float& m : factors.values()) m = rng.uniform(0, 1.5f);
-  NormalConsistencyLoss of_cosine;
-  of_cosine.cosine = true;
+  Rng rng(3);
+  Image depth = random_map(rng, {9, 8}, 1, 3, 3.2f);
+  Image normal = random_map(rng, {9, 8}, 3, lowest_normal, 1);
+  const Image alpha = random_map(rng, {9, 8}, 1, loss.cosine ? 1 : 0.5f, 1);
+  const Image factors = random_map(rng, {9, 8}, 1, 0, 1.5f);
   Image dL_dn(9, 8, 3), dL_dz(9, 8, 1);
-  of_cosine.evaluate(camera, normal, depth, alpha, 1, dL_dn, dL_dz, factors);
-  const auto slope_at = [&](float& x) {
-    const float at = x, h = 1.0f / 256;
-    const auto loss_at = [&](float value) {
-      x = value;
-      Image a(9, 8, 3), b(9, 8, 1);
-      return of_cosine.evaluate(camera, normal, depth, alpha, 1, a, b, factors);
-    };
-    const double slope = (loss_at(at + h) - loss_at(at - h)) / (2 * static_cast<double>(h));
-    x = at;
-    return slope;
+  loss.evaluate(camera, normal, depth, alpha, 0.5f, dL_dn, dL_dz, factors);
+  const auto check = [&](Image& map, const Image& gradient, const Differences& by) {
+    for (std::size_t i = 0; i < map.values().size(); ++i) {
+      float& x = map.data()[i];
+      const float at = x;
+      const auto loss_at = [&](float value) {
+        x = value;
+        Image a(9, 8, 3), b(9, 8, 1);
+        return 0.5 * loss.evaluate(camera, normal, depth, alpha, 0.5f, a, b, factors);
+      };
+      const float up = at + by.step, down = at - by.step;
+      const double slope = (loss_at(up) - loss_at(down)) / static_cast<double>(up - down);
+      x = at;
+      CHECK(
+          static_cast<double>(gradient.data()[i]) ==
+          Approx(slope).epsilon(by.relative).margin(by.absolute)
+      );
+    }
   };
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
-    CHECK(
-        static_cast<double>(dL_dz.data()[i]) ==
-        Approx(slope_at(depth.data()[i])).epsilon(0.03).margin(5e-4)
-    );
-  for (std::size_t i = 0; i < normal.values().size(); ++i)
-    CHECK(
-        static_cast<double>(dL_dn.data()[i]) ==
-        Approx(slope_at(normal.data()[i])).epsilon(0.03).margin(5e-4)
-    );
+  check(depth, dL_dz, depths);
+  check(normal, dL_dn, normals);
+}
+
+}  // namespace
+
+TEST_CASE("The gradients of normal consistency match central differences, as a cosine, too") {
+  // Depth steps of 1/256: the value's float rounding (1e-7 x 72 pixels) stays below the tolerance.
+  NormalConsistencyLoss loss;
+  check_slopes(loss, -1, {1.0f / 256, 0.02, 2e-4}, {1.0f / 16, 1e-3, 1e-6});
+  loss.cosine = true;
+  check_slopes(loss, 0.2f, {1.0f / 256, 0.03, 2.5e-4}, {1.0f / 256, 0.03, 2.5e-4});
 }
