@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "glint/core/printable.h"
+#include "glint/core/rows.h"
 #include "metrics/metric.h"
 
 namespace glint {
@@ -41,23 +42,17 @@ std::string summary_text(const Json& value) {
 }
 
 void print_table(const ToolReport& report, const ToolScores& means, std::ostream& out) {
-  std::size_t name_width = 4;
-  for (const ImageScores& image : report.images)
-    name_width = std::max(name_width, image.files.name.size());
-  const auto print_row = [&](const std::string& name, auto&& cell) {
-    out << fmt::format("{:<{}}", name, name_width);
-    for (const auto& mean : means)
-      out << fmt::format(
-          "  {:>{}}", cell(mean.first), std::max<std::size_t>(10, mean.first.size())
-      );
-    out << "\n";
+  std::vector<Column> columns{{"", " "}};
+  for (const auto& [id, mean] : means) columns.push_back({"", id, "{}"});
+  Rows rows(columns);
+  const auto add = [&](const std::string& name, const ToolScores& scores) {
+    std::vector<Cell> cells{name};
+    for (const auto& [id, mean] : means) cells.emplace_back(rounded(id, find_score(scores, id)));
+    rows.add(cells);
   };
-  print_row("", [](const std::string& id) { return id; });
-  for (const ImageScores& image : report.images)
-    print_row(image.files.name, [&](const std::string& id) {
-      return rounded(id, find_score(image.scores, id));
-    });
-  print_row("mean", [&](const std::string& id) { return rounded(id, find_score(means, id)); });
+  for (const ImageScores& image : report.images) add(image.files.name, image.scores);
+  add("mean", means);
+  out << rows.text();
 }
 
 }  // namespace

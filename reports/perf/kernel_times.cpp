@@ -6,6 +6,7 @@
 #include "glint/core/kernel_trace.h"
 #include "glint/core/machine.h"
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "glint/cuda/backend.h"
 #include "glint/cuda/kernel_events.h"
 #include "reports/perf/perf.h"
@@ -43,20 +44,25 @@ std::vector<KernelRow> rows_of(
 
 bool runs_on_cuda() { return on_gpu() && device_name() == gpu::cuda_device().name; }
 
-// An op's rows under a line of its own, with the kernels' shares of their sum.
-std::string text_of_op(std::span<const KernelRow> rows) {
+double sum_of(std::span<const KernelRow> rows) {
   double sum = 0;
   for (const KernelRow& row : rows) sum += row.ms;
-  std::string text = fmt::format("{}: {:.3f} ms in kernels\n", rows[0].op, sum);
-  for (const KernelRow& row : rows)
-    text += fmt::format(
-        "  {:>10.4f} {:>6.1f} % {:>8.1f}  {}\n",
-        row.ms,
-        100 * row.ms / sum,
-        row.launches,
-        row.kernel
-    );
-  return text;
+  return sum;
+}
+
+// With the kernels' shares of their sum.
+Rows listed(std::span<const KernelRow> rows) {
+  Rows list(
+      {{"ms", "ms", "{:.4f}"},
+       {"", "share", "{:.1f} %"},
+       {"launches", "launches", "{:.1f}"},
+       {"kernel", "kernel"}},
+      "op"
+  );
+  const double sum = sum_of(rows);
+  for (const auto& [op, kernel, launches, ms] : rows)
+    list.add({ms, 100 * ms / sum, launches, kernel, op});
+  return list;
 }
 
 }  // namespace
@@ -79,28 +85,25 @@ std::vector<KernelRow> run_kernel_times(const PerfOptions& options) {
 
 Json kernels_to_json(const PerfOptions& options, const std::vector<KernelRow>& rows) {
   Json json = perf_setting(options);
-  for (const KernelRow& row : rows)
-    json["rows"].push_back(
-        {{"op", row.op}, {"kernel", row.kernel}, {"launches", row.launches}, {"ms", row.ms}}
-    );
+  json["rows"] = listed(rows).json();
   return json;
 }
 
+// An op's rows under a line of its own.
 std::string kernels_to_text(const PerfOptions& options, const std::vector<KernelRow>& rows) {
   std::string text = fmt::format(
-      "{}x{}, {} surfels, means of {} runs, {}\n  {:>10} {:>8} {:>8}  kernel\n",
+      "{}x{}, {} surfels, means of {} runs, {}\n",
       options.width,
       options.height,
       options.surfels,
       options.runs,
-      on_gpu() ? device_name() : this_machine().cpu,
-      "ms",
-      "share",
-      "launches"
+      on_gpu() ? device_name() : this_machine().cpu
   );
   for (std::size_t begin = 0, end = 0; begin < rows.size(); begin = end) {
     while (end < rows.size() && rows[end].op == rows[begin].op) ++end;
-    text += text_of_op(std::span(rows).subspan(begin, end - begin));
+    const std::span of_op = std::span(rows).subspan(begin, end - begin);
+    text += fmt::format("{}: {:.3f} ms in kernels\n", rows[begin].op, sum_of(of_op));
+    text += listed(of_op).text();
   }
   return text;
 }

@@ -11,6 +11,7 @@
 #include "glint/core/median.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "glint/cuda/backend.h"
 #include "glint/render/void_steps.h"
 #include "reports/records/environment.h"
@@ -81,21 +82,61 @@ std::string rate(double per_second, const std::string& unit) {
 }
 
 std::string asked_text(const std::vector<PerfRow>& rows) {
-  std::string text = fmt::format("\nasked of the device in a run\n{:<34}", "op");
+  std::vector<Column> columns{{"", "op"}};
   DeviceCounters names;
   DeviceCounters::for_each(
-      [&](const char* name, std::uint64_t) { text += fmt::format(" {:>12}", name); }, names
+      [&](const char* name, std::uint64_t) {
+        columns.push_back({"", name, "{}"});
+      },
+      names
   );
+  Rows asked(columns);
   for (const PerfRow& row : rows) {
-    text += fmt::format("\n{:<34}", row.name);
+    std::vector<Cell> cells{row.name};
     DeviceCounters::for_each(
-        [&](const char*, std::uint64_t count) { text += fmt::format(" {:>12}", count); }, row.asked
+        [&](const char*, std::uint64_t count) { cells.emplace_back(count); }, row.asked
     );
+    asked.add(cells);
   }
-  return text + "\n";
+  return "\nasked of the device in a run\n" + asked.text();
 }
 
 std::string ratio(double value) { return value > 0 ? fmt::format("{:.2f}x", value) : "-"; }
+
+Cell asked_cell(const PerfRow& row) {
+  if (!on_gpu()) return Cell::absent();
+  Json asked;
+  DeviceCounters::for_each(
+      [&](const char* name, std::uint64_t count) { asked[name] = count; }, row.asked
+  );
+  return asked;
+}
+
+Rows listed(const std::vector<PerfRow>& rows) {
+  Rows list(
+      {{"op", "op"},
+       {"threads", "threads", "{}"},
+       {"ms", "ms", "{:.3f}"},
+       {"per_second", "rate", "{}"},
+       {"scalar_ratio", "vs scalar", "{}"},
+       {"thread_ratio", "vs 1 thr.", "{}"},
+       {"bytes_per_second", "moves", "{}"}},
+      "unit asked"
+  );
+  for (const PerfRow& row : rows)
+    list.add(
+        {row.name,
+         row.threads,
+         row.ms,
+         {row.per_second, rate(row.per_second, row.unit)},
+         {row.scalar_ratio, ratio(row.scalar_ratio)},
+         {row.thread_ratio, ratio(row.thread_ratio)},
+         {row.bytes_per_second, row.bytes_per_second > 0 ? rate(row.bytes_per_second, "B") : "-"},
+         row.unit,
+         asked_cell(row)}
+    );
+  return list;
+}
 
 }  // namespace
 
@@ -152,56 +193,21 @@ Json perf_setting(const PerfOptions& options) {
 Json perf_to_json(const PerfOptions& options, const std::vector<PerfRow>& rows) {
   Json json = perf_setting(options);
   if (on_gpu()) json["copy_bytes_per_second"] = gpu::measure_copy_bandwidth(kCopyBytes);
-  for (const PerfRow& row : rows) {
-    json["rows"].push_back(
-        {{"op", row.name},
-         {"threads", row.threads},
-         {"ms", row.ms},
-         {"unit", row.unit},
-         {"per_second", row.per_second},
-         {"scalar_ratio", row.scalar_ratio},
-         {"thread_ratio", row.thread_ratio},
-         {"bytes_per_second", row.bytes_per_second}}
-    );
-    DeviceCounters::for_each(
-        [&](const char* name, std::uint64_t count) {
-          if (on_gpu()) json["rows"].back()["asked"][name] = count;
-        },
-        row.asked
-    );
-  }
+  json["rows"] = listed(rows).json();
   return json;
 }
 
 std::string perf_to_text(const PerfOptions& options, const std::vector<PerfRow>& rows) {
   std::string text = fmt::format(
-      "{}x{}, {} surfels (overlap {}), medians of {} runs, {}\n{:<34} {:>7} {:>10} {:>16} {:>10} "
-      "{:>10} {:>10}\n",
+      "{}x{}, {} surfels (overlap {}), medians of {} runs, {}\n",
       options.width,
       options.height,
       options.surfels,
       options.overlap,
       options.runs,
-      on_gpu() ? device_name() : this_machine().cpu,
-      "op",
-      "threads",
-      "ms",
-      "rate",
-      "vs scalar",
-      "vs 1 thr.",
-      "moves"
+      on_gpu() ? device_name() : this_machine().cpu
   );
-  for (const PerfRow& row : rows)
-    text += fmt::format(
-        "{:<34} {:>7} {:>10.3f} {:>16} {:>10} {:>10} {:>10}\n",
-        row.name,
-        row.threads,
-        row.ms,
-        rate(row.per_second, row.unit),
-        ratio(row.scalar_ratio),
-        ratio(row.thread_ratio),
-        row.bytes_per_second > 0 ? rate(row.bytes_per_second, "B") : "-"
-    );
+  text += listed(rows).text();
   if (on_gpu())
     text += fmt::format(
         "copies inside the device: {}\n", rate(gpu::measure_copy_bandwidth(kCopyBytes), "B")

@@ -8,6 +8,7 @@
 #include "glint/core/device.h"
 #include "glint/core/machine.h"
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "glint/method.h"
 #include "glint/render/surfel_set.h"
 #include "reports/perf/perf_scene.h"
@@ -120,12 +121,52 @@ double fitted_slope(std::span<const double> x, std::span<const double> y) {
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-Json slopes_to_json(const LogSlope& slope) {
-  return {{"fitted", number_or_null(slope.fitted)}, {"last", number_or_null(slope.last)}};
+Cell slope_cell(const ScalingSweep& sweep, double ScalingPoint::*value) {
+  const LogSlope slope = sweep.slope_of(value);
+  return {
+      {{"fitted", number_or_null(slope.fitted)}, {"last", number_or_null(slope.last)}},
+      std::isfinite(slope.fitted) ? fmt::format("{:.2f} {:.2f}", slope.fitted, slope.last) : "-"};
 }
 
-std::string slope_text(const LogSlope& slope) {
-  return std::isfinite(slope.fitted) ? fmt::format("{:.2f} {:.2f}", slope.fitted, slope.last) : "-";
+Cell points_cell(const ScalingSweep& sweep) {
+  Json points = Json::array();
+  std::string words;
+  for (const auto& [surfels, size, pairs, ms, memory_mb] : sweep.points) {
+    points.push_back(
+        {{"surfels", surfels},
+         {"width", size.width},
+         {"height", size.height},
+         {"pairs", pairs},
+         {"ms", ms},
+         {"memory_mb", memory_mb}}
+    );
+    words += fmt::format("{:.0f} ({:.0f}) ", ms, memory_mb);
+  }
+  return {points, words + (sweep.is_steep() ? " STEEPER THAN LINEAR" : "")};
+}
+
+Rows listed(const std::vector<ScalingSweep>& sweeps) {
+  Rows list(
+      {{"method", "method"},
+       {"variable", "against"},
+       {"time_slope", "time"},
+       {"memory_slope", "memory"},
+       {"pairs_slope", "pairs"},
+       {"points", "ms (MB)"}},
+      "left_out steep"
+  );
+  for (const ScalingSweep& sweep : sweeps)
+    list.add(
+        {sweep.method,
+         name_of(sweep.variable),
+         slope_cell(sweep, &ScalingPoint::ms),
+         slope_cell(sweep, &ScalingPoint::memory_mb),
+         slope_cell(sweep, &ScalingPoint::pairs),
+         points_cell(sweep),
+         sweep.left_out,
+         sweep.is_steep()}
+    );
+  return list;
 }
 
 }  // namespace
@@ -164,28 +205,7 @@ std::vector<ScalingSweep> run_scaling(const ScalingOptions& options) {
 
 Json scaling_to_json(const ScalingOptions& options, const std::vector<ScalingSweep>& sweeps) {
   Json json = perf_setting(options.base);
-  for (const ScalingSweep& sweep : sweeps) {
-    Json points = Json::array();
-    for (const ScalingPoint& point : sweep.points)
-      points.push_back(
-          {{"surfels", point.surfels},
-           {"width", point.size.width},
-           {"height", point.size.height},
-           {"pairs", point.pairs},
-           {"ms", point.ms},
-           {"memory_mb", point.memory_mb}}
-      );
-    json["rows"].push_back(
-        {{"method", sweep.method},
-         {"variable", name_of(sweep.variable)},
-         {"points", points},
-         {"left_out", sweep.left_out},
-         {"time_slope", slopes_to_json(sweep.slope_of(&ScalingPoint::ms))},
-         {"memory_slope", slopes_to_json(sweep.slope_of(&ScalingPoint::memory_mb))},
-         {"pairs_slope", slopes_to_json(sweep.slope_of(&ScalingPoint::pairs))},
-         {"steep", sweep.is_steep()}}
-    );
-  }
+  json["rows"] = listed(sweeps).json();
   return json;
 }
 
@@ -194,35 +214,17 @@ std::string scaling_to_text(
 ) {
   std::string text = fmt::format(
       "steps of each method, the least of {} runs, {}; base {}x{} and {} surfels a set\n"
-      "slopes of logarithms: through all points, through the last three (1: linear)\n"
-      "{:<14} {:<8} {:>12} {:>12} {:>12}  ms ({:s})\n",
+      "slopes of logarithms: through all points, through the last three (1: linear)\n{}",
       options.base.runs,
       device_name(),
       options.base.width,
       options.base.height,
       options.base.surfels,
-      "method",
-      "against",
-      "time",
-      "memory",
-      "pairs",
-      "MB"
+      listed(sweeps).text()
   );
-  for (const ScalingSweep& sweep : sweeps) {
-    text += fmt::format(
-        "{:<14} {:<8} {:>12} {:>12} {:>12} ",
-        sweep.method,
-        name_of(sweep.variable),
-        slope_text(sweep.slope_of(&ScalingPoint::ms)),
-        slope_text(sweep.slope_of(&ScalingPoint::memory_mb)),
-        slope_text(sweep.slope_of(&ScalingPoint::pairs))
-    );
-    for (const ScalingPoint& point : sweep.points)
-      text += fmt::format(" {:.0f} ({:.0f})", point.ms, point.memory_mb);
-    text += sweep.is_steep() ? "  STEEPER THAN LINEAR\n" : "\n";
+  for (const ScalingSweep& sweep : sweeps)
     for (const std::string& reason : sweep.left_out)
-      text += fmt::format("{:<14} left out: {}\n", "", reason);
-  }
+      text += fmt::format("{} left out: {}\n", sweep.method, reason);
   return text;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glint/core/rows.h"
 #include "reports/tables/compare.h"
 #include "reports/tables/table_writers.h"
 
@@ -24,23 +25,40 @@ std::string_view verdict_word(const ValueChange& change) {
   return "changed";
 }
 
-std::string number(double value) { return fmt::format("{:.5g}", value); }
+using Wanted = bool (*)(const ValueChange&);
 
-std::vector<std::string> value_row(const ValueChange& change) {
-  return {
-      fmt::format("{}/{}", change.scene, change.method),
-      fmt::format("{} {}", change.metric, order_arrow(change.order)),
-      number(change.before),
-      number(change.after),
-      fmt::format("{:+.3g}", change.difference()),
-      fmt::format("± {:.3g}", change.allowed),
-      std::string(verdict_word(change))};
+Rows rows_of(const Comparison& comparison, Wanted wanted) {
+  Rows rows(
+      {{"", "scene/method"},
+       {"metric", "metric", "{}"},
+       {"before", "before", "{:.5g}"},
+       {"after", "after", "{:.5g}"},
+       {"difference", "difference", "{:+.3g}"},
+       {"allowed", "allowed", "± {:.3g}"},
+       {"verdict", "verdict"}},
+      "scene method n_seeds regression"
+  );
+  for (const ValueChange& change : comparison.values)
+    if (wanted(change))
+      rows.add(
+          {change.scene + "/" + change.method,
+           {change.metric, fmt::format("{} {}", change.metric, order_arrow(change.order))},
+           change.before,
+           change.after,
+           change.difference(),
+           change.allowed,
+           verdict_word(change),
+           change.scene,
+           change.method,
+           change.num_seeds,
+           change.regression}
+      );
+  return rows;
 }
 
-const std::vector<std::string> kHeader = {
-    "scene/method", "metric", "before", "after", "difference", "allowed", "verdict"};
-
-bool beyond(const ValueChange& change) { return change.verdict != Verdict::kWithinSpread; }
+bool any(const ValueChange&) { return true; }
+bool within(const ValueChange& change) { return change.verdict == Verdict::kWithinSpread; }
+bool beyond(const ValueChange& change) { return !within(change); }
 
 std::string count(std::size_t number, std::string_view what) {
   return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
@@ -88,26 +106,17 @@ std::string markdown_row(const std::vector<std::string>& cells) {
   return row;
 }
 
-std::string markdown_table(const Comparison& comparison, bool rows_beyond) {
-  std::string text;
-  for (const ValueChange& change : comparison.values)
-    if (beyond(change) == rows_beyond) text += markdown_row(value_row(change));
-  if (text.empty()) return text;
-  return fmt::format("\n{}|---|---|---:|---:|---:|---:|---|\n{}", markdown_row(kHeader), text);
-}
-
-Json value_json(const ValueChange& change) {
-  return {
-      {"scene", change.scene},
-      {"method", change.method},
-      {"metric", change.metric},
-      {"before", change.before},
-      {"after", change.after},
-      {"difference", change.difference()},
-      {"allowed", change.allowed},
-      {"n_seeds", change.num_seeds},
-      {"verdict", verdict_word(change)},
-      {"regression", change.regression}};
+// Empty where no value is wanted.
+std::string markdown_table(const Comparison& comparison, Wanted wanted) {
+  const Rows rows = rows_of(comparison, wanted);
+  if (rows.empty()) return "";
+  const auto lines = rows.lines();
+  std::string text = "\n";
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text += markdown_row(lines[i]);
+    if (i == 0) text += "|---|---|---:|---:|---:|---:|---|\n";
+  }
+  return text;
 }
 
 Json cells_json(const std::vector<CellKey>& cells) {
@@ -119,20 +128,18 @@ Json cells_json(const std::vector<CellKey>& cells) {
 }  // namespace
 
 std::string comparison_text(const Comparison& comparison) {
-  std::vector<std::vector<std::string>> rows{kHeader};
-  for (const ValueChange& change : comparison.values) rows.push_back(value_row(change));
-  std::string text = rows.size() > 1 ? aligned_rows(rows) : "";
+  std::string text = comparison.values.empty() ? "" : rows_of(comparison, any).text();
   for (const std::string& line : other_lines(comparison)) text += line + "\n";
   return text + rule_line(comparison) + "\n" + summary_line(comparison) + "\n";
 }
 
 std::string comparison_markdown(const Comparison& comparison) {
   std::string text = fmt::format("**{}**\n", summary_line(comparison));
-  text += markdown_table(comparison, true) + "\n";
+  text += markdown_table(comparison, beyond) + "\n";
   for (const std::string& line : other_lines(comparison))
     text += fmt::format("- {}\n", markdown_text(line));
-  if (const std::string within = markdown_table(comparison, false); !within.empty())
-    text += "\n<details><summary>Within the spread</summary>\n" + within + "\n</details>\n";
+  if (const std::string table = markdown_table(comparison, within); !table.empty())
+    text += "\n<details><summary>Within the spread</summary>\n" + table + "\n</details>\n";
   return text + "\n" + rule_line(comparison) + "\n";
 }
 
@@ -142,12 +149,11 @@ Json comparison_json(const Comparison& comparison) {
       {"n_cells", comparison.num_cells},
       {"n_values", comparison.num_values},
       {"tolerance", comparison.tolerance},
-      {"values", Json::array()},
+      {"values", rows_of(comparison, any).json()},
       {"cells", Json::array()},
       {"before_only", cells_json(comparison.before_only)},
       {"after_only", cells_json(comparison.after_only)},
       {"notes", comparison.notes}};
-  for (const ValueChange& change : comparison.values) json["values"].push_back(value_json(change));
   for (const CellChange& change : comparison.cells)
     json["cells"].push_back(
         {{"cell", change.cell.text()}, {"what", change.what}, {"regression", change.regression}}

@@ -3,7 +3,6 @@
 // columns carry a dagger, values that are not ranked an asterisk.
 #pragma once
 
-#include <set>
 #include <string>
 #include <vector>
 
@@ -44,9 +43,7 @@ struct TerminalStyle {
   std::size_t width = 0;  // columns of the terminal; 0: no limit
   bool brief = false;     // rows and measured columns with values, notes on means and marks
 };
-// What is too wide for the terminal gets headers of several lines, then loses columns without a
-// value, then published ones (a note says so), and at last comes in blocks below each other, each
-// with the methods.
+// What is too wide for the terminal comes in blocks below each other, each with the methods.
 std::string table_terminal(const Table& table, TerminalStyle style = {});
 
 // Measured minus published, for the columns that the paper has on its first dataset; no columns
@@ -59,16 +56,7 @@ std::string latex_document(const std::vector<Table>& tables);
 // FOLDER/<id>.md, .tex, .csv, .json, .html; <id>_differences.tex where there are any
 void write_table(const fs::path& folder, const Table& table);
 
-// Plain rows in aligned columns, two spaces apart; columns of `words` flush left, others right. For
-// listings that are no Table (plan, status, selftest).
-std::string aligned_rows(
-    const std::vector<std::vector<std::string>>& rows, const std::set<std::size_t>& words = {0}
-);
-
 // Text inside a cell of a Markdown table: pipes and tags stay letters.
 std::string markdown_text(std::string_view text);
-
-// Characters of a UTF-8 text (not bytes): the width on a terminal of the scripts used here.
-std::size_t text_width(std::string_view utf8);
 
 }  // namespace glint

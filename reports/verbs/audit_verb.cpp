@@ -7,9 +7,9 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "reports/provenance/audit.h"
 #include "reports/provenance/checked.h"
-#include "reports/verbs/listing.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -105,12 +105,12 @@ std::string audit_text(const std::vector<AuditedMethod>& methods) {
       lines.push_back({method.method, "spread", word, spread_text(method)});
     same += method.same_bytes();
   }
-  return listing(lines) + fmt::format(
-                              "{} of {} methods trained to the same bytes each time, on {}\n",
-                              same,
-                              methods.size(),
-                              device_name()
-                          );
+  return aligned_rows(lines) + fmt::format(
+                                   "{} of {} methods trained to the same bytes each time, on {}\n",
+                                   same,
+                                   methods.size(),
+                                   device_name()
+                               );
 }
 
 Json run_json(const AuditedRun& run) {

@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "reports/records/leftovers.h"
-#include "reports/verbs/listing.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -18,28 +18,23 @@ std::string size_text(std::uintmax_t bytes) {
   return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
 }
 
-Json clean_json(const std::vector<Leftover>& leftovers, bool removed) {
-  Json json = {{"removed", removed}, {"leftovers", Json::array()}};
+Rows rows_of(const std::vector<Leftover>& leftovers) {
+  Rows rows({{"path"}, {"bytes"}, {"why"}});
   for (const Leftover& leftover : leftovers)
-    json["leftovers"].push_back(
-        {{"path", leftover.path.string()}, {"why", leftover.why}, {"bytes", leftover.bytes}}
-    );
-  return json;
+    rows.add({leftover.path.string(), {leftover.bytes, size_text(leftover.bytes)}, leftover.why});
+  return rows;
 }
 
 std::string clean_text(const std::vector<Leftover>& leftovers, bool removed) {
   if (leftovers.empty()) return "nothing is left over\n";
-  std::vector<std::vector<std::string>> rows;
   std::uintmax_t bytes = 0;
-  for (const Leftover& leftover : leftovers) {
-    rows.push_back({leftover.path.string(), size_text(leftover.bytes), leftover.why});
-    bytes += leftover.bytes;
-  }
-  return listing(rows) + fmt::format(
-                             "{} in all, {}\n",
-                             size_text(bytes),
-                             removed ? "removed" : "nothing was removed: that takes --yes"
-                         );
+  for (const Leftover& leftover : leftovers) bytes += leftover.bytes;
+  return rows_of(leftovers).text() +
+         fmt::format(
+             "{} in all, {}\n",
+             size_text(bytes),
+             removed ? "removed" : "nothing was removed: that takes --yes"
+         );
 }
 
 int run_clean(const CommonOptions& common, const CleanOptions& options) {
@@ -48,7 +43,7 @@ int run_clean(const CommonOptions& common, const CleanOptions& options) {
   if (options.remove)
     for (const Leftover& leftover : leftovers) remove_leftover(leftover);
   if (common.json)
-    print_json(clean_json(leftovers, options.remove));
+    print_json({{"removed", options.remove}, {"leftovers", rows_of(leftovers).json()}});
   else
     print_text(clean_text(leftovers, options.remove));
   return 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reports/verbs/command_line.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -260,5 +261,13 @@ void print_raw(std::string_view text) {
 }
 
 bool color_terminal() { return ::isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }
+
+std::size_t terminal_width() {
+  if (const char* columns = std::getenv("COLUMNS"))
+    if (const long width = std::strtol(columns, nullptr, 10); width > 0)
+      return static_cast<std::size_t>(width);
+  winsize size{};
+  return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
 
 }  // namespace glint

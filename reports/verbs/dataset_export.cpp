@@ -8,6 +8,7 @@
 #include "datasets/dataset.h"
 #include "datasets/export/exporter.h"
 #include "glint/core/error.h"
+#include "glint/core/rows.h"
 #include "metrics/tools/numeric_options.h"
 
 namespace glint {
@@ -26,23 +27,21 @@ ExportOptions export_options(const ExportArguments& arguments) {
   return {arguments.format, splits.at(arguments.split), arguments.force};
 }
 
-void print_report(const std::string& out, const std::string& format, const ExportReport& report) {
-  std::size_t width = 0;
-  for (const ExportReport::Part& part : report.parts) width = std::max(width, part.files.size());
-  std::string text = fmt::format("{}: {}\n", out, format);
-  for (const ExportReport::Part& part : report.parts)
-    text += fmt::format("  {:{}}  {}\n", part.files, width, part.what);
+void print_report(
+    const CommonOptions& common, const std::string& format, const ExportReport& report
+) {
+  Rows parts({{"files"}, {"what"}});
+  for (const ExportReport::Part& part : report.parts) parts.add({part.files, part.what});
+  if (common.json)
+    return print_json(
+        {{"folder", common.out},
+         {"format", format},
+         {"parts", parts.json()},
+         {"notes", report.notes}}
+    );
+  std::string text = fmt::format("{}: {}\n{}", common.out, format, parts.text());
   for (const std::string& note : report.notes) text += fmt::format("- {}\n", note);
   print_text(text);
-}
-
-void print_report_json(
-    const std::string& out, const std::string& format, const ExportReport& report
-) {
-  Json parts = Json::array();
-  for (const ExportReport::Part& part : report.parts)
-    parts.push_back({{"files", part.files}, {"what", part.what}});
-  print_json({{"folder", out}, {"format", format}, {"parts", parts}, {"notes", report.notes}});
 }
 
 int run_export(const CommonOptions& common, const ExportArguments& arguments, bool out_given) {
@@ -51,7 +50,7 @@ int run_export(const CommonOptions& common, const ExportArguments& arguments, bo
   check_export(common.out, options);
   const Scene scene = load_scene(arguments.folder, arguments.load);
   const ExportReport report = export_scene(scene, common.out, options);
-  (common.json ? print_report_json : print_report)(common.out, arguments.format, report);
+  print_report(common, arguments.format, report);
   return 0;
 }
 

@@ -2,8 +2,8 @@
 #include "reports/verbs/dataset_manifest.h"
 
 #include "datasets/scene_index.h"
+#include "glint/core/rows.h"
 #include "reports/records/manifest.h"
-#include "reports/verbs/listing.h"
 #include "reports/verbs/print_findings.h"
 
 namespace glint {
@@ -52,11 +52,33 @@ std::string views_text(const ManifestSceneState& state) {
                                : fmt::format("{}, {} with true depth", text, state.with_depth);
 }
 
-std::string states_text(
-    const PlacedManifest& placed, const std::vector<ManifestSceneState>& states
-) {
-  const Manifest& manifest = *placed.manifest;
-  std::string text = fmt::format(
+Rows rows_of(const std::vector<ManifestSceneState>& states) {
+  Rows rows(
+      {{"name"}, {""}, {""}, {""}},
+      "folder there train_views test_views test_views_with_true_depth stored_size used_size hash "
+      "first_hash"
+  );
+  for (const ManifestSceneState& state : states)
+    rows.add(
+        {state.name,
+         state.there ? views_text(state) : "missing",
+         size_text(state),
+         hash_text(state),
+         state.folder.string(),
+         state.there,
+         state.train,
+         state.test,
+         state.with_depth,
+         state.stored_size,
+         state.loaded_size,
+         state.hash,
+         state.first_hash}
+    );
+  return rows;
+}
+
+std::string heading_of(const Manifest& manifest) {
+  return fmt::format(
       "{} ({}): {}\nfrom {}\nimages: {} of the stored sides, area average\n",
       manifest.id,
       manifest.title,
@@ -64,35 +86,6 @@ std::string states_text(
       manifest.source,
       manifest.image_ratio
   );
-  std::vector<std::vector<std::string>> lines;
-  for (const ManifestSceneState& state : states) {
-    std::vector<std::string> line{state.name, "missing", "", ""};
-    if (state.there) line = {state.name, views_text(state), size_text(state), hash_text(state)};
-    lines.push_back(std::move(line));
-  }
-  return text + listing(lines);
-}
-
-Json states_json(const PlacedManifest& placed, const std::vector<ManifestSceneState>& states) {
-  Json scenes = Json::array();
-  for (const ManifestSceneState& state : states)
-    scenes.push_back(
-        {{"name", state.name},
-         {"folder", state.folder.string()},
-         {"there", state.there},
-         {"train_views", state.train},
-         {"test_views", state.test},
-         {"test_views_with_true_depth", state.with_depth},
-         {"stored_size", state.stored_size},
-         {"used_size", state.loaded_size},
-         {"hash", state.hash},
-         {"first_hash", state.first_hash}}
-    );
-  return {
-      {"dataset", placed.manifest->id},
-      {"image_ratio", placed.manifest->image_ratio},
-      {"resize_filter", "area"},
-      {"scenes", scenes}};
 }
 
 struct Examined {
@@ -114,12 +107,18 @@ std::optional<Examined> examine(const CommonOptions& common, const std::string& 
 std::optional<int> show_manifest(const CommonOptions& common, const std::string& name) {
   const auto examined = examine(common, name);
   if (!examined) return std::nullopt;
-  Json json = states_json(examined->placed, examined->states);
-  json["findings"] = findings_json(examined->findings);
+  const Manifest& manifest = *examined->placed.manifest;
+  const Rows rows = rows_of(examined->states);
   if (common.json)
-    print_json(json);
+    print_json(
+        {{"dataset", manifest.id},
+         {"image_ratio", manifest.image_ratio},
+         {"resize_filter", "area"},
+         {"scenes", rows.json()},
+         {"findings", findings_json(examined->findings)}}
+    );
   else
-    print_text(states_text(examined->placed, examined->states) + findings_text(examined->findings));
+    print_text(heading_of(manifest) + rows.text() + findings_text(examined->findings));
   return 0;
 }
 

@@ -6,7 +6,9 @@
 #include "datasets/glassroom/glassroom.h"
 #include "datasets/packed_scene.h"
 #include "glint/core/interrupt.h"
+#include "glint/core/nearest.h"
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "metrics/tools/numeric_options.h"
 #include "reports/verbs/dataset_compare.h"
 #include "reports/verbs/dataset_export.h"
@@ -103,17 +105,13 @@ std::vector<std::string> names_of_views(const std::vector<View>& views) {
 }
 
 // Names of test views in lines of a terminal's width, behind the column of titles.
-std::string wrapped_names(const std::vector<View>& views) {
-  constexpr std::size_t kIndent = 15, kWidth = 100;
-  std::string text, line;
-  for (const View& view : views) {
-    if (!line.empty() && kIndent + line.size() + 2 + view.name.size() > kWidth) {
-      text += line + ",\n" + std::string(kIndent, ' ');
-      line.clear();
-    }
-    line += (line.empty() ? "" : ", ") + view.name;
-  }
-  return views.empty() ? "none" : text + line;
+std::string names_text(const std::vector<View>& views) {
+  constexpr std::string_view kTitles = "               ";
+  if (views.empty()) return "none";
+  std::string text;
+  for (const std::string& line : wrapped(comma_list(names_of_views(views)), 100 - kTitles.size()))
+    text.append("\n").append(kTitles).append(line);
+  return text.substr(1 + kTitles.size());
 }
 
 std::string split_rule_of(const LoaderSpec& loader, const std::string& folder) {
@@ -157,7 +155,7 @@ int run_info(const CommonOptions& common, const FolderOptions& options) {
         describe_scene(scene),
         loader.name,
         split_rule,
-        wrapped_names(scene.test)
+        names_text(scene.test)
     ));
   return 0;
 }

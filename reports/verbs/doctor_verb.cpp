@@ -8,6 +8,7 @@
 #include "glint/core/error.h"
 #include "glint/core/machine.h"
 #include "glint/core/parallel.h"
+#include "glint/core/rows.h"
 #include "glint/drawing/canvas.h"
 #include "metrics/feature_net.h"
 #include "metrics/fusion/tsdf_volume.h"
@@ -18,7 +19,6 @@
 #include "reports/records/environment.h"
 #include "reports/records/revision.h"
 #include "reports/verbs/doctor_card.h"
-#include "reports/verbs/listing.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -161,7 +161,7 @@ std::string doctor_text(const std::vector<Checked>& rows) {
     lines.push_back({row.name, std::string(state_word(row.state)), row.detail});
     if (!row.advice.empty()) lines.push_back({"", "", "-> " + row.advice});
   }
-  return listing(lines);
+  return aligned_rows(lines);
 }
 
 struct DoctorOptions {

@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <vector>
 
+#include "glint/core/rows.h"
 #include "metrics/metric.h"
 #include "reports/tables/table_cells.h"
-#include "reports/verbs/listing.h"
 
 namespace glint {
 
@@ -34,13 +33,10 @@ std::string unit_of(const std::string& id) {
   return id == "fps" ? "frames/s" : "";
 }
 
-// Numbers end in one column.
-std::string right(const std::string& number) { return fmt::format("{:>10}", number); }
-
 }  // namespace
 
 std::string headline_scores(const std::map<std::string, double>& means) {
-  std::vector<std::vector<std::string>> rows;
+  Rows rows({{""}, {"", "", "{}"}, {""}, {""}});
   for (const TableColumn& column : headline_columns()) {
     auto found = means.find(column.metric);
     const bool exact = found != means.end();
@@ -49,21 +45,20 @@ std::string headline_scores(const std::map<std::string, double>& means) {
     const std::string value =
         found == means.end() ? "-" : format_value(column.scale * found->second, column.decimals);
     const bool higher = column.order == RankOrder::kHigherFirst;
-    rows.push_back(
+    rows.add(
         {column.title + (eight_bit ? " of 8-bit images" : ""),
-         right(value),
+         value,
          column.unit,
          higher ? "higher is better" : "lower is better"}
     );
   }
-  return listing(rows);
+  return rows.text();
 }
 
 std::string all_scores(const std::map<std::string, double>& means) {
-  std::vector<std::vector<std::string>> rows;
-  for (const auto& [id, value] : means)
-    rows.push_back({id, right(fmt::format("{:.4f}", value)), unit_of(id)});
-  return listing(rows);
+  Rows rows({{""}, {"", "", "{:.4f}"}, {""}});
+  for (const auto& [id, value] : means) rows.add({id, value, unit_of(id)});
+  return rows.text();
 }
 
 }  // namespace glint

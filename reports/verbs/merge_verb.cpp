@@ -5,10 +5,10 @@
 
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "reports/parcels/complete_meshes.h"
 #include "reports/parcels/find_parcels.h"
 #include "reports/parcels/take_parcel.h"
-#include "reports/verbs/listing.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -82,48 +82,42 @@ std::string counts_text(const MergeResult& result) {
   return text;
 }
 
-std::string merged_text(const MergeResult& result, bool dry_run) {
-  std::vector<std::vector<std::string>> rows;
-  for (const MergedCell& cell : result.cells)
-    rows.push_back(
-        {cell.cell.text(), std::string(merge_verdict_name(cell.verdict)), cell.from, cell.why}
-    );
-  for (const LostParcel& parcel : result.lost)
-    rows.push_back({"-", "lost", parcel.file, parcel.why});
-  for (const CompletedCell& cell : result.completed)
-    rows.push_back(
-        {cell.cell.text(),
-         !cell.made ? "no meshes" : (dry_run ? "would be meshed" : "meshed"),
-         "",
-         cell.why_not}
-    );
-  return listing(rows) + counts_text(result);
+// The lists of the JSON, which are one in text.
+struct MergedRows {
+  Rows cells, lost, meshes;
+};
+
+MergedRows rows_of(const MergeResult& result, bool dry_run) {
+  constexpr std::string_view kCell = "scene method seed";
+  MergedRows rows{
+      Rows({{""}, {"verdict"}, {"from"}, {"why"}}, kCell),
+      Rows({{""}, {""}, {"file"}, {"why"}}),
+      Rows({{""}, {"made"}, {""}, {"why_not"}}, kCell)};
+  for (const auto& [cell, verdict, from, why] : result.cells) {
+    const std::string_view word = merge_verdict_name(verdict);
+    rows.cells.add({cell.text(), word, from, why, cell.scene, cell.method, cell.seed});
+  }
+  for (const auto& [file, why] : result.lost) rows.lost.add({"-", "lost", file, why});
+  for (const auto& [cell, is_made, why] : result.completed) {
+    const Cell made(is_made, !is_made ? "no meshes" : (dry_run ? "would be meshed" : "meshed"));
+    rows.meshes.add({cell.text(), made, "", why, cell.scene, cell.method, cell.seed});
+  }
+  return rows;
 }
 
-Json merged_json(const MergeResult& result) {
-  Json json = {
+std::string merged_text(const MergedRows& rows, const MergeResult& result) {
+  std::vector<std::vector<std::string>> lines;
+  for (const Rows* part : {&rows.cells, &rows.lost, &rows.meshes})
+    for (const auto& line : part->lines()) lines.push_back(line);
+  return aligned_rows(lines) + counts_text(result);
+}
+
+Json merged_json(const MergedRows& rows, const MergeResult& result) {
+  return {
       {"folder", result.into.string()},
-      {"cells", Json::array()},
-      {"lost", Json::array()},
-      {"meshes", Json::array()}};
-  const auto cell_json = [](const CellKey& cell) {
-    return Json{{"scene", cell.scene}, {"method", cell.method}, {"seed", cell.seed}};
-  };
-  for (const MergedCell& cell : result.cells) {
-    Json entry = cell_json(cell.cell);
-    entry.update(
-        {{"verdict", merge_verdict_name(cell.verdict)}, {"from", cell.from}, {"why", cell.why}}
-    );
-    json["cells"].push_back(entry);
-  }
-  for (const LostParcel& parcel : result.lost)
-    json["lost"].push_back({{"file", parcel.file}, {"why", parcel.why}});
-  for (const CompletedCell& cell : result.completed) {
-    Json entry = cell_json(cell.cell);
-    entry.update({{"made", cell.made}, {"why_not", cell.why_not}});
-    json["meshes"].push_back(entry);
-  }
-  return json;
+      {"cells", rows.cells.json()},
+      {"lost", rows.lost.json()},
+      {"meshes", rows.meshes.json()}};
 }
 
 int exit_code_of(const MergeResult& result) {
@@ -138,10 +132,11 @@ int exit_code_of(const MergeResult& result) {
 int run_merge(const CommonOptions& common, const MergeOptions& options) {
   install_interrupt_handler();
   const MergeResult result = merge_all(common, options);
+  const MergedRows rows = rows_of(result, options.dry_run);
   if (common.json)
-    print_json(merged_json(result));
+    print_json(merged_json(rows, result));
   else
-    print_text(merged_text(result, options.dry_run));
+    print_text(merged_text(rows, result));
   return exit_code_of(result);
 }
 

@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "glint/core/nearest.h"
+#include "glint/core/rows.h"
 #include "glint/method.h"
-#include "reports/verbs/listing.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -32,89 +32,87 @@ std::vector<std::string> variants_of(const std::string& id) {
   return variants;
 }
 
-Json spec_json(const MethodSpec& spec) {
-  const auto method = create_method(spec.id);
-  return {
-      {"id", spec.id},
-      {"title", spec.title},
-      {"description", spec.description},
-      {"citation", spec.citation},
-      {"inputs", method->inputs()},
-      {"overrides", spec.overrides},
-      {"rival", spec.rival},
-      {"source", spec.source}};
+Rows rows_of(const std::vector<const MethodSpec*>& specs) {
+  Rows rows(
+      {{"id", "id"}, {"title", "title"}, {"inputs", "wants"}, {"description", "what it is"}},
+      "citation overrides rival source"
+  );
+  for (const MethodSpec* spec : specs) {
+    const auto method = create_method(spec->id);
+    rows.add(
+        {spec->id,
+         spec->title,
+         {method->inputs(), inputs_text(*method)},
+         {spec->description, description_of(*spec)},
+         spec->citation,
+         spec->overrides,
+         spec->rival,
+         spec->source}
+    );
+  }
+  return rows;
+}
+
+Rows rows_of_all() {
+  std::vector<const MethodSpec*> specs;
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) specs.push_back(&spec);
+  return rows_of(specs);
+}
+
+// 0.05, not 0.05000000074505806: a float's shortest text that reads back as it.
+Cell value_cell(const Json& value) {
+  if (value.is_number_float()) return {value, fmt::format("{}", value.get<float>())};
+  return {value, value.is_string() ? value.get<std::string>() : value.dump()};
 }
 
 // Defaults are those of the family's first, "override" what the variant sets instead.
-Json method_json(const MethodSpec& spec) {
-  Json json = spec_json(spec);
-  json["variants"] = variants_of(spec.id);
-  json["fields"] = Json::array();
-  const auto plain = spec.create(Json::object());
-  for (const ConfigField& field : plain->fields()) {
-    Json entry = {
-        {"name", field.name},
-        {"type", field.type()},
-        {"default", field.value},
-        {"meaning", field.meaning}};
-    if (const auto it = spec.overrides.find(field.name); it != spec.overrides.end())
-      entry["override"] = *it;
-    json["fields"].push_back(std::move(entry));
+Rows fields_of(const MethodSpec& spec) {
+  const bool is_variant = !spec.overrides.empty();
+  std::vector<Column> columns{{"name", "field"}, {"type", "type"}, {"default", "default"}};
+  if (is_variant) columns.push_back({"override", spec.id});
+  columns.push_back({"meaning", "meaning"});
+  Rows rows(columns);
+  for (const ConfigField& field : spec.create(Json::object())->fields()) {
+    std::vector<Cell> cells{field.name, field.type(), value_cell(field.value)};
+    const auto set = spec.overrides.find(field.name);
+    if (is_variant)
+      cells.push_back(set == spec.overrides.end() ? Cell::absent() : value_cell(*set));
+    cells.emplace_back(field.meaning);
+    rows.add(cells);
   }
+  return rows;
+}
+
+Json method_json(const MethodSpec& spec) {
+  Json json = rows_of({&spec}).json().front();
+  json["variants"] = variants_of(spec.id);
+  json["fields"] = fields_of(spec).json();
   return json;
 }
 
 std::string list_text() {
-  std::vector<std::vector<std::string>> rows = {{"id", "title", "wants", "what it is"}};
-  for (const auto& [id, spec] : Registry<MethodSpec>::all())
-    rows.push_back({id, spec.title, inputs_text(*create_method(id)), description_of(spec)});
-  return listing(rows, terminal_width()) +
+  return rows_of_all().text(terminal_width()) +
          "\nwants: what training looks at beside photos, cameras and points; where it is missing, "
          "its "
          "loss is off, with a\nwarning. `glint-bench methods ID` lists the config fields of one.\n";
 }
 
-// 0.05, not 0.05000000074505806: a float's shortest text that reads back as it.
-std::string value_text(const Json& value) {
-  if (value.is_number_float()) return fmt::format("{}", value.get<float>());
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
 std::string method_text(const MethodSpec& spec) {
-  const Json json = method_json(spec);
-  const std::vector<std::string> variants = json["variants"];
+  const std::vector<std::string> variants = variants_of(spec.id);
   std::string text = fmt::format("{} ({}): {}\n", spec.id, spec.title, description_of(spec));
   text += fmt::format(
       "trained on: photos, cameras, points; wants {}\n", inputs_text(*create_method(spec.id))
   );
   if (!variants.empty()) text += fmt::format("same family: {}\n", comma_list(variants));
   text += fmt::format("set with: --set {}.NAME=VALUE\n\n", spec.id);
-  const bool is_variant = !spec.overrides.empty();
-  std::vector<std::vector<std::string>> rows = {{"field", "type", "default"}};
-  if (is_variant) rows[0].push_back(spec.id);
-  rows[0].emplace_back("meaning");
-  for (const Json& field : json["fields"]) {
-    std::vector<std::string> row = {field["name"], field["type"], value_text(field["default"])};
-    if (is_variant) row.push_back(field.contains("override") ? value_text(field["override"]) : "");
-    row.push_back(field["meaning"]);
-    rows.push_back(std::move(row));
-  }
-  return text + listing(rows, terminal_width());
+  return text + fields_of(spec).text(terminal_width());
 }
 
 int run_methods(const CommonOptions& common, const std::string& id) {
-  if (!common.json) {
+  if (!common.json)
     print_text(id.empty() ? list_text() : method_text(find_method(id)));
-    return 0;
-  }
-  if (!id.empty()) {
-    print_json(method_json(find_method(id)));
-    return 0;
-  }
-  Json json = {{"methods", Json::array()}};
-  for (const auto& [known, spec] : Registry<MethodSpec>::all())
-    json["methods"].push_back(spec_json(spec));
-  print_json(json);
+  else
+    print_json(id.empty() ? Json{{"methods", rows_of_all().json()}} : method_json(find_method(id)));
   return 0;
 }
 

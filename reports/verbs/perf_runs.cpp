@@ -5,6 +5,7 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/machine.h"
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "glint/scene/camera_path.h"
 #include "reports/verbs/single_run.h"
 
@@ -22,6 +23,22 @@ Scene cameras_at(const Scene& scene, ImageSize size) {
 }
 
 std::string machine_text() { return on_gpu() ? device_name() : this_machine().cpu; }
+
+Rows rows_of(const std::vector<FrameRate>& rates) {
+  Rows rows(
+      {{"scene", "scene"},
+       {"method", "method"},
+       {"", "size", "{}"},
+       {"surfels", "surfels", "{}"},
+       {"fps", "fps", "{:.1f}"}},
+      "run width height"
+  );
+  for (const auto& [run, scene, method, size, surfels, fps] : rates) {
+    const std::string size_text = fmt::format("{}x{}", size.width, size.height);
+    rows.add({scene, method, size_text, surfels, fps, run, size.width, size.height});
+  }
+  return rows;
+}
 
 }  // namespace
 
@@ -43,48 +60,21 @@ std::vector<FrameRate> measure_frame_rates(const FrameRateOptions& options) {
 }
 
 Json frame_rates_to_json(const FrameRateOptions& options, const std::vector<FrameRate>& rates) {
-  Json json = {
+  return {
       {"cpu", this_machine().cpu},
       {"device", device_name()},
       {"frames", options.timing.frames},
       {"warmup", options.timing.warmup},
-      {"rows", Json::array()}};
-  for (const FrameRate& rate : rates)
-    json["rows"].push_back(
-        {{"run", rate.run},
-         {"scene", rate.scene},
-         {"method", rate.method},
-         {"width", rate.size.width},
-         {"height", rate.size.height},
-         {"surfels", rate.surfels},
-         {"fps", rate.fps}}
-    );
-  return json;
+      {"rows", rows_of(rates).json()}};
 }
 
 std::string frame_rates_to_text(
     const FrameRateOptions& options, const std::vector<FrameRate>& rates
 ) {
-  std::string text = fmt::format(
-      "frames a second, {} frames each, {}\n{:<16} {:<20} {:>10} {:>10} {:>10}\n",
-      options.timing.frames,
-      machine_text(),
-      "scene",
-      "method",
-      "size",
-      "surfels",
-      "fps"
-  );
-  for (const FrameRate& rate : rates)
-    text += fmt::format(
-        "{:<16} {:<20} {:>10} {:>10} {:>10.1f}\n",
-        rate.scene,
-        rate.method,
-        fmt::format("{}x{}", rate.size.width, rate.size.height),
-        rate.surfels,
-        rate.fps
-    );
-  return text;
+  return fmt::format(
+             "frames a second, {} frames each, {}\n", options.timing.frames, machine_text()
+         ) +
+         rows_of(rates).text();
 }
 
 }  // namespace glint

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <tuple>
 
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "reports/perf/perf.h"
 #include "reports/verbs/planned_cells.h"
 
@@ -85,19 +85,15 @@ std::vector<std::string> plan_line(const PlanRow& row) {
   return line;
 }
 
-// The aligned lines, and behind each cell's why it is not done.
 std::string table_text(const std::vector<PlanRow>& rows) {
   std::vector<std::vector<std::string>> lines{{"cell"}};
   for (const Stage stage : kStages) lines[0].emplace_back(stage_name(stage));
   lines[0].emplace_back("estimate");
   for (const PlanRow& row : rows) lines.push_back(plan_line(row));
-  std::istringstream aligned(aligned_rows(lines));
-  std::string text, line;
-  for (std::size_t i = 0; std::getline(aligned, line); ++i) {
-    const std::string why = i == 0 ? "why" : rows[i - 1].planned.stages.why();
-    text += line + (why.empty() ? "" : "  " + why) + "\n";
-  }
-  return text;
+  lines[0].emplace_back("why");
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    lines[i + 1].push_back(rows[i].planned.stages.why());
+  return aligned_rows(lines);
 }
 
 std::string plan_text(const std::vector<PlanRow>& rows) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "glint/core/progress.h"
-#include "reports/verbs/listing.h"
 
 namespace glint {
 

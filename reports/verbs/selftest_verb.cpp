@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "reports/selftest/conformance.h"
 #include "reports/verbs/verb.h"
 
@@ -22,41 +23,41 @@ std::size_t count(const std::vector<VectorResult>& results, VectorStatus status)
   ));
 }
 
-void print_results(const std::vector<VectorResult>& results) {
-  std::vector<std::vector<std::string>> rows = {
-      {"vector", "", "found", "expected", "tolerance", "made by", "convention"}};
-  for (const VectorResult& result : results) {
-    const ConformanceVector& vector = result.vector;
-    const bool ran = result.status != VectorStatus::kSkipped;
-    rows.push_back(
+Rows rows_of(const std::vector<VectorResult>& results) {
+  Rows rows(
+      {{"id", "vector"},
+       {"status", ""},
+       {"found", "found", "{:.6f}"},
+       {"expected", "expected", "{:.6f}"},
+       {"tolerance", "tolerance", "{:g}"},
+       {"source", "made by"},
+       {"", "convention"}},
+      "arguments value convention note"
+  );
+  for (const auto& [vector, status, found, note] : results)
+    rows.add(
         {vector.id,
-         Json(result.status).get<std::string>(),
-         ran ? fmt::format("{:.6f}", result.found) : "-",
-         fmt::format("{:.6f}", vector.expected),
-         fmt::format("{:g}", vector.tolerance),
+         status,
+         status == VectorStatus::kSkipped ? Cell(Json(Json::value_t::discarded), "-") : found,
+         vector.expected,
+         vector.tolerance,
          vector.source,
-         result.note.empty() ? vector.convention : result.note.substr(0, result.note.find('\n'))}
+         note.empty() ? vector.convention : note.substr(0, note.find('\n')),
+         vector.arguments,
+         vector.value,
+         vector.convention,
+         note.empty() ? Cell::absent() : note}
     );
-  }
-  print_text(aligned_rows(rows, {0, 1, 5, 6}));
-  print_text(fmt::format(
+  return rows;
+}
+
+std::string counts_text(const std::vector<VectorResult>& results) {
+  return fmt::format(
       "{} passed, {} failed, {} skipped\n",
       count(results, VectorStatus::kPassed),
       count(results, VectorStatus::kFailed),
       count(results, VectorStatus::kSkipped)
-  ));
-}
-
-Json results_json(const std::vector<VectorResult>& results) {
-  Json json = Json::array();
-  for (const VectorResult& result : results) {
-    Json entry = config_to_json(result.vector);
-    entry["status"] = result.status;
-    if (result.status != VectorStatus::kSkipped) entry["found"] = result.found;
-    if (!result.note.empty()) entry["note"] = result.note;
-    json.push_back(entry);
-  }
-  return {{"vectors", json}};
+  );
 }
 
 int run_selftest(const CommonOptions& common, const SelftestArguments& arguments) {
@@ -78,9 +79,9 @@ int run_selftest(const CommonOptions& common, const SelftestArguments& arguments
           ? run_vectors(vectors, folder)
           : check_values(vectors, read_json_object(arguments.check, ExitCode::kBadPrediction));
   if (common.json)
-    print_json(results_json(results));
+    print_json({{"vectors", rows_of(results).json()}});
   else
-    print_results(results);
+    print_text(rows_of(results).text() + counts_text(results));
   const bool failed = count(results, VectorStatus::kFailed) > 0;
   return static_cast<int>(failed ? ExitCode::kCheckFailed : ExitCode::kSuccess);
 }

@@ -2,6 +2,7 @@
 #include <map>
 
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "reports/executors/slurm_jobs.h"
 #include "reports/records/run_folder.h"
 #include "reports/verbs/planned_cells.h"
@@ -48,31 +49,20 @@ StatusRow status_of(const PlannedCell& planned, const fs::path& folder) {
   return row;
 }
 
-Json status_json(const std::vector<StatusRow>& rows) {
-  Json json = {{"cells", Json::array()}};
-  for (const StatusRow& row : rows)
-    json["cells"].push_back(
-        {{"scene", row.cell.scene},
-         {"method", row.cell.method},
-         {"seed", row.cell.seed},
-         {"state", row.state},
-         {"job", row.job},
-         {"detail", row.detail}}
-    );
-  return json;
+Rows rows_of(const std::vector<StatusRow>& rows) {
+  Rows listed({{""}, {"state"}, {"detail"}, {"job"}}, "scene method seed");
+  for (const auto& [cell, state, job, detail] : rows)
+    listed.add({cell.text(), state, detail, job, cell.scene, cell.method, cell.seed});
+  return listed;
 }
 
 std::string status_text(const std::vector<StatusRow>& rows) {
-  std::vector<std::vector<std::string>> lines;
   std::map<std::string, int> counts;
-  for (const StatusRow& row : rows) {
-    lines.push_back({row.cell.text(), row.state, row.detail, row.job});
-    ++counts[row.state];
-  }
-  std::string text = aligned_rows(lines), summary;
+  for (const StatusRow& row : rows) ++counts[row.state];
+  std::string summary;
   for (const auto& [state, count] : counts)
     summary += fmt::format("{}{} {}", summary.empty() ? "" : ", ", count, state);
-  return text + summary + "\n";
+  return rows_of(rows).text() + summary + "\n";
 }
 
 int run_status(const CommonOptions& common) {
@@ -87,7 +77,7 @@ int run_status(const CommonOptions& common) {
       rows.back().job = state->second.text();
   }
   if (common.json)
-    print_json(status_json(rows));
+    print_json({{"cells", rows_of(rows).json()}});
   else
     print_text(status_text(rows));
   return 0;

@@ -110,5 +110,7 @@ void print_json(const Json& json);
 void print_text(std::string_view text);  // names in it are made printable
 void print_raw(std::string_view text);   // with colours, or a file of some format
 bool color_terminal();                   // standard output is a terminal and NO_COLOR is not set
+// COLUMNS, or what the terminal says; 0 where standard output is none.
+std::size_t terminal_width();
 
 }  // namespace glint

@@ -6,9 +6,9 @@
 #include "glint/core/file_lock.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
+#include "glint/core/rows.h"
 #include "reports/provenance/verify_run.h"
 #include "reports/records/earlier_run.h"
-#include "reports/verbs/listing.h"
 #include "reports/verbs/single_run.h"
 
 namespace glint {
@@ -262,12 +262,12 @@ std::string verify_text(const std::vector<VerifiedRun>& runs, bool is_one) {
   const auto bad = std::count_if(runs.begin(), runs.end(), [](const VerifiedRun& run) {
     return run.state() == CheckState::kBad;
   });
-  return listing(lines) + fmt::format(
-                              "{} of {} runs match{}\n",
-                              static_cast<std::ptrdiff_t>(runs.size()) - bad,
-                              runs.size(),
-                              bad > 0 ? fmt::format(", {} do not", bad) : ""
-                          );
+  return aligned_rows(lines) + fmt::format(
+                                   "{} of {} runs match{}\n",
+                                   static_cast<std::ptrdiff_t>(runs.size()) - bad,
+                                   runs.size(),
+                                   bad > 0 ? fmt::format(", {} do not", bad) : ""
+                               );
 }
 
 int run_verify(const CommonOptions& common, const VerifyArguments& arguments) {
