@@ -54,7 +54,7 @@ find_package(embree 3.13 REQUIRED CONFIG)
 find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to set how many threads oneDNN uses
 find_package(Bullet REQUIRED)  # module mode: the config mode has relative include folders
 find_package(TIFF QUIET MODULE)  # maps of other programs; without it they are refused by name
-find_package(assimp 5.2 REQUIRED CONFIG)  # glTF furniture
+find_package(assimp 5.2 REQUIRED CONFIG)  # models of furniture
 find_package(yaml-cpp 0.7 REQUIRED CONFIG)  # cameras of EasyVolcap
 find_path(GLINT_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
 foreach(module core imgproc calib3d)

@@ -7,7 +7,7 @@ fail() { echo "check_outputs: $*" >&2; exit 4; }
 [ -s "$out/records.jsonl" ] || fail "$out/records.jsonl is missing or empty"
 if grep -q '"status":"failed"' "$out/records.jsonl"; then fail "a cell failed: see $out/records.jsonl"; fi
 for table in table1_photometric table2_geometry table3_ablation tableB_cost regions decomposition; do
-  for format in md tex csv json html; do
+  for format in md tex csv json; do
     [ -s "$out/tables/$table.$format" ] || fail "$out/tables/$table.$format is missing or empty"
   done
 done

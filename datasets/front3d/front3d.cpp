@@ -6,8 +6,8 @@
 
 #include "datasets/front3d/front3d_scene.h"
 #include "datasets/front3d/model_files.h"
-#include "datasets/glassroom/gltf_assets.h"
 #include "datasets/glassroom/make_scene.h"
+#include "datasets/glassroom/write_scene.h"
 #include "glint/core/error.h"
 #include "glint/core/progress.h"
 
@@ -33,7 +33,7 @@ std::string models_hash(const ChosenRoom& chosen, const std::string& models) {
     jids.insert(chosen.house.furniture[placement.furniture].jid);
   Json hashes = Json::object();
   for (const std::string& jid : jids)
-    if (find_model(models, jid)) hashes[jid] = asset_hash(fs::path(models) / jid);
+    if (find_model(models, jid)) hashes[jid] = hash_of(file_hashes(fs::path(models) / jid));
   return hash_of(hashes);
 }
 

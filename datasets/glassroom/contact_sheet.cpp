@@ -30,13 +30,6 @@ Image mask_over_image(const Image& mask, const Image& picture) {
   return result;
 }
 
-Image grey_picture(const Image& map) {
-  Image picture(map.width(), map.height(), 3);
-  for (std::size_t i = 0; i < picture.values().size(); ++i)
-    picture.values()[i] = map.values()[i / 3];
-  return picture;
-}
-
 // What the maps of one view are drawn with.
 struct ViewPictures {
   Image image;  // as displayed

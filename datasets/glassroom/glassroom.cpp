@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/glassroom/glassroom.h"
 
-#include "datasets/glassroom/gltf_assets.h"
 #include "datasets/glassroom/make_scene.h"
 #include "glint/core/error.h"
 #include "glint/core/rng.h"
@@ -13,9 +12,13 @@ namespace {
 // Part of every cache key: raise it whenever the same options give other files.
 constexpr int kGeneratorVersion = 1;
 
-// The options; of assets the content counts, not where they lie.
-Json spec_json(GlassRoomOptions options) {
-  if (!options.assets.empty()) options.assets = asset_hash(options.assets);
+Json spec_json(const GlassRoomOptions& options) {
+  GLINT_CHECK(
+      options.assets.empty(),
+      kUsage,
+      "assets is '{}': rooms have no furniture from glTF files any more; leave it out",
+      options.assets
+  );
   return glassroom_json(options);
 }
 

@@ -21,7 +21,7 @@ struct GlassRoomOptions {
   // averages out, in a test view it bounds the score.
   int spp = 64;
   std::uint64_t seed = 0;  // varies the layout of the same recipe
-  std::string assets;      // optional folder with glTF furniture; empty: procedural only
+  std::string assets;      // empty: furniture from files is gone, but keys name the field
   std::string priors = kDefaultPriorLevel;  // how good the simulated priors are (priors.h)
 
   template <class V>
@@ -32,7 +32,7 @@ struct GlassRoomOptions {
     v("views", views, "views along the camera path");
     v("spp", spp, "samples a pixel of a training view; test views get four times as many");
     v("seed", seed, "varies the layout");
-    v("assets", assets, "folder with glTF furniture");
+    v("assets", assets, "empty; earlier versions: folder with glTF furniture");
     v("priors", priors, "perfect, good, default, poor, bad: how good the simulated priors are");
   }
 };

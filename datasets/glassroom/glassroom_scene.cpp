@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "datasets/glassroom/gltf_assets.h"
 #include "glint/core/error.h"
 #include "glint/core/progress.h"
 
@@ -126,12 +125,7 @@ std::unique_ptr<GlassRoomScene> build_glassroom_scene(const GlassRoomOptions& op
   const LayoutRecipe recipe{
       .generator = "glassroom",
       .name = options.scene,
-      .room =
-          [&](std::uint64_t seed) {
-            const AssetSource assets =
-                options.assets.empty() ? AssetSource() : gltf_assets(options.assets);
-            return build_room(program, seed, assets);
-          },
+      .room = [&](std::uint64_t seed) { return build_room(program, seed); },
       .container = [](const RoomModel&, Rng& rng) { return random_container(rng); },
       .path = {},
       .seed = options.seed};

@@ -38,8 +38,7 @@ class RoomBuilder {
     make_palette();
   }
 
-  RoomModel build(const AssetSource& assets) {
-    if (assets) assets_ = assets(room_.scene);
+  RoomModel build() {
     add_shell();
     add_ceiling_lights();
     add_rug();
@@ -177,13 +176,6 @@ class RoomBuilder {
     return world;
   }
 
-  Furniture furniture_of(FurnitureKind kind) {
-    const auto asset = std::find_if(assets_.begin(), assets_.end(), [&](const FurnitureAsset& a) {
-      return a.kind == kind;
-    });
-    return asset != assets_.end() ? asset->furniture : make_furniture(kind, palette_, rng_);
-  }
-
   // Moved along y so that its rearmost point is `gap` off the wall.
   static Piece make_piece(std::string kind, Furniture furniture, float gap) {
     const Vec3f shift{0, gap - bounds_of(furniture).low.y, 0};
@@ -199,7 +191,9 @@ class RoomBuilder {
     for (int i = 0; i < program(wall).doors; ++i)
       pieces.push_back(make_piece("door", make_door(palette_), 0.001f));
     for (const FurnitureKind kind : program(wall).furniture)
-      pieces.push_back(make_piece(std::string(furniture_name(kind)), furniture_of(kind), kWallGap));
+      pieces.push_back(make_piece(
+          std::string(furniture_name(kind)), make_furniture(kind, palette_, rng_), kWallGap
+      ));
     return pieces;
   }
 
@@ -276,13 +270,12 @@ class RoomBuilder {
   RoomModel room_;
   Palette palette_;
   FixturePalette fixtures_;
-  std::vector<FurnitureAsset> assets_;
 };
 
 }  // namespace
 
-RoomModel build_room(const RoomProgram& program, std::uint64_t seed, const AssetSource& assets) {
-  return RoomBuilder(program, seed).build(assets);
+RoomModel build_room(const RoomProgram& program, std::uint64_t seed) {
+  return RoomBuilder(program, seed).build();
 }
 
 }  // namespace glint

@@ -32,18 +32,7 @@ struct RoomModel {
   }
 };
 
-// Furniture that replaces the procedural pieces of a kind (glTF assets).
-struct FurnitureAsset {
-  FurnitureKind kind;
-  Furniture furniture;  // local frame of furniture.h, materials of the scene being built
-};
-// Adds textures and materials to the scene and returns the pieces made of them.
-using AssetSource = std::function<std::vector<FurnitureAsset>(TraceScene&)>;
-
-// Deterministic in (program, seed). `assets` may be empty. Errors (kEnvironment): the furniture
-// does not fit along a wall.
-RoomModel build_room(
-    const RoomProgram& program, std::uint64_t seed, const AssetSource& assets = {}
-);
+// Deterministic in (program, seed). Errors (kEnvironment): the furniture does not fit along a wall.
+RoomModel build_room(const RoomProgram& program, std::uint64_t seed);
 
 }  // namespace glint

@@ -43,8 +43,6 @@ bool is_point(const Chart& chart, const ChartSeries& series, std::size_t i) {
          (y > 0 || !is_logarithmic(chart, false));
 }
 
-bool has_bars(const ChartSeries& series) { return !series.low.empty(); }
-
 bool has_points(const Chart& chart, const ChartSeries& series) {
   for (std::size_t i = 0; i < series.x.size(); ++i)
     if (is_point(chart, series, i)) return true;
@@ -69,27 +67,12 @@ std::vector<std::string> log_labels(const std::vector<double>& ticks) {
   return labels;
 }
 
-// Half a place of room to either side of all of them, also of those without a point.
-Axis named_axis(const std::vector<std::string>& names) {
-  Axis axis;
-  axis.labels = names;
-  for (std::size_t i = 0; i < names.size(); ++i) axis.ticks.push_back(static_cast<double>(i));
-  axis.range = {-0.5, static_cast<double>(names.size()) - 0.5};
-  return axis;
-}
-
 Axis axis_of(const Chart& chart, std::vector<double> ChartSeries::*values) {
-  const bool is_x = values == &ChartSeries::x;
-  if (is_x && !chart.x_names.empty()) return named_axis(chart.x_names);
   Axis axis;
-  axis.logarithmic = is_logarithmic(chart, is_x);
+  axis.logarithmic = is_logarithmic(chart, values == &ChartSeries::x);
   for (const ChartSeries& series : chart.series)
-    for (std::size_t i = 0; i < series.x.size(); ++i) {
-      if (!is_point(chart, series, i)) continue;
-      axis.range.add(axis.place((series.*values)[i]));
-      if (is_x || !has_bars(series)) continue;
-      for (const double end : {series.low[i], series.high[i]}) axis.range.add(axis.place(end));
-    }
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      if (is_point(chart, series, i)) axis.range.add(axis.place((series.*values)[i]));
   axis.range = with_room(axis.range);
   const double low = axis.range.low, high = axis.range.high;
   axis.ticks =
@@ -162,19 +145,10 @@ class ChartDrawing {
       else
         end_piece();
     end_piece();
-    if (has_bars(series)) draw_bars(series, style);
     if (!has_dots(series)) return;
     for (std::size_t i = 0; i < series.x.size(); ++i)
       if (is_point(chart_, series, i))
         draw_series_dot(canvas_, {column(series.x[i]), row(series.y[i])}, style);
-  }
-
-  void draw_bars(const ChartSeries& series, SeriesStyle style) {
-    for (std::size_t i = 0; i < series.x.size(); ++i) {
-      if (!is_point(chart_, series, i)) continue;
-      const double x = column(series.x[i]);
-      draw_series_bar(canvas_, {x, row(series.low[i])}, {x, row(series.high[i])}, style);
-    }
   }
 
   void draw_numbers() {

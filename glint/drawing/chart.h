@@ -14,16 +14,13 @@ struct ChartSeries {
   std::size_t index = 0;     // of series_style() and of ChartSheet::names
   std::vector<double> x, y;  // values that are not finite are left out, and end a line
   bool points = false;       // a dot each; else joined by lines, of few points with dots
-  // Ends of a thin bar through each point, of charts without logarithms; empty: none.
-  std::vector<double> low = {}, high = {};
 };
 
 struct Chart {
   std::string x_label, y_label;
   std::vector<ChartSeries> series;
-  bool logarithmic = false;               // both axes; values that are not above 0 are left out
-  bool logarithmic_y = false;             // that axis, likewise
-  std::vector<std::string> x_names = {};  // of the places 0, 1, ... along x, in place of numbers
+  bool logarithmic = false;    // both axes; values that are not above 0 are left out
+  bool logarithmic_y = false;  // that axis, likewise
 };
 
 bool has_points(const Chart& chart);

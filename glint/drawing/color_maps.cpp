@@ -51,13 +51,12 @@ Image colorize_scalar(ImageView map, float low, float high, ScalarColors colors)
   return image;
 }
 
-Image colorize_signed(ImageView map, float range) {
-  constexpr Vec3f kBelow{0.02f, 0.19f, 0.38f}, kWhite{1, 1, 1}, kAbove{0.4f, 0, 0.12f};
+Image grey_picture(ImageView map) {
   Image image(map.width, map.height, 3);
   for (std::size_t i = 0; i < map.num_pixels(); ++i) {
-    const float value = map.data[i * static_cast<std::size_t>(map.channels)];
-    const float t = std::clamp(value / range, -1.0f, 1.0f), share = std::abs(t);
-    set_pixel(image, i, (1 - share) * kWhite + share * (t < 0 ? kBelow : kAbove));
+    const float value =
+        std::clamp(map.data[i * static_cast<std::size_t>(map.channels)], 0.0f, 1.0f);
+    set_pixel(image, i, {value, value, value});
   }
   return image;
 }

@@ -18,10 +18,9 @@ extern const ColorTable kViridis, kMagma;
 Image colorize_depth(ImageView depth, float low, float high);
 // n * 0.5 + 0.5 with y, z turned towards the viewer (the field's habit). Black: nothing.
 Image colorize_normal(ImageView normal);
+// Black at 0, white at 1.
+Image grey_picture(ImageView map);
 // Other maps, dark (low) to light (high); mid-grey where not finite.
 enum class ScalarColors { kViridis, kMagma };
 Image colorize_scalar(ImageView map, float low, float high, ScalarColors colors);
-// Differences: white at 0, blue down to -range, red up to range.
-Image colorize_signed(ImageView map, float range);
-
 }  // namespace glint

@@ -34,11 +34,6 @@ Image color_bar(LegendBar bar) {
   constexpr int kSteps = 256;
   if (is_swatch(bar)) return plain_bar(bar, 6 * kStripes, 2 * kStripes);
   Image ramp(kSteps, 1, 1);
-  if (bar == LegendBar::kSigned) {
-    for (int x = 0; x < kSteps; ++x)
-      ramp.at(x, 0) = 2 * (static_cast<float>(x) + 0.5f) / kSteps - 1;
-    return colorize_signed(ramp, 1);
-  }
   for (int x = 0; x < kSteps; ++x) ramp.at(x, 0) = static_cast<float>(x + 1);
   if (bar == LegendBar::kDepth) return colorize_depth(ramp, 1, kSteps);
   const bool share = bar == LegendBar::kShare;

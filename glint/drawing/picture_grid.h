@@ -17,7 +17,7 @@ inline constexpr int kMinPanelWidth = 200, kMaxPanelWidth = 480;  // pixels
 
 // The colours of a map from low to high, as layer_picture() and the strips show it; or what stands
 // for a pixel without a value.
-enum class LegendBar { kNone, kDepth, kShare, kError, kSigned, kHatch, kGrey };
+enum class LegendBar { kNone, kDepth, kShare, kError, kHatch, kGrey };
 
 // Of a pixel that is there but does not count: pale blue stripes, which no map of errors has.
 std::array<float, 3> hatch_color(int x, int y);

@@ -8,7 +8,7 @@ namespace glint {
 namespace {
 
 // Points: width of a line and of a bar, radius of a dot.
-constexpr double kLine = 1.1, kBar = 0.6, kDot = 2.2;
+constexpr double kLine = 1.1, kDot = 2.2;
 constexpr std::size_t kPatterns = 4;
 
 constexpr Color of_bytes(int red, int green, int blue) {
@@ -46,11 +46,6 @@ SeriesStyle series_style(std::size_t index) {
 
 void draw_series_line(Canvas& canvas, std::span<const Point> points, SeriesStyle style) {
   canvas.line(points, {color_of(style), kLine, kDashes[static_cast<std::size_t>(style.pattern)]});
-}
-
-void draw_series_bar(Canvas& canvas, Point from, Point to, SeriesStyle style) {
-  const Point points[] = {from, to};
-  canvas.line(points, {color_of(style), kBar, {}});
 }
 
 void draw_series_dot(Canvas& canvas, Point center, SeriesStyle style) {

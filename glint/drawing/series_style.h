@@ -18,8 +18,6 @@ SeriesStyle series_style(std::size_t index);
 
 // A line in the style; it may have corners.
 void draw_series_line(Canvas& canvas, std::span<const Point> points, SeriesStyle style);
-// Thin and without gaps: how far values lie apart.
-void draw_series_bar(Canvas& canvas, Point from, Point to, SeriesStyle style);
 void draw_series_dot(Canvas& canvas, Point center, SeriesStyle style);
 
 }  // namespace glint

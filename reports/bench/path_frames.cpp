@@ -8,8 +8,8 @@
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "reports/bench/video.h"
-#include "reports/pictures/frame_sheet.h"
 #include "reports/pictures/layers.h"
+#include "reports/pictures/strip.h"
 
 namespace glint {
 

@@ -8,7 +8,6 @@
 #include "reports/figures/growth_figure.h"
 #include "reports/figures/map_figures.h"
 #include "reports/figures/mesh_figure.h"
-#include "reports/figures/priors_figure.h"
 
 namespace glint {
 
@@ -24,15 +23,6 @@ void keep(const fs::path& png, const Drawing& drawing, std::vector<fs::path>& wr
   }
   write_drawing(png, drawing);
   written.push_back(png);
-}
-
-// The numbers of a figure, with it or not at all.
-void keep_numbers(const fs::path& file, const Json& numbers) {
-  std::error_code code;
-  if (numbers.is_null())
-    fs::remove(file, code);
-  else
-    write_file(file, numbers.dump(1) + "\n");
 }
 
 // With the methods for pictures only.
@@ -60,8 +50,6 @@ std::vector<fs::path> draw_figures(const FigureOptions& options) {
   keep(folder / "curves.png", curves_figure(records, options.folder, choice), written);
   keep(folder / "growth.png", growth_figure(growth_runs(options, records)), written);
   keep(folder / "f1.png", f1_figure(records, choice), written);
-  keep(folder / "priors.png", priors_figure(records, choice), written);
-  keep_numbers(folder / "priors.json", priors_table(records, choice));
   keep(folder / "meshes.png", draw_grid(meshes_figure(scenes)), written);
   return written;
 }

@@ -28,11 +28,10 @@ struct FigureOptions {
 };
 
 // FOLDER/figures/{qualitative, depth_decomposition, transparency, radiance, ablation, curves,
-// growth, f1, priors, meshes}.png, each with a PDF beside it; returns the PNGs of those that have
-// something to show. Beside priors.png lie its numbers, priors.json. What is absent inside a figure
-// says "missing"; scenes without data are left out of figures with maps, with a warning. Errors:
-// those of read_records(), kUsage (no such scene or test view, a crop outside the view),
-// kEnvironment (disk).
+// growth, f1, meshes}.png, each with a PDF beside it; returns the PNGs of those that have something
+// to show. What is absent inside a figure says "missing"; scenes without data are left out of
+// figures with maps, with a warning. Errors: those of read_records(), kUsage (no such scene or test
+// view, a crop outside the view), kEnvironment (disk).
 inline constinit Service<std::vector<fs::path>(const FigureOptions&)> write_figures{
     "drawing figures", "use the full build"};
 

@@ -16,13 +16,6 @@ namespace glint {
 
 namespace {
 
-Image grey_picture(const Image& map) {
-  Image color(map.width(), map.height(), 3);
-  for (std::size_t i = 0; i < color.values().size(); ++i)
-    color.values()[i] = std::clamp(map.values()[i / 3], 0.0f, 1.0f);
-  return color;
-}
-
 // A map of a render, and behind it a panel of its truth where any view has that.
 struct MapPanel {
   MapRow map;
@@ -154,8 +147,20 @@ void draw_strips(const fs::path& run, const std::vector<View>& views) {
   for (std::size_t i = 0; i < count; ++i) spread.push_back(&views[i * views.size() / count]);
   write_strip(run / "strip.png", plan, spread);
 }
+
+Image draw_frame_sheet(const std::vector<TitledPicture>& pictures) {
+  PictureGrid grid;
+  grid.bands = true;
+  grid.rows.emplace_back();
+  for (const auto& [title, picture] : pictures) {
+    grid.titles.push_back(title);
+    grid.rows[0].push_back(fit_panel(picture));
+  }
+  return draw_image(draw_grid(std::move(grid)));
+}
 }  // namespace
 
 GLINT_PROVIDE(write_strips, draw_strips)
+GLINT_PROVIDE(frame_sheet, draw_frame_sheet)
 
 }  // namespace glint

@@ -27,4 +27,12 @@ std::vector<std::string> strip_titles(const fs::path& run, const std::vector<Vie
 inline constinit Service<void(const fs::path& run, const std::vector<View>& views)> write_strips{
     "drawing strips", "use the full build"};
 
+struct TitledPicture {
+  std::string title;
+  Image picture;  // [H][W][1 or 3] as displayed; all of one size
+};
+// The layers of one frame of a camera path on one picture, for videos.
+inline constinit Service<Image(const std::vector<TitledPicture>& pictures)> frame_sheet{
+    "drawing layers side by side", "use the full build"};
+
 }  // namespace glint

@@ -26,7 +26,7 @@ struct SceneSource {
   std::string manifest;    // id of the published dataset it is a scene of; empty: none
   int width = 160, height = 90, views = 64, spp = 128;  // glassroom
   std::uint64_t seed = 0;                               // glassroom: varies the layout
-  std::string assets;                                   // glassroom: folder with glTF furniture
+  std::string assets;                                   // empty; earlier: glTF furniture
   std::string room;                                     // glassroom; empty: `scene`
   std::string priors = kDefaultPriorLevel;              // glassroom: one of kPriorLevels
   PriorOptions foreign_priors = {};                     // folders: priors of other programs
@@ -46,7 +46,7 @@ struct SceneSource {
     v("views", views, "views along the camera path");
     v("spp", spp, "samples a pixel");
     v("seed", seed, "varies the layout of a room");
-    v("assets", assets, "folder with glTF furniture");
+    v("assets", assets, "empty; earlier versions: folder with glTF furniture");
     v("room", room, "room that is made, where the scene is called otherwise");
     v("priors",
       priors,

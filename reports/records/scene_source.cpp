@@ -52,25 +52,16 @@ PriorOptions placed_priors(PriorOptions priors, const fs::path& data_folder) {
 
 fs::path hash_cache(const fs::path& data_folder) { return data_folder / ".hashes"; }
 
-// The options of a room. Of assets the content counts, not where they lie.
-Json room_json(const SceneSource& source, const fs::path& data_folder) {
-  Json json = glassroom_json(glassroom_options(source));
-  if (!source.assets.empty()) json["assets"] = content_hash(source.assets, hash_cache(data_folder));
-  return json;
-}
-
-Json make_document(const SceneSource& source, const fs::path& data_folder) {
-  return {{"scene", room_json(source, data_folder)}, {"code", code_json({"make"})}};
+Json make_document(const SceneSource& source) {
+  return {{"scene", glassroom_json(glassroom_options(source))}, {"code", code_json({"make"})}};
 }
 
 // Empty: the folder holds what this program would make.
-std::string why_make(
-    const SceneSource& source, const fs::path& folder, const fs::path& data_folder
-) {
+std::string why_make(const SceneSource& source, const fs::path& folder) {
   if (!fs::exists(folder)) return "not made yet";
   const auto made = read_stage(folder, Stage::kData);
   if (!made) return "made by an earlier version, without a key, or not to the end";
-  const auto differences = stage_differences(made->document, make_document(source, data_folder));
+  const auto differences = stage_differences(made->document, make_document(source));
   return differences.empty() ? what_is_damaged(folder, *made) : differences.front();
 }
 
@@ -131,7 +122,7 @@ LoadOptions options_of(const Json& scene, const std::string& loader) {
 SceneIdentity made_identity(const SceneSource& source, const fs::path& data_folder) {
   const fs::path folder = made_folder(source, data_folder);
   SceneIdentity identity{
-      {{"scene", room_json(source, data_folder)}}, why_make(source, folder, data_folder)};
+      {{"scene", glassroom_json(glassroom_options(source))}}, why_make(source, folder)};
   identity.document["scene"]["max_pixels"] = source.max_pixels;
   add_reading(options_of(source), data_folder, identity.document["scene"]);
   if (!identity.why_not.empty()) return identity;
@@ -148,14 +139,14 @@ FileLock wait_for(const fs::path& folder) {
   });
 }
 
-void make_source(const SceneSource& source, const fs::path& folder, const fs::path& data_folder) {
-  if (why_make(source, folder, data_folder).empty()) return;
+void make_source(const SceneSource& source, const fs::path& folder) {
+  if (why_make(source, folder).empty()) return;
   const FileLock lock = wait_for(folder);
-  const std::string why = why_make(source, folder, data_folder);
+  const std::string why = why_make(source, folder);
   if (why.empty()) return;
   log::info(fmt::format("{}: {}; making it", folder.string(), why));
   make_glassroom(glassroom_options(source), folder, true);
-  write_stage(folder, Stage::kData, make_document(source, data_folder), {"."});
+  write_stage(folder, Stage::kData, make_document(source), {"."});
 }
 
 }  // namespace
@@ -221,7 +212,7 @@ LoadedScene load_source(const SceneSource& source, const fs::path& data_folder) 
   LoadOptions options = options_of(source);
   options.priors = placed_priors(source.foreign_priors, data_folder);
   loaded.folder = folder_of(source, data_folder);
-  if (source.made()) make_source(source, loaded.folder, data_folder);
+  if (source.made()) make_source(source, loaded.folder);
   loaded.scene = load_scene(loaded.folder, options);
   loaded.scene.name = source.scene;
   loaded.scene.dataset = source.dataset;

@@ -152,12 +152,6 @@ std::string latex_document(const std::vector<Table>& tables) {
   for (const Table& table : tables) {
     text += fmt::format("\n\\section*{{{}}}\n", latex_text(table.title));
     text += fmt::format("{}\n\n\\medskip\n\\fitted{{{}}}\n", latex_text(table.caption), table.id);
-    if (const Table differences = difference_table(table); !differences.rows.empty())
-      text += fmt::format(
-          "\n\\medskip\n{}\n\n\\smallskip\n\\fitted{{{}}}\n",
-          latex_text(differences.title),
-          differences.id
-      );
     text += "\n\\medskip\n{\\footnotesize\n";
     for (const std::string& note : table_notes(table)) text += latex_text(note) + "\\par\n";
     text += "}\\bigskip\\filbreak\n";  // a new page where the next table would not fit

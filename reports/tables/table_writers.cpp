@@ -114,22 +114,6 @@ std::string markdown_rows(const Table& table) {
   return text;
 }
 
-const TableRow* find_row(const Table& table, const std::string& method) {
-  for (const TableRow& row : table.rows)
-    if (row.method == method) return &row;
-  return nullptr;
-}
-
-// Method -> column id of the measured column -> difference.
-Json differences_json(const Table& differences) {
-  Json json = Json::object();
-  for (const TableRow& row : differences.rows)
-    for (std::size_t i = 0; i < row.cells.size(); ++i)
-      if (row.cells[i].has_value())
-        json[row.method][differences.columns[i].id] = row.cells[i].value;
-  return json;
-}
-
 }  // namespace
 
 std::string markdown_text(std::string_view text) {
@@ -180,8 +164,6 @@ std::vector<std::string> table_notes(const Table& table) {
 std::string table_markdown(const Table& table) {
   std::string text = fmt::format("## {}\n\n{}\n\n", table.title, markdown_text(table.caption));
   text += markdown_rows(table);
-  if (const Table differences = difference_table(table); !differences.rows.empty())
-    text += fmt::format("\n{}\n\n{}", markdown_text(differences.title), markdown_rows(differences));
   text += "\n";
   for (const std::string& note : table_notes(table))
     text += fmt::format("- {}\n", markdown_text(note));
@@ -198,21 +180,14 @@ std::vector<std::string> partial_columns(const TableRow& row, const Table& table
 }
 
 std::string table_csv(const Table& table) {
-  const Table differences = difference_table(table);
   std::vector<std::string> header{"method"};
-  for (const Table* part : {&table, &differences})
-    for (const TableColumn& column : part->columns) header.push_back(csv_field(column.id));
+  for (const TableColumn& column : table.columns) header.push_back(csv_field(column.id));
   header.emplace_back("not_ranked");
   std::string text = join(header, ",") + "\n";
   for (const TableRow& row : table.rows) {
     std::vector<std::string> cells{csv_field(row.method)};
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       cells.push_back(csv_value(row.cells[i], table.columns[i]));
-    const TableRow* difference = find_row(differences, row.method);
-    for (std::size_t i = 0; i < differences.columns.size(); ++i)
-      cells.push_back(
-          difference ? csv_value(difference->cells[i], differences.columns[i]) : "not applicable"
-      );
     cells.push_back(csv_field(join(partial_columns(row, table), "; ")));
     text += join(cells, ",") + "\n";
   }
@@ -242,7 +217,6 @@ Json table_json(const Table& table) {
     );
     if (!row.rival) json["rows"].back()["rival"] = false;
   }
-  json["differences"] = differences_json(difference_table(table));
   json["order_agreement"] = Json::array();
   for (const OrderAgreement& order : table.agreement)
     json["order_agreement"].push_back(agreement_json(order));
@@ -255,9 +229,6 @@ void write_table(const fs::path& folder, const Table& table) {
   write_file(folder / (table.id + ".tex"), table_latex(table));
   write_file(folder / (table.id + ".csv"), table_csv(table));
   write_file(folder / (table.id + ".json"), table_json(table).dump(2) + "\n");
-  write_file(folder / (table.id + ".html"), table_html(table));
-  if (const Table differences = difference_table(table); !differences.rows.empty())
-    write_file(folder / (differences.id + ".tex"), table_latex(differences));
 }
 
 }  // namespace glint

@@ -31,7 +31,6 @@ std::string table_latex(const Table& table);
 // whose value has an asterisk in the other formats.
 std::string table_csv(const Table& table);
 Json table_json(const Table& table);
-std::string table_html(const Table& table);  // a page of its own, every text escaped
 
 // Measured columns only, without what is said of the published ones.
 Table without_published(const Table& table);
@@ -46,14 +45,10 @@ struct TerminalStyle {
 // What is too wide for the terminal comes in blocks below each other, each with the methods.
 std::string table_terminal(const Table& table, TerminalStyle style = {});
 
-// Measured minus published, for the columns that the paper has on its first dataset; no columns
-// where it has none, no rows where nothing is measured. The data are not the same.
-Table difference_table(const Table& table);
-
 // A LaTeX document with FOLDER/<id>.tex of all tables: booktabs, xcolor and graphicx.
 std::string latex_document(const std::vector<Table>& tables);
 
-// FOLDER/<id>.md, .tex, .csv, .json, .html; <id>_differences.tex where there are any
+// FOLDER/<id>.md, .tex, .csv, .json
 void write_table(const fs::path& folder, const Table& table);
 
 // Text inside a cell of a Markdown table: pipes and tags stay letters.

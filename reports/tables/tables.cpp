@@ -161,7 +161,7 @@ TableRow build_row(
     const std::vector<SizedScenes>& scenes,
     const std::vector<Record>& records
 ) {
-  TableRow result{row.method, row.title, row.paper_row, {}, is_rival(row.method)};
+  TableRow result{row.method, row.title, {}, is_rival(row.method)};
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const TableColumn& column = table.columns[i];
     if (column.published) {

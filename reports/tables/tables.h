@@ -79,7 +79,7 @@ struct TableCell {
 };
 
 struct TableRow {
-  std::string method, title, paper_row;
+  std::string method, title;
   std::vector<TableCell> cells;  // one a column
   bool rival = true;  // false: was given the truth (MethodSpec); never ranked, stands last
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reports/verbs/dataset_export.h"
+#include "reports/verbs/dataset_parts.h"
 
 #include "reports/verbs/load_options.h"
 

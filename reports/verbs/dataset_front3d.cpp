@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reports/verbs/dataset_front3d.h"
+#include "reports/verbs/dataset_parts.h"
 
 #include <utility>
 

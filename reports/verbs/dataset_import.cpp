@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reports/verbs/dataset_import.h"
+#include "reports/verbs/dataset_parts.h"
 
 #include <memory>
 

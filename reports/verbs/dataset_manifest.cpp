@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reports/verbs/dataset_manifest.h"
+#include "reports/verbs/dataset_parts.h"
 
 #include "datasets/scene_index.h"
 #include "glint/core/rows.h"

@@ -10,11 +10,7 @@
 #include "glint/core/progress.h"
 #include "glint/core/rows.h"
 #include "metrics/tools/numeric_options.h"
-#include "reports/verbs/dataset_compare.h"
-#include "reports/verbs/dataset_export.h"
-#include "reports/verbs/dataset_front3d.h"
-#include "reports/verbs/dataset_import.h"
-#include "reports/verbs/dataset_manifest.h"
+#include "reports/verbs/dataset_parts.h"
 #include "reports/verbs/load_options.h"
 #include "reports/verbs/print_findings.h"
 #include "reports/verbs/verb.h"
@@ -257,7 +253,6 @@ void add_make(CommandLine& line, CLI::App& dataset) {
   make.add_option("--height", room.height, "pixels")->capture_default_str();
   make.add_option("--views", room.views, "views along the camera path")->capture_default_str();
   make.add_option("--spp", room.spp, "samples a pixel")->capture_default_str();
-  make.add_option("--assets", room.assets, "folder with glTF furniture");
   make.add_option(
           "--priors",
           room.priors,
@@ -302,7 +297,6 @@ void add_dataset_verb(CommandLine& line) {
   add_folder_verb(line, *dataset, "info", "what a folder holds, as methods will see it", run_info);
   add_folder_verb(line, *dataset, "check", "everything wrong with a folder; exit 4", run_check);
   add_pack(line, *dataset);
-  add_dataset_compare(line, *dataset);
   add_dataset_export(line, *dataset);
   add_dataset_import(line, *dataset);
 }

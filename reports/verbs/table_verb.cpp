@@ -17,7 +17,6 @@ struct TableVerbOptions {
 std::string table_text(const Table& table, const std::string& format) {
   if (format == "md") return table_markdown(table);
   if (format == "tex") return table_latex(table);
-  if (format == "html") return table_html(table);
   return table_csv(table);
 }
 
@@ -56,8 +55,8 @@ void add_table_verb(CommandLine& line) {
   );
   verb->add_option("--table", options->ids, "the same")->delimiter(',')->excludes(positional);
   verb->add_flag("--no-published", options->no_published, "measured columns only");
-  verb->add_option("--format", options->format, "terminal, md, tex, csv, html or json")
-      ->check(CLI::IsMember({"terminal", "md", "tex", "csv", "html", "json"}))
+  verb->add_option("--format", options->format, "terminal, md, tex, csv or json")
+      ->check(CLI::IsMember({"terminal", "md", "tex", "csv", "json"}))
       ->capture_default_str();
 }
 

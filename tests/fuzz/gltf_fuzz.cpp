@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Furniture as glTF, read by assimp: text, and binary with its JSON in the first chunk.
-#include "datasets/glassroom/gltf_assets.h"
+#include "datasets/glassroom/import_model.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace glint::fuzz {
@@ -10,10 +10,11 @@ bool read(std::string_view bytes) {
   const fs::path folder = input_folder() / "assets";
   fs::remove_all(folder);
   fs::create_directories(folder);
-  input_file(bytes, folder / (bytes.starts_with("glTF") ? "sofa.glb" : "sofa.gltf"));
+  const fs::path file = folder / (bytes.starts_with("glTF") ? "sofa.glb" : "sofa.gltf");
+  input_file(bytes, file);
   return accepts([&] {
     TraceScene scene;
-    gltf_assets(folder)(scene);
+    import_model(file, scene);
   });
 }
 

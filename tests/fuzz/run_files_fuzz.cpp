@@ -29,7 +29,7 @@ bool show_lines(std::string_view bytes) {
   static const std::vector<TableDefinition> definitions = table_definitions();
   return accepts([&] {
     const Table table = build_table(definitions.front(), read_records(file));
-    table_markdown(table), table_latex(table), table_csv(table), table_html(table);
+    table_markdown(table), table_latex(table), table_csv(table);
     for (const unsigned char c : table_terminal(table))
       if (c < 32 && c != '\n') throw Finding("a control character in a terminal");
   });

@@ -104,37 +104,6 @@ TEST_CASE("a line of few points has a dot at each") {
   CHECK(count_blue(drawn(few)) > count_blue(drawn(many)) + 100);
 }
 
-TEST_CASE("bars reach from low to high, and the axis has room for them") {
-  ChartSeries series{0, {0, 1, 2}, {1, 2, 1}, true};
-  series.low = {0.5, kNan, 0.5};
-  series.high = {1.5, kNan, 1.5};
-  series.y[1] = kNan;  // and nothing of its bar
-  const int with_bars = count_blue(drawn(series));
-  series.low = series.high = {};
-  CHECK(with_bars > count_blue(drawn(series)) + 50);
-  series = {0, {0, 1}, {1, 1}, true, {-9, 1}, {1, 1}};
-  CHECK(count_differing(drawn(series), drawn({0, {0, 1}, {1, 1}, true})) > 100);
-}
-
-TEST_CASE("an axis of names has a place for each, whatever has a point") {
-  const auto middle_of = [](double x) {
-    ChartSheet sheet = sheet_of({0, {x}, {1}, true});
-    sheet.rows[0].charts[0].x_names = {"good", "poor", "bad"};
-    const Image picture = draw_image(draw_charts(sheet));
-    double sum = 0;
-    int count = 0;
-    for (int y = 0; y < picture.height() / 2; ++y)  // without the legend
-      for (int column = 0; column < picture.width(); ++column)
-        if (picture.at(column, y, 0) < 0.02f && picture.at(column, y, 2) > 0.5f)
-          sum += column, ++count;
-    REQUIRE(count > 20);
-    return sum / count / picture.width();
-  };
-  const double first = middle_of(0), second = middle_of(1), third = middle_of(2);
-  CHECK(second - first > 0.2);
-  CHECK(third - second == Approx(second - first).margin(0.01));
-}
-
 TEST_CASE("a single dot has room around it") {
   const ChartSheet sheet = sheet_of({0, {5}, {30}, true});
   const Drawing drawing = draw_charts(sheet);

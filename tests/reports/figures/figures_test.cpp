@@ -3,13 +3,11 @@
 
 #include <catch2/catch.hpp>
 
-#include "datasets/glassroom/prior_levels.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"
 #include "reports/figures/figure_methods.h"
 #include "reports/figures/map_crops.h"
 #include "reports/figures/map_figures.h"
-#include "reports/figures/priors_figure.h"
 #include "tests/reports/fake_method.h"
 #include "tests/support/temp_folder.h"
 
@@ -55,18 +53,6 @@ std::vector<std::string> names_of(const std::vector<fs::path>& paths) {
   std::vector<std::string> names;
   for (const fs::path& path : paths) names.push_back(path.stem().string());
   return names;
-}
-
-// A finished cell of a room with priors of some level; nothing of it is on the disk.
-Record level_record(
-    const std::string& scene, const std::string& method, std::uint64_t seed, double psnr
-) {
-  Record record;
-  record.dataset = "glassroom";
-  record.cell = {scene, method, seed};
-  record.metrics = {{"psnr@glass", psnr}, {"depth-absrel", 0.1}};
-  if (method == "glint") record.metrics["transparency-iou"] = 0.5;
-  return record;
 }
 
 FigureScene scene_of(std::map<std::string, LayerMaps> methods) {
@@ -311,55 +297,6 @@ TEST_CASE("scene, view and crops can be chosen, and wrong ones are named") {
   );
   options.shown = {{}, "", {"10,0,7,2"}};
   CHECK_THROWS_WITH(figure_scenes(records, options), Catch::Contains("reaches out of the views"));
-}
-
-TEST_CASE("results over the levels of priors are drawn from two levels of a room on") {
-  std::vector<Record> records = {
-      level_record("good", "glint", 0, 24),
-      level_record("good", "2dgs", 0, 20),
-      level_record("room_2-bad", "glint", 0, 21),  // another room
-      level_record("room_1", "glint", 0, 25)};
-  CHECK(priors_figure(records, {}).empty());
-  CHECK(priors_table(records, {}).is_null());
-  records.push_back(level_record("bad", "glint", 0, 20));
-  records.push_back(level_record("bad", "glint", 1, 22));
-  records.push_back(level_record("bad", "glint/no-ltrans", 0, 19));  // studies have all methods
-  records.push_back(level_record("bad", "glint", 2, 90));
-  records.back().failure = Failure{};
-  const Drawing drawing = priors_figure(records, {});
-  REQUIRE_FALSE(drawing.empty());
-  CHECK(draw_image(drawing).width() > kMinPanelWidth);
-  const Json table = priors_table(records, {});
-  CHECK(table.at("levels") == prior_levels());
-  REQUIRE(table.at("points").size() == 2 * 3 + 2 + 2);  // GLINT at two levels, others at one
-  for (const Json& point : table.at("points")) {
-    CHECK(point.at("room") == "");
-    if (point.at("metric") == "transparency-iou") CHECK(point.at("method") == "glint");
-  }
-  const Json& bad = table.at("points").at(2);
-  CHECK(bad.at("method") == "glint");
-  CHECK(bad.at("level") == "bad");
-  CHECK(bad.at("values") == Json({20.0, 22.0}));
-  CHECK(bad.at("mean") == 21.0);
-  CHECK(bad.at("low") == 20.0);
-  CHECK(bad.at("high") == 22.0);
-  CHECK(priors_table(records, {{"2dgs"}}).is_null());  // finished at one level
-  records.push_back(level_record("room_2-good", "glint", 0, 21));
-  CHECK(priors_figure(records, {}).height > 1.5 * drawing.height);
-}
-
-TEST_CASE("the figure of priors lies beside its numbers, and goes with them") {
-  const test::TempFolder folder;
-  for (const char* level : {"perfect", "poor"})
-    append_record(folder / "records.jsonl", level_record(level, "glint", 0, 23));
-  CHECK(names_of(write_figures({folder.path(), load_fake})) == std::vector<std::string>{"priors"});
-  const Json table = Json::parse(read_file(folder / "figures/priors.json"));
-  CHECK(table.at("points").size() == 6);
-  CHECK(fs::exists(folder / "figures/priors.pdf"));
-  fs::remove(folder / "records.jsonl");
-  append_record(folder / "records.jsonl", level_record("perfect", "glint", 0, 23));
-  CHECK(write_figures({folder.path(), load_fake}).empty());
-  CHECK(fs::is_empty(folder / "figures"));
 }
 
 TEST_CASE("a crop is four whole numbers, and three of them fit") {

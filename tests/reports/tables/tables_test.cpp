@@ -431,29 +431,6 @@ TEST_CASE("fewer than three pairs of scene and seed claim no tie and say so") {
   CHECK(table_markdown(table).find("- Fewer than 3 pairs") != std::string::npos);
 }
 
-TEST_CASE("differences to the paper stand apart, with a sign, where both numbers are") {
-  const Table differences = difference_table(golden_table("table1_photometric"));
-  REQUIRE(differences.rows.size() == 3);  // 2dgs, envgs, glint
-  REQUIRE(differences.columns.size() == 3);
-  CHECK(differences.columns[0].id == "difference/psnr");
-  CHECK(cell_of(differences, "envgs", "difference/psnr").text == "+0.29");
-  CHECK(
-      cell_of(differences, "envgs", "difference/lpips-vgg-3dgs").status ==
-      CellStatus::kNotApplicable
-  );
-  CHECK(difference_table(golden_table("regions")).rows.empty());
-}
-
-TEST_CASE("the HTML table escapes what records and definitions say") {
-  Table table = golden_table("table1_photometric");
-  table.rows[0].title = "<b>\"&";
-  table.notes.push_back("</ul><script>");
-  const std::string html = table_html(table);
-  CHECK(html.find("<th scope=\"row\">&lt;b&gt;&quot;&amp;</th>") != std::string::npos);
-  CHECK(html.find("<script>") == std::string::npos);
-  CHECK(html.find("class=\"rank1\" title=\"\">34.00</td>") != std::string::npos);
-}
-
 TEST_CASE("a terminal's table is no wider than the terminal") {
   const Table table = golden_table("table1_photometric");
   CHECK(table_terminal(table, {false, 1000}) == table_terminal(table));
