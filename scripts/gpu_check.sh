@@ -163,7 +163,7 @@ step_perf() {
         --op 'glint training step|2dgs training step' "${at[@]}" && keep "kernels-$size-$surfels.json"
     done
     [ "$size" = "${sizes[0]}" ] || continue
-    perf "ops, $size, ms" 60 ops.json --op 'rasterize*|activate*|trace*|L1*|LPIPS*|normal*|Adam*' \
+    perf "ops, $size, ms" 60 ops.json --op 'rasterize*|activate*|trace*|L1*|normal*|Adam*' \
       --width "${size%x*}" --height "${size#*x}" --surfels "${counts[-1]}"
   done
 }

@@ -159,24 +159,6 @@ PathTracerOutput PathTracer::render(const Camera& camera, const PathTracerSettin
   return out;
 }
 
-std::vector<TracedRay> PathTracer::rays_of(
-    const Camera& camera, const PathTracerSettings& settings
-) {
-  std::vector<TracedRay> rays;
-  PathTracerOutput out = empty_output(camera.width, camera.height);
-  const Rendering rendering(state_->rays, state_->lights, camera, settings, out);
-  state_->rays.record_to(&rays);
-  for (int y = 0; y < camera.height; ++y) rendering.row(y);
-  state_->rays.record_to(nullptr);
-  return rays;
-}
-
-std::size_t PathTracer::count_met(std::span<const TracedRay> rays) const {
-  std::size_t count = 0;
-  for (const TracedRay& ray : rays) count += state_->rays.is_met(ray);
-  return count;
-}
-
 PathTracer::FirstHit PathTracer::first_hit(Vec3f origin, Vec3f direction, bool skip_glass) const {
   const RayScene& rays = state_->rays;
   const auto surface =

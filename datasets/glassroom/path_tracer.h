@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "datasets/glassroom/trace_scene.h"
-#include "datasets/glassroom/traced_ray.h"
 #include "glint/scene/camera.h"
 #include "glint/scene/maps.h"
 #include "glint/scene/ply.h"
@@ -55,11 +54,6 @@ class PathTracer {
   };
   FirstHit first_hit(Vec3f origin, Vec3f direction, bool skip_glass) const;
   bool occluded(Vec3f from, Vec3f to) const;  // by opaque surfaces only
-
-  // For timings: every ray that render() traces, in the order of one thread, and how many of some
-  // rays meet something when Embree does nothing else. Not while another thread renders.
-  std::vector<TracedRay> rays_of(const Camera& camera, const PathTracerSettings& settings);
-  std::size_t count_met(std::span<const TracedRay> rays) const;
 
  private:
   struct State;

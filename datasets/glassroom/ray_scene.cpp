@@ -157,8 +157,6 @@ RTCRayHit RayScene::closest(Vec3f origin, Vec3f direction, RayMask mask) const {
 }
 
 std::optional<Surface> RayScene::intersect(Vec3f origin, Vec3f direction, RayMask mask) const {
-  if (recorded_ != nullptr)
-    recorded_->push_back({origin, direction, static_cast<unsigned>(mask), false});
   const RTCRayHit query = closest(origin, direction, mask);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
@@ -197,26 +195,11 @@ void RayScene::pass_glass(const RTCFilterFunctionNArguments* arguments) {
 
 Vec3f RayScene::transmittance(Vec3f from, Vec3f to) const {
   const Vec3f segment = to - from;
-  if (recorded_ != nullptr)
-    recorded_->push_back({from, segment, static_cast<unsigned>(RayMask::kAll), true});
-  return transmittance_along(from, segment);
-}
-
-Vec3f RayScene::transmittance_along(Vec3f from, Vec3f segment) const {
   ShadowContext context{{}, this, triangles_.data() + num_opaque_, normalize(segment), {1, 1, 1}};
   rtcInitIntersectContext(&context.base);
   RTCRay ray = make_ray(from, segment, 1, RayMask::kAll);
   rtcOccluded1(bvh_, &context.base, &ray);
   return ray.tfar < 0 ? Vec3f{} : context.transmittance;
-}
-
-bool RayScene::is_met(const TracedRay& ray) const {
-  if (ray.shadow) {
-    const Vec3f passed = transmittance_along(ray.origin, ray.direction);
-    return passed.x + passed.y + passed.z <= 0;
-  }
-  const RTCRayHit query = closest(ray.origin, ray.direction, static_cast<RayMask>(ray.mask));
-  return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
 bool RayScene::occluded(Vec3f from, Vec3f to) const {

@@ -13,7 +13,6 @@
 
 #include "datasets/glassroom/bsdf.h"
 #include "datasets/glassroom/trace_scene.h"
-#include "datasets/glassroom/traced_ray.h"
 
 namespace glint::path_tracing {
 
@@ -58,11 +57,6 @@ class RayScene {
   Vec3f transmittance(Vec3f from, Vec3f to) const;
   bool occluded(Vec3f from, Vec3f to) const;  // by opaque surfaces; ends excluded
 
-  // From now on every ray is added to `rays`, by one thread; null: no more.
-  void record_to(std::vector<TracedRay>* rays) { recorded_ = rays; }
-  // What Embree says to a ray, without anything that shading needs.
-  bool is_met(const TracedRay& ray) const;
-
   // A point of a plane moved off it, to the side that `direction` leaves by: where rays start and
   // end.
   static Vec3f leave(Vec3f position, Vec3f normal, Vec3f direction);
@@ -82,7 +76,6 @@ class RayScene {
 
  private:
   RTCRayHit closest(Vec3f origin, Vec3f direction, RayMask mask) const;
-  Vec3f transmittance_along(Vec3f from, Vec3f segment) const;
   void add_triangles(bool glass);
   void attach(std::size_t first, std::size_t count, RayMask mask);
   static void pass_glass(const RTCFilterFunctionNArguments* arguments);
@@ -92,7 +85,6 @@ class RayScene {
   std::vector<ImageView> textures_;  // of materials; empty: none
   std::vector<Triangle> triangles_;  // opaque ones first
   std::size_t num_opaque_ = 0;
-  std::vector<TracedRay>* recorded_ = nullptr;
   RTCDevice device_ = nullptr;
   RTCScene bvh_ = nullptr;
 };

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "reports/code/source_tree.h"
 
+#include <algorithm>
 #include <set>
 
 #include "glint/core/error.h"
 #include "glint/core/sha256.h"
-#include "reports/code/source_text.h"
 
 namespace glint {
 namespace {
@@ -24,6 +24,32 @@ fs::path folder_of(const std::string& file) { return fs::path(file).parent_path(
 
 // "a/x" of a/x.cpp and a/x.cu.
 std::string stem_of(const std::string& file) { return fs::path(file).replace_extension().string(); }
+
+// Without comment lines, empty lines and the blanks around lines, so that writing about code does
+// not call for new results.
+std::string code_of(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  std::string code;
+  for (std::size_t at = 0, end = 0; at < text.size(); at = end + 1) {
+    end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = text.substr(at, end - at);
+    const std::size_t first = line.find_first_not_of(kBlanks);
+    if (first == std::string_view::npos || line.substr(first).starts_with("//")) continue;
+    code.append(line.substr(first, line.find_last_not_of(kBlanks) + 1 - first)) += '\n';
+  }
+  return code;
+}
+
+std::vector<std::string> quoted_includes(std::string_view code) {
+  std::vector<std::string> includes;
+  constexpr std::string_view kOpening = "#include \"";
+  for (std::size_t at = 0; (at = code.find(kOpening, at)) != std::string_view::npos;) {
+    const bool opens_line = at == 0 || code[at - 1] == '\n';
+    at += kOpening.size();
+    if (opens_line) includes.emplace_back(code.substr(at, code.find('"', at) - at));
+  }
+  return includes;
+}
 
 }  // namespace
 

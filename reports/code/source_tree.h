@@ -26,7 +26,7 @@ class SourceTree {
   // The files and all they depend on, by name. Of reports/, which drives the computation, only
   // files that are named count, not what they include.
   std::vector<std::string> closure(const std::vector<std::string>& files) const;
-  // Hexadecimal, of the file's code_of().
+  // Hexadecimal, of the file without comment lines and blanks around lines.
   std::string hash_of(const std::string& file) const;
 
  private:

@@ -423,26 +423,3 @@ TEST_CASE("A scene that cannot be rendered is refused by name") {
   const PathTracer tracer(scene);
   CHECK_THROWS_AS(tracer.render(room_camera({8, 8}), settings(0)), Error);
 }
-
-TEST_CASE("Rays of a picture are those that make it: Embree alone finds the same of them") {
-  TraceScene scene;
-  const int lamp = add_material(scene, diffuse(0.5f));
-  scene.materials[static_cast<std::size_t>(lamp)].emission = {1, 1, 1};
-  add_box(scene, lamp, {-1, -1, -1}, {1, 1, 1});
-  const Camera camera = look_at({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {4, 2}, 50);
-  PathTracer tracer(scene);
-  const Image before = tracer.render(camera, settings(2, 0)).radiance;
-  // No scattering: of every pixel the ray for the maps, and that of each sample; all meet the box.
-  const std::vector<TracedRay> seen = tracer.rays_of(camera, settings(2, 0));
-  CHECK(seen.size() == 4 * 2 * (1 + 2));
-  CHECK(tracer.count_met(seen) == seen.size());
-  // One scattering: at most a shadow ray and another segment more. Inside a convex box no light is
-  // hidden.
-  const std::vector<TracedRay> scattered = tracer.rays_of(camera, settings(2, 1));
-  std::size_t num_shadows = 0;
-  for (const TracedRay& ray : scattered) num_shadows += ray.shadow;
-  CHECK(num_shadows > 0);
-  CHECK(scattered.size() == seen.size() + num_shadows + 4 * 2 * 2);
-  CHECK(tracer.count_met(scattered) == scattered.size() - num_shadows);
-  CHECK(same_bytes(tracer.render(camera, settings(2, 0)).radiance, before));
-}

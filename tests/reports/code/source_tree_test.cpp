@@ -79,7 +79,8 @@ TEST_CASE("a change of code reaches who depends on it, a comment nobody") {
   CHECK(sources.hashes("baselines/a.cpp") == a);
   CHECK(sources.hashes("baselines/b.cpp") != b);
   sources.write(
-      "glint/train/loss.cpp", "// two?\n#include \"glint/train/loss.h\"\nint loss()\n{ return 1; }"
+      "glint/train/loss.cpp",
+      "// two?\n#include \"glint/train/loss.h\"\n\n  int loss() { return 1; }\r\n"
   );
   CHECK(sources.hashes("baselines/b.cpp") == b);
   sources.write("baselines/a.cpp", "#include \"glint/render/draw.h\"\nGLINT_REGISTER(c())");

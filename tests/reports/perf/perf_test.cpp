@@ -9,7 +9,6 @@
 #include "glint/method.h"
 #include "glint/scene/ply.h"
 #include "reports/perf/perf_scene.h"
-#include "tests/support/gpu_backends.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -53,24 +52,12 @@ TEST_CASE("only what is asked for is made and timed") {
   CHECK(names("Adam*|rasterize forward") == Names{"rasterize forward", "Adam, 58 values a surfel"});
   CHECK(names("2dgs training step") == Names{"2dgs training step"});
   CHECK(names("trace fog*").size() == 2);
-  CHECK(names("path tracer") == Names{"path tracer"});
 }
 
 TEST_CASE("a pattern that fits no op is an error") {
   PerfOptions options;
   options.only = "rasterise";
   CHECK_THROWS_WITH(make_perf_cases(options), Catch::Contains("--op rasterise: fits no op"));
-}
-
-TEST_CASE("Embree alone traces the rays of the path tracer, all of them") {
-  PerfOptions options = small_options();
-  options.only = "path tracer*";
-  const std::vector<PerfCase> cases = make_perf_cases(options);
-  REQUIRE(cases.size() == 2);
-  CHECK(cases[0].unit == "rays");
-  CHECK(cases[0].work() == cases[1].work());
-  // Of each of 4 samples: a ray to the first surface, and one towards a light.
-  CHECK(cases[0].work() > 2 * 4 * 16 * 9);
 }
 
 TEST_CASE("the kernels of an op are timed one by one, with their launches") {
@@ -93,14 +80,6 @@ TEST_CASE("the kernels of an op are timed one by one, with their launches") {
   const std::string text = kernels_to_text(options, rows);
   CHECK_THAT(text, Catch::Contains(rows[0].kernel) && Catch::Contains("ms in kernels"));
   CHECK(kernels_to_json(options, rows)["rows"].size() == rows.size());
-}
-
-TEST_CASE("LPIPS is timed on a GPU alone") {
-  PerfOptions options = small_options();
-  options.only = "LPIPS*";
-  CHECK_THROWS_WITH(make_perf_cases(options), Catch::Contains("fits no op"));
-  const test::OnHost on_host;
-  CHECK(make_perf_cases(options).size() == 1);
 }
 
 TEST_CASE("the timed scene can be written for other programs to be timed on") {
