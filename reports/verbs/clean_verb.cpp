@@ -42,10 +42,11 @@ int run_clean(const CommonOptions& common, const CleanOptions& options) {
   const auto leftovers = find_leftovers(folder, options.unfinished);
   if (options.remove)
     for (const Leftover& leftover : leftovers) remove_leftover(leftover);
-  if (common.json)
-    print_json({{"removed", options.remove}, {"leftovers", rows_of(leftovers).json()}});
-  else
-    print_text(clean_text(leftovers, options.remove));
+  print_result(
+      common,
+      {{"removed", options.remove}, {"leftovers", rows_of(leftovers).json()}},
+      clean_text(leftovers, options.remove)
+  );
   return 0;
 }
 

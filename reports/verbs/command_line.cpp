@@ -254,6 +254,13 @@ void print_json(const Json& json) {
 
 void print_text(std::string_view text) { print_raw(printable(text)); }
 
+void print_result(const CommonOptions& common, const Json& json, std::string_view text) {
+  if (common.json)
+    print_json(json);
+  else
+    print_text(text);
+}
+
 void print_raw(std::string_view text) {
   // What is larger than the buffer is written at once: then there is nothing left to flush.
   const bool taken = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();

@@ -53,10 +53,11 @@ int run_compare(const CommonOptions& common, const CompareVerbOptions& options) 
   const bool on_stdout = options.markdown == "-";
   if (!options.markdown.empty() && !on_stdout)
     write_file(options.markdown, comparison_markdown(comparison));
-  if (common.json)
-    print_json(comparison_json(comparison));
-  else
-    print_text(on_stdout ? comparison_markdown(comparison) : comparison_text(comparison));
+  print_result(
+      common,
+      comparison_json(comparison),
+      on_stdout ? comparison_markdown(comparison) : comparison_text(comparison)
+  );
   const bool compared = comparison.num_values > 0;
   if (!compared)
     log::warn(fmt::format(

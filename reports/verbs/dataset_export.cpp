@@ -32,16 +32,16 @@ void print_report(
 ) {
   Rows parts({{"files"}, {"what"}});
   for (const ExportReport::Part& part : report.parts) parts.add({part.files, part.what});
-  if (common.json)
-    return print_json(
-        {{"folder", common.out},
-         {"format", format},
-         {"parts", parts.json()},
-         {"notes", report.notes}}
-    );
   std::string text = fmt::format("{}: {}\n{}", common.out, format, parts.text());
   for (const std::string& note : report.notes) text += fmt::format("- {}\n", note);
-  print_text(text);
+  print_result(
+      common,
+      {{"folder", common.out},
+       {"format", format},
+       {"parts", parts.json()},
+       {"notes", report.notes}},
+      text
+  );
 }
 
 int run_export(const CommonOptions& common, const ExportArguments& arguments, bool out_given) {

@@ -40,15 +40,16 @@ std::string model_text(const std::string& out, const PhotoModel& model) {
 }
 
 void print_model(const CommonOptions& common, const PhotoModel& model) {
-  if (!common.json) return print_text(model_text(common.out, model));
-  print_json(
+  print_result(
+      common,
       {{"folder", common.out},
        {"photos", model.photos},
        {"unposed", model.unposed},
        {"points", model.points},
        {"masks", model.masks},
        {"other_models", model.other_models},
-       {"matcher", model.matcher}}
+       {"matcher", model.matcher}},
+      model_text(common.out, model)
   );
 }
 

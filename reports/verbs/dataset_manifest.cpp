@@ -109,16 +109,15 @@ std::optional<int> show_manifest(const CommonOptions& common, const std::string&
   if (!examined) return std::nullopt;
   const Manifest& manifest = *examined->placed.manifest;
   const Rows rows = rows_of(examined->states);
-  if (common.json)
-    print_json(
-        {{"dataset", manifest.id},
-         {"image_ratio", manifest.image_ratio},
-         {"resize_filter", "area"},
-         {"scenes", rows.json()},
-         {"findings", findings_json(examined->findings)}}
-    );
-  else
-    print_text(heading_of(manifest) + rows.text() + findings_text(examined->findings));
+  print_result(
+      common,
+      {{"dataset", manifest.id},
+       {"image_ratio", manifest.image_ratio},
+       {"resize_filter", "area"},
+       {"scenes", rows.json()},
+       {"findings", findings_json(examined->findings)}},
+      heading_of(manifest) + rows.text() + findings_text(examined->findings)
+  );
   return 0;
 }
 

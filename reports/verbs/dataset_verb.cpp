@@ -143,16 +143,14 @@ int run_info(const CommonOptions& common, const FolderOptions& options) {
   const LoaderSpec& loader = find_loader(options.folder, options.load.loader);
   const Scene scene = loader.load(options.folder, options.load);
   const std::string split_rule = split_rule_of(loader, options.folder);
-  if (common.json)
-    print_json(scene_json(scene, loader.name, split_rule));
-  else
-    print_text(fmt::format(
-        "{}format         {}\nsplit          {}\ntest views     {}\n",
-        describe_scene(scene),
-        loader.name,
-        split_rule,
-        names_text(scene.test)
-    ));
+  const std::string text = fmt::format(
+      "{}format         {}\nsplit          {}\ntest views     {}\n",
+      describe_scene(scene),
+      loader.name,
+      split_rule,
+      names_text(scene.test)
+  );
+  print_result(common, scene_json(scene, loader.name, split_rule), text);
   return 0;
 }
 
@@ -195,12 +193,12 @@ int run_pack(const CommonOptions& common, const PackOptions& options) {
   write_packed_scene(options.file, scene);
   const std::uintmax_t bytes = fs::file_size(options.file);
   const std::size_t views = scene.train.size() + scene.test.size();
-  if (common.json)
-    print_json({{"file", options.file}, {"bytes", bytes}, {"views", views}});
-  else
-    print_text(fmt::format(
-        "{}: {} views, {:.1f} MiB\n", options.file, views, static_cast<double>(bytes) / (1 << 20)
-    ));
+  const double mebibytes = static_cast<double>(bytes) / (1 << 20);
+  print_result(
+      common,
+      {{"file", options.file}, {"bytes", bytes}, {"views", views}},
+      fmt::format("{}: {} views, {:.1f} MiB\n", options.file, views, mebibytes)
+  );
   return 0;
 }
 

@@ -185,10 +185,7 @@ int run_doctor(const CommonOptions& common, const DoctorOptions& options) {
   const std::vector<Checked> rows = rows_of(common, options);
   Json json = doctor_json(rows);
   if (options.card) json["cuda"].update(card_json());
-  if (common.json)
-    print_json(json);
-  else
-    print_text(doctor_text(rows));
+  print_result(common, json, doctor_text(rows));
   const bool fit = std::none_of(rows.begin(), rows.end(), [](const Checked& row) {
     return row.state == CheckState::kBad;
   });

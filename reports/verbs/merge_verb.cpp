@@ -133,10 +133,7 @@ int run_merge(const CommonOptions& common, const MergeOptions& options) {
   install_interrupt_handler();
   const MergeResult result = merge_all(common, options);
   const MergedRows rows = rows_of(result, options.dry_run);
-  if (common.json)
-    print_json(merged_json(rows, result));
-  else
-    print_text(merged_text(rows, result));
+  print_result(common, merged_json(rows, result), merged_text(rows, result));
   return exit_code_of(result);
 }
 

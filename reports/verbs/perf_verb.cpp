@@ -10,20 +10,6 @@ namespace glint {
 
 namespace {
 
-template <class Row>
-void print_rows(
-    const CommonOptions& common,
-    const PerfOptions& options,
-    const std::vector<Row>& rows,
-    Json (*to_json)(const PerfOptions&, const std::vector<Row>&),
-    std::string (*to_text)(const PerfOptions&, const std::vector<Row>&)
-) {
-  if (common.json)
-    print_json(to_json(options, rows));
-  else
-    print_text(to_text(options, rows));
-}
-
 struct PerfVerb {
   PerfOptions options;
   bool kernels = false;
@@ -68,10 +54,7 @@ void run_scaling_verb(const CommonOptions& common, const PerfVerb& verb) {
   const Json json = scaling_to_json(options, sweeps);
   write_file(folder / "scaling.json", json.dump(2) + "\n");
   if (draw_scaling.here()) draw_scaling(folder / "scaling.png", sweeps);
-  if (common.json)
-    print_json(json);
-  else
-    print_text(scaling_to_text(options, sweeps));
+  print_result(common, json, scaling_to_text(options, sweeps));
 }
 
 int run_frame_rates(const CommonOptions& common, const PerfVerb& verb) {
@@ -80,10 +63,7 @@ int run_frame_rates(const CommonOptions& common, const PerfVerb& verb) {
   install_interrupt_handler();
   try {
     const std::vector<FrameRate> rates = measure_frame_rates(options);
-    if (common.json)
-      print_json(frame_rates_to_json(options, rates));
-    else
-      print_text(frame_rates_to_text(options, rates));
+    print_result(common, frame_rates_to_json(options, rates), frame_rates_to_text(options, rates));
     return 0;
   } catch (const Interrupted&) {
     return interrupted_exit();
@@ -93,14 +73,17 @@ int run_frame_rates(const CommonOptions& common, const PerfVerb& verb) {
 int run(const CommonOptions& common, const PerfVerb& verb) {
   const PerfOptions& options = verb.options;
   if (!verb.frame_rates.runs.empty()) return run_frame_rates(common, verb);
-  if (!verb.scaling.empty())
+  if (!verb.scaling.empty()) {
     run_scaling_verb(common, verb);
-  else if (!verb.scene.empty())
+  } else if (!verb.scene.empty()) {
     write_perf_scene(options, verb.scene);
-  else if (verb.kernels)
-    print_rows(common, options, run_kernel_times(options), kernels_to_json, kernels_to_text);
-  else
-    print_rows(common, options, run_perf(options), perf_to_json, perf_to_text);
+  } else if (verb.kernels) {
+    const auto rows = run_kernel_times(options);
+    print_result(common, kernels_to_json(options, rows), kernels_to_text(options, rows));
+  } else {
+    const auto rows = run_perf(options);
+    print_result(common, perf_to_json(options, rows), perf_to_text(options, rows));
+  }
   return 0;
 }
 

@@ -38,12 +38,11 @@ int print_findings(
     const std::vector<Finding>& findings,
     const std::string& when_none
 ) {
-  if (common.json)
-    print_json({{"folder", what}, {"findings", findings_json(findings)}});
-  else
-    print_text(
-        findings.empty() ? fmt::format("{}: {}\n", what, when_none) : findings_text(findings)
-    );
+  print_result(
+      common,
+      {{"folder", what}, {"findings", findings_json(findings)}},
+      findings.empty() ? fmt::format("{}: {}\n", what, when_none) : findings_text(findings)
+  );
   return static_cast<int>(findings.empty() ? ExitCode::kSuccess : ExitCode::kCheckFailed);
 }
 

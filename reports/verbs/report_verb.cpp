@@ -15,10 +15,11 @@ int run_report(const CommonOptions& common, const PageForm& form) {
   const fs::path folder = folder_with_records(common);
   const fs::path index =
       write_report(common, folder, result_tables(folder, {}, common.filter()), form);
-  if (common.json)
-    print_json({{"page", index.string()}, {"index_bytes", fs::file_size(index)}});
-  else
-    print_text(index.string() + "\n");
+  print_result(
+      common,
+      {{"page", index.string()}, {"index_bytes", fs::file_size(index)}},
+      index.string() + "\n"
+  );
   return 0;
 }
 

@@ -78,10 +78,8 @@ int run_selftest(const CommonOptions& common, const SelftestArguments& arguments
       arguments.check.empty()
           ? run_vectors(vectors, folder)
           : check_values(vectors, read_json_object(arguments.check, ExitCode::kBadPrediction));
-  if (common.json)
-    print_json({{"vectors", rows_of(results).json()}});
-  else
-    print_text(rows_of(results).text() + counts_text(results));
+  const Rows rows = rows_of(results);
+  print_result(common, {{"vectors", rows.json()}}, rows.text() + counts_text(results));
   const bool failed = count(results, VectorStatus::kFailed) > 0;
   return static_cast<int>(failed ? ExitCode::kCheckFailed : ExitCode::kSuccess);
 }

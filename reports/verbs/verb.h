@@ -108,8 +108,10 @@ inline constexpr int kVerbSchema = 1;
 // Results go here: one JSON document, or text. Documents open with "schema".
 void print_json(const Json& json);
 void print_text(std::string_view text);  // names in it are made printable
-void print_raw(std::string_view text);   // with colours, or a file of some format
-bool color_terminal();                   // standard output is a terminal and NO_COLOR is not set
+// One of the two, as --json says.
+void print_result(const CommonOptions& common, const Json& json, std::string_view text);
+void print_raw(std::string_view text);  // with colours, or a file of some format
+bool color_terminal();                  // standard output is a terminal and NO_COLOR is not set
 // COLUMNS, or what the terminal says; 0 where standard output is none.
 std::size_t terminal_width();
 
