@@ -9,10 +9,6 @@
 #include "reports/bench/memory_estimate.h"
 #include "reports/bench/mesh_stage.h"
 #include "reports/bench/run_record.h"
-#include "reports/bench/run_stage.h"
-#include "reports/bench/stage_documents.h"
-#include "reports/bench/stages.h"
-#include "reports/records/environment.h"
 #include "reports/records/failure_kinds.h"
 
 namespace glint {
@@ -48,32 +44,15 @@ RunSpec spec_of(
     const LoadedScene& loaded,
     const CellStages& stages
 ) {
-  RunSpec spec;
-  spec.folder = run_folder(options.out, cell.cell);
-  spec.method = cell.cell.method;
-  spec.config = cell.config;
-  spec.options.iterations = options.profile.iterations;
-  spec.options.seed = cell.cell.seed;
-  spec.dataset_folder = loaded.folder;
-  spec.dataset = cell.source.dataset;
-  spec.scene = cell.cell.scene;
-  spec.max_pixels = cell.source.max_pixels;
-  spec.image_ratio = cell.source.image_ratio;
-  spec.dataset_hash = loaded.scene.spec_hash;
+  RunSpec spec = make_spec(cell, options.profile, loaded, run_folder(options.out, cell.cell));
   spec.train_document = stages[Stage::kTrain].document;
   spec.checkpoint_seconds = options.checkpoint_seconds;
-  spec.test_psnr_every = options.profile.test_psnr_every;
   spec.anew = options.force;
   return spec;
 }
 
 Record record_of(const PlanCell& cell, const RunnerOptions& options) {
-  Record record;
-  record.profile = options.profile.name;
-  record.dataset = cell.source.dataset;
-  record.cell = cell.cell;
-  record.environment = environment_json();
-  return record;
+  return new_record(options.profile.name, cell.source.dataset, cell.cell);
 }
 
 Failure failure_of(const std::exception& error, const std::string& stage, const fs::path& run) {
@@ -142,53 +121,43 @@ class CellRun {
 
   void run_stages() {
     method_ = stages_[Stage::kTrain].done ? load_trained(spec_) : train_stage(spec_, scene_);
-    run(Stage::kRender, [&] {
-      render_stage(spec_, scene_, *method_);
-      return std::string();
-    });
-    run(Stage::kMesh, [&] { return make_meshes(); });
+    run(Stage::kRender, [&] { render_stage(spec_, scene_, *method_); });
+    run(Stage::kMesh, [&] { try_mesh_stage(spec_, scene_, *method_, profile_.tsdf_options()); });
     enter(Stage::kScore);
-    run_stage(spec_.folder, Stage::kScore, stages_[Stage::kScore].document, [&] {
-      score();
-      return std::string();
-    });
+    score();
     clock_.leave();
   }
 
-  void run(Stage stage, const std::function<std::string()>& work) {
+  template <class Work>
+  void run(Stage stage, const Work& work) {
     if (stages_[stage].done) return;
     enter(stage);
-    begin_stage(spec_.folder, stage);
-    const std::string note = work();
-    end_stage(spec_.folder, stage, stages_[stage].document, note);
+    work();
     clock_.leave();
   }
   void enter(Stage stage) { clock_.enter(std::string(stage_name(stage))); }
 
-  // Without a mesh, the stage and the scores behind it also go by the memory that was allowed.
-  std::string make_meshes() {
-    const TsdfOptions options = profile_.tsdf_options();
-    std::string why = try_mesh_stage(spec_, scene_, *method_, options);
-    if (why.empty()) return why;
-    Json& document = stages_[Stage::kMesh].document;
-    document = document_without_mesh(document, options);
-    stages_[Stage::kScore].document["inputs"]["mesh"] = stage_key(document);
-    record_.score_key = stages_[Stage::kScore].key();
-    return why;
-  }
-
   void score() {
     const TimingOptions timing{profile_.timing_frames, profile_.timing_warmup};
-    Scores cost = training_cost(spec_);
-    cost["fps"] = measure_fps(*method_, scene_, timing);
-    cost["num-surfels"] = static_cast<double>(method_->num_surfels());
-    record_.metrics = eval_stage(spec_, scene_, cost, profile_.mesh_protocol(), timing);
-    describe_run(record_, spec_, scene_);
+    ScoreOptions options{
+        .mesh = profile_.mesh_protocol(),
+        .cost = training_cost(spec_),
+        .timing = timing,
+        .truth = stages_[Stage::kScore].document.value("truth", "")};
+    options.cost["fps"] = measure_fps(*method_, scene_, timing);
+    options.cost["num-surfels"] = static_cast<double>(method_->num_surfels());
+    const Scores means = eval_stage(spec_, scene_, options);
+    Record scored = make_record(profile_.name, spec_, scene_, means);
+    record_.timings.erase("train");  // of a training that was only loaded
+    record_.timings.update(scored.timings);
+    scored.timings = std::move(record_.timings);
+    scored.estimated_memory_mb = record_.estimated_memory_mb;
+    record_ = std::move(scored);
   }
 
   const Profile& profile_;
   const Scene& scene_;
-  CellStages stages_;
+  const CellStages& stages_;
   RunSpec spec_;
   Record record_;
   StageClock clock_;

@@ -6,6 +6,7 @@
 #include "glint/scene/image_files.h"
 #include "metrics/fusion/tsdf_volume.h"
 #include "reports/bench/run_stage.h"
+#include "reports/bench/stage_documents.h"
 #include "reports/records/earlier_run.h"
 
 namespace glint {
@@ -64,6 +65,28 @@ void render_train_stage(const RunSpec& spec, const Scene& scene, Method& method)
   }
 }
 
+namespace {
+
+Json mesh_document_of(const RunSpec& spec, const TsdfOptions& options) {
+  return mesh_document(spec.method, key_of_stage(spec.folder, Stage::kTrain), options);
+}
+
+std::string why_no_mesh(
+    const RunSpec& spec, const Scene& scene, Method& method, const TsdfOptions& options
+) {
+  if (!has_tsdf_volume()) return "no Open3D";
+  try {
+    mesh_stage(spec, scene, method, options);
+    return {};
+  } catch (const Error& error) {
+    if (error.code() == ExitCode::kEnvironment) throw;  // nothing that another run would lack
+    log::warn(fmt::format("{}: no mesh: {}", spec.folder.string(), error.what()));
+    return fmt::format("no mesh: {}", error.what());
+  }
+}
+
+}  // namespace
+
 Json mesh_stage(
     const RunSpec& spec,
     const Scene& scene,
@@ -71,6 +94,7 @@ Json mesh_stage(
     const TsdfOptions& options,
     bool keep_renders
 ) {
+  begin_stage(spec.folder, Stage::kMesh);
   fuse_stage.require();
   check_tsdf_options(options);  // before views are rendered
   const fs::path renders = spec.folder / "renders_train";
@@ -83,6 +107,7 @@ Json mesh_stage(
     render_train_stage(spec, scene, method);
     Json result = fuse_stage(spec, scene, options);
     drop_renders();
+    end_stage(spec.folder, Stage::kMesh, mesh_document_of(spec, options));
     return result;
   } catch (...) {
     remove_meshes(spec.folder);  // one layer without the other would be scored as both
@@ -94,16 +119,17 @@ Json mesh_stage(
 std::string try_mesh_stage(
     const RunSpec& spec, const Scene& scene, Method& method, const TsdfOptions& options
 ) {
+  begin_stage(spec.folder, Stage::kMesh);
   remove_meshes(spec.folder);
-  if (!has_tsdf_volume()) return "no Open3D";
-  try {
-    mesh_stage(spec, scene, method, options);
-    return {};
-  } catch (const Error& error) {
-    if (error.code() == ExitCode::kEnvironment) throw;  // nothing that another run would lack
-    log::warn(fmt::format("{}: no mesh: {}", spec.folder.string(), error.what()));
-    return fmt::format("no mesh: {}", error.what());
-  }
+  const std::string why = why_no_mesh(spec, scene, method, options);
+  if (!why.empty())
+    end_stage(
+        spec.folder,
+        Stage::kMesh,
+        document_without_mesh(mesh_document_of(spec, options), options),
+        why
+    );
+  return why;
 }
 
 }  // namespace glint

@@ -47,9 +47,9 @@ inline constinit Service<Json(const RunSpec& spec, const Scene& scene, TsdfOptio
 // Removes the meshes and mesh.json, as far as they are there.
 void remove_meshes(const fs::path& run);
 
-// Both (first asking whether the second can be done), and renders_train/ removed again unless
-// `keep_renders`. Where either fails, no mesh is left, not even of the layers before. Errors: those
-// of the method and of fuse_stage.
+// Both (first asking whether the second can be done), renders_train/ removed again unless
+// `keep_renders`, and the stage's key. Where either fails, no mesh is left, not even of the layers
+// before. Errors: those of the method and of fuse_stage.
 Json mesh_stage(
     const RunSpec& spec,
     const Scene& scene,
@@ -59,7 +59,8 @@ Json mesh_stage(
 );
 
 // The same, for a cell whose depth may give no mesh and which has its other numbers all the same:
-// why it has none. Empty: made. Errors: kEnvironment alone, which is nothing of the cell's.
+// the stage's note says why it has none. Returns it; empty: made. Errors: kEnvironment alone, which
+// is nothing of the cell's.
 std::string try_mesh_stage(
     const RunSpec& spec, const Scene& scene, Method& method, const TsdfOptions& options
 );

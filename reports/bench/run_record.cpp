@@ -3,6 +3,7 @@
 
 #include "metrics/metric.h"
 #include "reports/bench/mesh_stage.h"
+#include "reports/records/environment.h"
 #include "reports/records/stage_files.h"
 
 namespace glint {
@@ -15,6 +16,8 @@ void add_unmeasured(Record& record, const RunSpec& spec, const std::optional<Tra
     for (const Metric& metric : mesh_metric_list()) record.not_measured[metric.id] = mesh->note;
   if (!cost && read_stage(spec.folder, Stage::kTrain))
     for (const char* id : {"train-minutes", "peak-memory"}) record.not_measured[id] = "no env.json";
+  if (!record.metrics.contains("psnr") && record.metrics.contains("psnr-8bit"))
+    record.not_measured["psnr"] = "8-bit images";
 }
 
 void add_training(Record& record, const TrainCost& cost) {
@@ -34,6 +37,33 @@ std::vector<std::string> without_truth(const Record& record, const RunSpec& spec
 }
 
 }  // namespace
+
+RunSpec make_spec(
+    const PlanCell& cell, const Profile& profile, const LoadedScene& loaded, const fs::path& run
+) {
+  RunSpec spec;
+  spec.folder = run;
+  spec.method = cell.cell.method;
+  spec.config = cell.config;
+  spec.options = {.iterations = profile.iterations, .seed = cell.cell.seed};
+  spec.dataset_folder = loaded.folder;
+  spec.dataset = cell.source.dataset;
+  spec.scene = cell.cell.scene;
+  spec.max_pixels = cell.source.max_pixels;
+  spec.image_ratio = cell.source.image_ratio;
+  spec.dataset_hash = loaded.scene.spec_hash;
+  spec.test_psnr_every = profile.test_psnr_every;
+  return spec;
+}
+
+Record new_record(const std::string& profile, const std::string& dataset, const CellKey& cell) {
+  Record record;
+  record.profile = profile;
+  record.dataset = dataset;
+  record.cell = cell;
+  record.environment = environment_json();
+  return record;
+}
 
 std::vector<std::string> meshes_without_truth(const Record& record, const RunSpec& spec) {
   std::vector<std::string> ids;
@@ -57,17 +87,24 @@ Scores training_cost(const RunSpec& spec) {
   return scores;
 }
 
-void describe_run(Record& record, const RunSpec& spec, const Scene& scene) {
+Record make_record(
+    const std::string& profile, const RunSpec& spec, const Scene& scene, const Scores& means
+) {
+  Record record = new_record(profile, spec.dataset, spec.cell());
+  record.metrics = means;
+  record.train_key = key_of_stage(spec.folder, Stage::kTrain);
+  record.score_key = key_of_stage(spec.folder, Stage::kScore);
+  record.dataset_hash = scene.spec_hash;
+  record.iterations = spec.options.iterations;
   const std::optional<TrainCost> cost = trained_cost(spec);
   add_unmeasured(record, spec, cost);
   record.not_applicable = without_truth(record, spec);
-  record.timings.erase("train");  // of a cell whose training was only loaded
-  record.iterations = spec.options.iterations;
   if (cost) add_training(record, *cost);
-  if (const auto surfels = record.metrics.find("num-surfels"); surfels != record.metrics.end())
+  if (const auto surfels = means.find("num-surfels"); surfels != means.end())
     record.num_surfels = static_cast<std::size_t>(surfels->second);
   const Camera& camera = scene.test.front().camera;
   record.resolution = fmt::format("{}x{}", camera.width, camera.height);
+  return record;
 }
 
 }  // namespace glint

@@ -21,14 +21,6 @@ void end_stage(const fs::path& run, Stage stage, const Json& document, const std
   write_stage(run, stage, document, stage_outputs(stage), note);
 }
 
-void run_stage(
-    const fs::path& run, Stage stage, const Json& document, const std::function<std::string()>& work
-) {
-  begin_stage(run, stage);
-  const std::string note = work();
-  end_stage(run, stage, document, note);
-}
-
 StageFile finished_stage(const fs::path& run, Stage stage, std::string_view verb) {
   const auto found = read_stage(run, stage);
   GLINT_CHECK(

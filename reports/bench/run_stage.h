@@ -3,7 +3,6 @@
 // a stage that is interrupted is not done.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "reports/records/stage_files.h"
@@ -17,11 +16,6 @@ std::vector<std::string> stage_outputs(Stage stage);
 void begin_stage(const fs::path& run, Stage stage);
 void end_stage(
     const fs::path& run, Stage stage, const Json& document, const std::string& note = {}
-);
-
-// Both, around `work`, which returns the note (StageFile).
-void run_stage(
-    const fs::path& run, Stage stage, const Json& document, const std::function<std::string()>& work
 );
 
 // The stage that ended in the folder, for what is made from it. Errors (kBadPrediction): none did,

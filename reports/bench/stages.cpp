@@ -5,9 +5,9 @@
 
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
-#include "reports/bench/evaluate.h"
 #include "reports/bench/mesh_eval.h"
 #include "reports/bench/run_stage.h"
+#include "reports/bench/stage_documents.h"
 #include "reports/pictures/strip.h"
 #include "reports/records/earlier_run.h"
 
@@ -56,6 +56,7 @@ std::unique_ptr<Method> load_trained(const RunSpec& spec) {
 }
 
 void render_stage(const RunSpec& spec, const Scene& scene, Method& method) {
+  begin_stage(spec.folder, Stage::kRender);
   remove_renders(spec.folder / "renders");
   for (const View& view : scene.test) {
     throw_if_interrupted();
@@ -76,6 +77,8 @@ void render_stage(const RunSpec& spec, const Scene& scene, Method& method) {
     write_render(view_folder(spec.folder, view.name), output);
   }
   if (write_strips.here()) write_strips(spec.folder, scene.test);
+  const std::string trained = key_of_stage(spec.folder, Stage::kTrain);
+  end_stage(spec.folder, Stage::kRender, render_document(spec.method, trained));
 }
 
 double measure_fps(Method& method, const Scene& scene, const TimingOptions& options) {
@@ -107,19 +110,20 @@ RunScores score_run(
   return scores;
 }
 
-std::map<std::string, double> eval_stage(
-    const RunSpec& spec,
-    const Scene& scene,
-    const std::map<std::string, double>& cost,
-    const MeshProtocol& mesh,
-    const std::optional<TimingOptions>& timing
-) {
+Scores eval_stage(const RunSpec& spec, const Scene& scene, const ScoreOptions& options) {
+  begin_stage(spec.folder, Stage::kScore);
   Progress progress("score", scene.test.size() + 1);  // the meshes last
-  RunScores scores =
-      score_run(spec, scene, mesh, [&](std::string_view view) { progress.advance(1, view); });
+  RunScores scores = score_run(spec, scene, options.mesh, [&](std::string_view view) {
+    progress.advance(1, view);
+  });
   progress.advance(1, "meshes");
-  scores.means.insert(cost.begin(), cost.end());
-  write_metrics(spec, scores, scene.test, timing);
+  scores.means.insert(options.cost.begin(), options.cost.end());
+  write_metrics(spec, scores, scene.test, options.timing);
+  ScoreInputs inputs{options.render_key, key_of_stage(spec.folder, Stage::kMesh), options.truth};
+  if (inputs.render_key.empty()) inputs.render_key = key_of_stage(spec.folder, Stage::kRender);
+  end_stage(
+      spec.folder, Stage::kScore, score_document(spec.method, inputs, options.mesh, options.timing)
+  );
   return scores.means;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The stages of a run: train -> render -> eval. Each reads what the one before left in the run
-// folder.
+// The stages of a run: train -> render -> (mesh_stage.h) -> score. Each reads what the one before
+// left in the run folder, and leaves its key there last (stage_files.h).
 #pragma once
 
 #include <functional>
@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "metrics/mesh/mesh_protocol.h"
+#include "reports/bench/evaluate.h"
 #include "reports/records/run_folder.h"
 
 namespace glint {
@@ -34,9 +35,9 @@ double measure_fps(Method& method, const Scene& scene, const TimingOptions& opti
 // What the files of a run score: renders/ against the scene's test views, the run's meshes against
 // the dataset's. `scored` is told each view.
 struct RunScores {
-  std::vector<std::map<std::string, double>> views;  // id -> value, in the order of the test views
-  std::map<std::string, double> means;               // with the values of meshes
-  Json meshes = Json::object();                      // their recipe; empty: not scored
+  std::vector<Scores> views;     // in the order of the test views
+  Scores means;                  // with the values of meshes
+  Json meshes = Json::object();  // their recipe; empty: not scored
 };
 RunScores score_run(
     const RunSpec& spec,
@@ -45,16 +46,17 @@ RunScores score_run(
     const std::function<void(std::string_view)>& scored
 );
 
-// The same, and writes metrics.json (means, per-view values with names, protocols). `cost` joins
-// the means: "fps" (measured by `timing`, where that is known), "train-minutes", "peak-memory",
-// "device-memory", "num-surfels". Returns the means by id; regions as "psnr@glass". Errors
-// (kBadPrediction): a render is missing, damaged or of another size.
-std::map<std::string, double> eval_stage(
-    const RunSpec& spec,
-    const Scene& scene,
-    const std::map<std::string, double>& cost,
-    const MeshProtocol& mesh = {},
-    const std::optional<TimingOptions>& timing = {}
-);
+struct ScoreOptions {
+  MeshProtocol mesh;
+  Scores cost;  // joins the means: "fps", "train-minutes", "peak-memory", "num-surfels", ...
+  std::optional<TimingOptions> timing;  // that "fps" was measured by
+  std::string truth;                    // truth_content()
+  std::string render_key;               // of another program's renders, which have no stage
+};
+
+// The same, and writes metrics.json (means, per-view values with names, protocols). Returns the
+// means by id; regions as "psnr@glass". Errors (kBadPrediction): a render is missing, damaged or of
+// another size.
+Scores eval_stage(const RunSpec& spec, const Scene& scene, const ScoreOptions& options = {});
 
 }  // namespace glint

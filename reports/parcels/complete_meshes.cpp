@@ -66,12 +66,7 @@ class Completion {
   std::string make_meshes() {
     const auto method = load_trained(spec_);
     const auto options = options_in<TsdfOptions>(parcel_.at("mesh_made_from"), "mesh");
-    document_ = mesh_document(spec_.method, record_.train_key, options);
-    begin_stage(run_, Stage::kMesh);
-    const std::string why = try_mesh_stage(spec_, scene_, *method, options);
-    if (!why.empty()) document_ = document_without_mesh(document_, options);
-    end_stage(run_, Stage::kMesh, document_, why);
-    return why;
+    return try_mesh_stage(spec_, scene_, *method, options);
   }
 
   void score(const std::string& why) {
@@ -82,7 +77,7 @@ class Completion {
       for (const auto& [id, value] : values) json["metrics"][id] = value;
       if (!recipe.empty()) json["meshes"] = recipe;
     });
-    scored["inputs"]["mesh"] = stage_key(document_);
+    scored["inputs"]["mesh"] = key_of_stage(run_, Stage::kMesh);
     write_stage(run_, Stage::kScore, scored, stage_outputs(Stage::kScore));
     update_record(values, why, stage_key(scored));
   }
@@ -109,7 +104,7 @@ class Completion {
   fs::path run_;
   Record record_;
   const Scene& scene_;
-  Json parcel_, document_;
+  Json parcel_;
   RunSpec spec_;
 };
 

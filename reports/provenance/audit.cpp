@@ -11,7 +11,6 @@
 #include "metrics/fusion/tsdf_volume.h"
 #include "reports/bench/evaluate.h"
 #include "reports/bench/mesh_stage.h"
-#include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
 #include "reports/bench/stages.h"
 
@@ -119,15 +118,9 @@ class MethodAudit {
     trial.folder = options_.folder / flat_view_name(spec_.method) / name;
     spec_.folder = trial.folder;
     const auto method = train_stage(spec_, scene_);
-    const auto run = [&](Stage stage, const std::function<void()>& work) {
-      run_stage(spec_.folder, stage, {{"audit", trial.name}}, [&] {
-        work();
-        return std::string();
-      });
-    };
-    run(Stage::kRender, [&] { render_stage(spec_, scene_, *method); });
-    if (has_tsdf_volume() && fuse_stage.here()) run(Stage::kMesh, [&] { make_mesh(*method); });
-    run(Stage::kScore, [&] { trial.metrics = eval_stage(spec_, scene_, {}, options_.mesh); });
+    render_stage(spec_, scene_, *method);
+    if (has_tsdf_volume() && fuse_stage.here()) make_mesh(*method);
+    trial.metrics = eval_stage(spec_, scene_, {.mesh = options_.mesh});
     for (const Stage stage : kStages)
       if (auto done = read_stage(spec_.folder, stage)) trial.hashes.merge(done->hashes);
     trial.hashes.erase("env.json");  // what it took, which no two trainings share

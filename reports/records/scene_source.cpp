@@ -214,8 +214,8 @@ LoadedScene load_source(const SceneSource& source, const fs::path& data_folder) 
   loaded.folder = folder_of(source, data_folder);
   if (source.made()) make_source(source, loaded.folder);
   loaded.scene = load_scene(loaded.folder, options);
-  loaded.scene.name = source.scene;
-  loaded.scene.dataset = source.dataset;
+  if (!source.scene.empty()) loaded.scene.name = source.scene;
+  if (!source.dataset.empty()) loaded.scene.dataset = source.dataset;
   if (source.image_ratio != 1)
     loaded.scene.data_notes.push_back(
         fmt::format("pictures: {} of the stored sides, area average", source.image_ratio)

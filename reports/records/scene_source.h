@@ -55,7 +55,8 @@ Json data_document_now(
     const std::string& loader = ""
 );
 
-// Makes the scene first when it is missing, or was made by other code. Errors (kBadReference,
+// Makes the scene first when it is missing, or was made by other code. A source without names has
+// those of its data. Errors (kBadReference,
 // kEnvironment): as make_glassroom and load_scene.
 LoadedScene load_source(const SceneSource& source, const fs::path& data_folder);
 

@@ -126,6 +126,11 @@ std::optional<StageFile> read_stage(const fs::path& folder, Stage stage) {
   return reading.why_not.empty() ? reading.file : std::nullopt;
 }
 
+std::string key_of_stage(const fs::path& folder, Stage stage) {
+  const auto ended = read_stage(folder, stage);
+  return ended ? stage_key(ended->document) : "";
+}
+
 std::string why_unreadable(const fs::path& folder, Stage stage) {
   return examine(folder, stage).why_not;
 }

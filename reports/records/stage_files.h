@@ -34,6 +34,8 @@ struct StageFile {
 
 // Nothing: the stage did not end here (or the file is damaged, which is the same).
 std::optional<StageFile> read_stage(const fs::path& folder, Stage stage);
+// Its key; empty: it did not end here.
+std::string key_of_stage(const fs::path& folder, Stage stage);
 // What is wrong with the stage's file: "damaged", "its key is not that of its document". Empty:
 // nothing, or it is not there.
 std::string why_unreadable(const fs::path& folder, Stage stage);

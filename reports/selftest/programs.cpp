@@ -59,7 +59,7 @@ ProgramResult eval_predictions(const Arguments& arguments) {
     spec.folder = scratch / "run";
     spec.dataset_folder = dataset;
     import_predictions(option(arguments, "--predictions"), scene, spec, {});
-    return {ExitCode::kSuccess, eval_stage(spec, scene, {}), ""};
+    return {ExitCode::kSuccess, eval_stage(spec, scene), ""};
   } catch (const Error& error) {
     return {error.code(), {}, error.what()};
   }

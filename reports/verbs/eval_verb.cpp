@@ -1,66 +1,61 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
-#include "datasets/dataset.h"
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf.h"
 #include "metrics/tools/numeric_options.h"
-#include "reports/bench/run_record.h"
-#include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
 #include "reports/import/import_model.h"
 #include "reports/import/import_predictions.h"
 #include "reports/records/earlier_run.h"
-#include "reports/records/environment.h"
 #include "reports/records/parcel_run.h"
+#include "reports/records/stage_files.h"
 #include "reports/verbs/headline_scores.h"
-#include "reports/verbs/single_run.h"
+#include "reports/verbs/single_cell.h"
 
 namespace glint {
 
 namespace {
 
-// Of the trained model; nothing: another program's renders, or its files are gone.
-std::optional<std::size_t> count_surfels(const RunSpec& spec) {
-  if (!read_stage(spec.folder, Stage::kTrain)) return std::nullopt;
+// What an earlier scoring measured and counted: scoring again does not change it.
+void add_earlier_cost(const fs::path& metrics_file, ScoreOptions& options) {
+  if (!fs::exists(metrics_file)) return;
+  const Json json = parse_json(read_file(metrics_file));
+  if (!json.is_object())
+    return log::warn(
+        fmt::format("{}: damaged; fps and surfels are not known any more", metrics_file.string())
+    );
+  const Json means = json.value("metrics", Json()),
+             timing = json.value("/protocol/fps"_json_pointer, Json());
+  for (const char* id : {"fps", "num-surfels"})
+    if (means.is_object() && means.value(id, Json()).is_number()) options.cost[id] = means[id];
+  if (!timing.is_object()) return;
+  const double frames = number_or(timing, "frames", -1), warmup = number_or(timing, "warmup", -1);
+  if (frames >= 0 && warmup >= 0 && frames + warmup < 1e9)
+    options.timing = {static_cast<int>(frames), static_cast<int>(warmup)};
+}
+
+// Of the trained model, where nobody has; not of another program's renders.
+void add_surfels(const RunSpec& spec, Scores& cost) {
+  if (cost.contains("num-surfels") || !read_stage(spec.folder, Stage::kTrain)) return;
   try {
-    return load_trained(spec)->num_surfels();
+    cost["num-surfels"] = static_cast<double>(load_trained(spec)->num_surfels());
   } catch (const Error& error) {
     log::warn(fmt::format("{}: surfels are not counted: {}", spec.folder.string(), error.what()));
-    return std::nullopt;
   }
 }
 
-// What the run says about its cost, and an earlier scoring; scoring again does not change it.
-Scores known_cost(const RunSpec& spec) {
-  Scores cost = training_cost(spec);
-  if (const auto surfels = count_surfels(spec)) cost["num-surfels"] = static_cast<double>(*surfels);
-  const fs::path path = spec.folder / "metrics.json";
-  if (!fs::exists(path)) return cost;
-  const Json json = parse_json(read_file(path));
-  if (!json.is_object())
-    log::warn(fmt::format("{}: damaged; fps and surfels are not known any more", path.string()));
-  if (json.is_object() && json.value("metrics", Json()).is_object())
-    for (const char* id : {"fps", "num-surfels"})
-      if (const auto it = json["metrics"].find(id); it != json["metrics"].end() && it->is_number())
-        cost.emplace(id, it->get<double>());
-  return cost;
-}
-
-// That of the voxels the run's meshes were made with.
-MeshProtocol mesh_protocol_of(const RunSpec& spec) {
-  const fs::path path = spec.folder / "mesh.json";
-  if (!fs::exists(path)) return {};
-  const Json json = read_json_object(path, ExitCode::kBadPrediction);
-  GLINT_CHECK(
-      json.contains("options"),
-      kBadPrediction,
-      "{}: not a report of the mesh stage; run `glint-bench mesh` again",
-      path.string()
-  );
-  TsdfOptions options;
-  config_from_json(options, json["options"], path.string());
-  return mesh_protocol_for(options);
+// By what the folder says of the run: its cost, the voxels that its meshes were made with.
+ScoreOptions score_options(const CommonOptions& common, const RunSpec& spec) {
+  ScoreOptions options;
+  options.cost = training_cost(spec);
+  options.truth = truth_content(spec.dataset_folder, common.data);
+  add_earlier_cost(spec.folder / "metrics.json", options);
+  add_surfels(spec, options.cost);
+  const auto mesh = read_stage(spec.folder, Stage::kMesh);
+  if (mesh && mesh->note.empty() && mesh->document.contains("mesh"))
+    options.mesh = mesh_protocol_for(options_in<TsdfOptions>(mesh->document, "mesh"));
+  return options;
 }
 
 int print_scores(
@@ -86,50 +81,15 @@ int print_scores(
   return 0;
 }
 
-// The frames behind the cost that an earlier scoring found; nothing: none were timed.
-std::optional<TimingOptions> earlier_timing(const fs::path& run) {
-  const auto scored = read_stage(run, Stage::kScore);
-  if (!scored) return std::nullopt;
-  const double frames = number_or(scored->document, "timing_frames", -1),
-               warmup = number_or(scored->document, "timing_warmup", -1);
-  if (!(frames >= 0 && warmup >= 0 && frames + warmup < 1e9)) return std::nullopt;
-  return TimingOptions{static_cast<int>(frames), static_cast<int>(warmup)};
-}
-
-// Of renders and meshes without a key (an earlier version's, another program's): none.
-std::string key_of(const fs::path& run, Stage stage) {
-  const auto done = read_stage(run, stage);
-  return done ? stage_key(done->document) : "";
-}
-
-// Of a run apart from any profile: what its folder and its scores say.
-Record single_record(const SingleRun& single, const Json& score_document, const Scores& means) {
-  const RunSpec& spec = single.spec;
-  Record record;
-  record.profile = kSingleProfile;
-  record.dataset = spec.dataset;
-  record.cell = spec.cell();
-  record.metrics = means;
-  record.train_key = key_of(spec.folder, Stage::kTrain);
-  record.score_key = stage_key(score_document);
-  record.dataset_hash = single.scene.spec_hash;
-  record.environment = environment_json();
-  describe_run(record, spec, single.scene);
-  if (!single.data_warning.empty()) record.warnings.push_back(single.data_warning);
-  return record;
-}
-
-// Appends it, or says why not.
+// Appends it; the records of a profile are `all`'s.
 void record_single(const CommonOptions& common, const RunSpec& spec, const Record& record) {
-  const fs::path file = single_records_file(common, spec);
-  if (file.empty()) {
-    log::info(fmt::format(
+  const fs::path folder = records_folder(common, spec), file = folder / "records.jsonl";
+  const auto stored = read_records(file);
+  if (!stored.empty() && !holds_single_runs(folder))
+    return log::info(fmt::format(
         "not recorded: {} is a run of a profile, whose records `glint-bench all` writes",
         spec.folder.string()
     ));
-    return;
-  }
-  const auto stored = read_records(file);
   const Record* earlier = find_record(stored, record.cell);
   if (earlier && earlier->train_key != record.train_key)
     log::warn(fmt::format(
@@ -139,9 +99,7 @@ void record_single(const CommonOptions& common, const RunSpec& spec, const Recor
     ));
   append_record(file, record);
   log::info(fmt::format(
-      "recorded in {}; tables: glint-bench table --out {}",
-      file.string(),
-      file.parent_path().string()
+      "recorded in {}; tables: glint-bench table --out {}", file.string(), folder.string()
   ));
 }
 
@@ -163,7 +121,7 @@ struct EvalArguments {
 
 // Other data than a run was trained on may be the scene, made or moved anew; not a scene of another
 // name, against which its renders say nothing.
-void check_same_scene(const SingleRun& single, const std::string& run) {
+void check_same_scene(const SingleCell& single, const std::string& run) {
   GLINT_CHECK(
       single.data_warning.empty() || single.scene.name == single.spec.scene,
       kUsage,
@@ -177,29 +135,16 @@ void check_same_scene(const SingleRun& single, const std::string& run) {
 }
 
 int eval_run(const CommonOptions& common, const EvalArguments& arguments) {
-  const std::string& folder = arguments.run;
-  refuse_parcel_run(folder, "eval");
-  const SingleRun single = open_single_run(folder, arguments.dataset);
-  check_same_scene(single, folder);
-  check_test_views(single.scene, single.spec.dataset_folder);
-  const MeshProtocol protocol = mesh_protocol_of(single.spec);
-  const std::optional<TimingOptions> timing = earlier_timing(folder);
-  const Json document = score_document(
-      single.spec.method,
-      {key_of(folder, Stage::kRender),
-       key_of(folder, Stage::kMesh),
-       truth_content(single.spec.dataset_folder, common.data)},
-      protocol,
-      timing
-  );
-  Scores means;
-  run_stage(folder, Stage::kScore, document, [&] {
-    const Scores cost = known_cost(single.spec);
-    means = eval_stage(single.spec, single.scene, cost, protocol, timing);
-    return std::string();
-  });
-  record_single(common, single.spec, single_record(single, document, means));
-  return print_scores(common, folder, means, arguments.all);
+  refuse_parcel_run(arguments.run, "eval");
+  const SingleCell single = open_single_cell(arguments.run, arguments.dataset);
+  const RunSpec& spec = single.spec;
+  check_same_scene(single, arguments.run);
+  check_test_views(single.scene, spec.dataset_folder);
+  const Scores means = eval_stage(spec, single.scene, score_options(common, spec));
+  Record record = make_record(kSingleProfile, spec, single.scene, means);
+  if (!single.data_warning.empty()) record.warnings.push_back(single.data_warning);
+  record_single(common, spec, record);
+  return print_scores(common, arguments.run, means, arguments.all);
 }
 
 // Errors (kUsage): the store has the cell, and nobody said that it may be replaced.
@@ -218,74 +163,50 @@ void check_new_import(
   );
 }
 
-Record record_of(const RunSpec& spec, const Profile& profile, const std::string& predictions) {
-  Record record;
-  record.profile = profile.name;
-  record.dataset = spec.dataset;
-  record.cell = spec.cell();
-  record.dataset_hash = spec.dataset_hash;
-  record.imported = predictions;
-  record.environment = environment_json();
-  record.not_measured = missing_metrics();
-  return record;
-}
-
 // Imports stand beside single runs where --out is the folder of such.
 Profile import_profile(const CommonOptions& common) {
-  if (!holds_single_runs(common.out)) return common.resolved_profile();
-  Profile profile;
-  profile.name = kSingleProfile;
+  Profile profile =
+      holds_single_runs(common.out) ? single_profile(common, 0) : common.resolved_profile();
+  profile.iterations = 0;  // not known
   return profile;
 }
 
-RunSpec spec_of(
-    const CommonOptions& common,
-    const Profile& profile,
-    const EvalArguments& arguments,
-    const Scene& scene
+// A scene of the profile is named as there, and as large if the command does not say otherwise.
+SceneSource import_source(
+    const CommonOptions& common, const Profile& profile, const EvalArguments& arguments
 ) {
-  RunSpec spec;
-  spec.method = arguments.method;
-  spec.dataset_folder = fs::absolute(arguments.dataset);
-  spec.dataset = scene.dataset;
-  spec.scene = scene.name;
-  spec.options.seed = common.seed.value_or(0);
-  spec.max_pixels = arguments.max_pixels.value_or(0);
-  spec.image_ratio = arguments.image_ratio.value_or(1);
-  spec.dataset_hash = scene.spec_hash;
-  spec.folder =
-      run_folder(common.own_folder(profile), {spec.scene, spec.method, spec.options.seed});
-  return spec;
+  const SceneSource named =
+      find_source(profile, arguments.dataset, common.data).value_or(SceneSource{});
+  const bool as_there = !arguments.max_pixels && !arguments.image_ratio;
+  SceneSource source;
+  source.dataset = named.dataset;
+  source.scene = named.scene;
+  source.loader = named.loader;
+  source.max_pixels = as_there ? named.max_pixels : arguments.max_pixels.value_or(0);
+  source.image_ratio = as_there ? named.image_ratio : arguments.image_ratio.value_or(1);
+  return source;
 }
 
-// A scene of the profile is named as there, and as large if the command does not say otherwise.
-Scene load_imported(const CommonOptions& common, const Profile& profile, EvalArguments& arguments) {
-  const auto source = find_source(profile, arguments.dataset, common.data);
-  if (source && !arguments.max_pixels && !arguments.image_ratio) {
-    arguments.max_pixels = source->max_pixels;
-    arguments.image_ratio = source->image_ratio;
-  }
-  LoadOptions load;
-  load.max_pixels = arguments.max_pixels.value_or(0);
-  load.image_ratio = arguments.image_ratio.value_or(1);
-  if (source) load.loader = source->loader;
-  Scene scene = load_scene(arguments.dataset, load);
-  check_test_views(scene, arguments.dataset);
-  if (!source) return scene;
+LoadedScene load_imported(
+    const Profile& profile, const EvalArguments& arguments, SceneSource& source
+) {
+  const std::string named = source.scene;
+  LoadedScene loaded = load_user_data(source, arguments.dataset);
+  check_test_views(loaded.scene, arguments.dataset);
+  if (named.empty()) return loaded;
+  const Camera& camera = loaded.scene.test.front().camera;
   log::info(fmt::format(
       "{}: {} of profile {}, at {}x{}",
       arguments.dataset,
-      source->scene,
+      named,
       profile.name,
-      scene.test.front().camera.width,
-      scene.test.front().camera.height
+      camera.width,
+      camera.height
   ));
-  scene.name = source->scene;
-  scene.dataset = source->dataset;
-  return scene;
+  return loaded;
 }
 
-int eval_predictions(const CommonOptions& common, EvalArguments arguments) {
+int eval_predictions(const CommonOptions& common, const EvalArguments& arguments) {
   GLINT_CHECK(
       !arguments.predictions.empty() && !arguments.dataset.empty(),
       kUsage,
@@ -293,42 +214,39 @@ int eval_predictions(const CommonOptions& common, EvalArguments arguments) {
   );
   check_row_name(arguments.method);
   const Profile profile = import_profile(common);
-  const Scene scene = load_imported(common, profile, arguments);
-  const RunSpec spec = spec_of(common, profile, arguments, scene);
-  const ImportOptions options{
-      Json(arguments.depth).get<DepthConvention>(),
-      Json(arguments.axes).get<NormalAxes>(),
-      arguments.mesh};
-  check_new_import(
-      common.records_file(profile), {spec.scene, spec.method, spec.options.seed}, arguments
-  );
-  Record record = record_of(spec, profile, arguments.predictions);
+  PlanCell cell{{"", arguments.method, common.seed.value_or(0)}, {}, Json::object()};
+  cell.source = import_source(common, profile, arguments);
+  const LoadedScene loaded = load_imported(profile, arguments, cell.source);
+  cell.cell.scene = cell.source.scene;
+  const RunSpec spec =
+      make_spec(cell, profile, loaded, run_folder(common.own_folder(profile), cell.cell));
+  const fs::path records = common.records_file(profile);
+  check_new_import(records, cell.cell, arguments);
   EarlierRun earlier(spec.folder);
-  record.warnings = import_predictions(arguments.predictions, scene, spec, options);
-  log::info(record.warnings.front());  // whose renders they are
-  for (std::size_t i = 1; i < record.warnings.size(); ++i) log::warn(record.warnings[i]);
-  const Json document = score_document(
-      spec.method,
-      {content_hash(arguments.predictions, fs::path(common.data) / ".hashes"),
-       "",
-       truth_content(spec.dataset_folder, common.data)},
-      profile.mesh_protocol(),
-      std::nullopt
+  const auto notes = import_predictions(
+      arguments.predictions,
+      loaded.scene,
+      spec,
+      {Json(arguments.depth).get<DepthConvention>(),
+       Json(arguments.axes).get<NormalAxes>(),
+       arguments.mesh}
   );
-  record.score_key = stage_key(document);
-  run_stage(spec.folder, Stage::kScore, document, [&] {
-    record.metrics = eval_stage(spec, scene, {}, profile.mesh_protocol());
-    return std::string();
-  });
-  if (!record.metrics.contains("psnr") && record.metrics.contains("psnr-8bit"))
-    record.not_measured["psnr"] = "8-bit images";
-  record.not_applicable = not_applicable(record.metrics, record.not_measured);
-  const Camera& camera = scene.test.front().camera;
-  record.resolution = fmt::format("{}x{}", camera.width, camera.height);
-  append_record(common.records_file(profile), record);
+  log::info(notes.front());  // whose renders they are
+  for (std::size_t i = 1; i < notes.size(); ++i) log::warn(notes[i]);
+  const Scores means = eval_stage(
+      spec,
+      loaded.scene,
+      {.mesh = profile.mesh_protocol(),
+       .truth = truth_content(spec.dataset_folder, common.data),
+       .render_key = content_hash(arguments.predictions, fs::path(common.data) / ".hashes")}
+  );
+  Record record = make_record(profile.name, spec, loaded.scene, means);
+  record.imported = arguments.predictions;
+  record.warnings = notes;
+  append_record(records, record);
   earlier.drop();
-  log::info("recorded in " + common.records_file(profile).string());
-  return print_scores(common, spec.folder, record.metrics, arguments.all, record.warnings);
+  log::info("recorded in " + records.string());
+  return print_scores(common, spec.folder, means, arguments.all, notes);
 }
 
 void add_prediction_options(CLI::App& verb, CLI::Option& predictions, EvalArguments& arguments) {

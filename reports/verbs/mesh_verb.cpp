@@ -4,10 +4,8 @@
 #include "glint/core/interrupt.h"
 #include "metrics/tools/numeric_options.h"
 #include "reports/bench/mesh_stage.h"
-#include "reports/bench/run_stage.h"
-#include "reports/bench/stage_documents.h"
 #include "reports/bench/voxel_choice.h"
-#include "reports/verbs/single_run.h"
+#include "reports/verbs/single_cell.h"
 
 namespace glint {
 
@@ -25,7 +23,7 @@ VoxelChoice voxel_of(const MeshArguments& arguments, const Scene& scene) {
   return {arguments.voxel, fmt::format("voxel {} m, as --voxel says", arguments.voxel)};
 }
 
-void print_meshes(const SingleRun& single, const Json& result) {
+void print_meshes(const SingleCell& single, const Json& result) {
   for (const auto& [file, report] : result.at("meshes").items())
     print_text(fmt::format(
         "{}: {} triangles from {} training views, {} of {} pieces dropped\n",
@@ -39,18 +37,12 @@ void print_meshes(const SingleRun& single, const Json& result) {
 
 int run_mesh(const CommonOptions& common, const MeshArguments& arguments) {
   install_interrupt_handler();
-  const SingleRun single = open_single_run(arguments.run, arguments.dataset);
+  const SingleCell single = open_single_cell(arguments.run, arguments.dataset);
   const auto method = load_trained(single.spec);
-  const std::string& run = arguments.run;
-  const std::string train_key = stage_key(finished_stage(run, Stage::kTrain, "train").document);
   const VoxelChoice voxel = voxel_of(arguments, single.scene);
   TsdfOptions options = arguments.options;
   options.voxel = voxel.voxel;
-  Json result;
-  run_stage(run, Stage::kMesh, mesh_document(single.spec.method, train_key, options), [&] {
-    result = mesh_stage(single.spec, single.scene, *method, options, arguments.keep_renders);
-    return std::string();
-  });
+  Json result = mesh_stage(single.spec, single.scene, *method, options, arguments.keep_renders);
   result["voxel_choice"] = voxel.why;
   if (common.json) {
     print_json(result);

@@ -7,7 +7,7 @@
 #include "glint/core/progress.h"
 #include "glint/core/rows.h"
 #include "glint/scene/camera_path.h"
-#include "reports/verbs/single_run.h"
+#include "reports/verbs/single_cell.h"
 
 namespace glint {
 
@@ -46,7 +46,7 @@ std::vector<FrameRate> measure_frame_rates(const FrameRateOptions& options) {
   std::vector<FrameRate> rates;
   Progress progress("perf", options.runs.size() * options.sizes.size());
   for (const std::string& run : options.runs) {
-    const SingleRun single = open_single_run(run, options.dataset);
+    const SingleCell single = open_single_cell(run, options.dataset);
     const auto method = load_trained(single.spec);
     const CellKey cell = single.spec.cell();
     for (const ImageSize size : options.sizes) {

@@ -22,7 +22,7 @@ struct FrameRate {
 
 // Every run at every size, in that order: its test cameras (training cameras where there are none)
 // with the image size changed and the horizontal field of view kept. Nothing is written. Errors:
-// open_single_run()'s, load_trained()'s; kBadReference: no cameras.
+// open_single_cell()'s, load_trained()'s; kBadReference: no cameras.
 std::vector<FrameRate> measure_frame_rates(const FrameRateOptions& options);
 
 Json frame_rates_to_json(const FrameRateOptions& options, const std::vector<FrameRate>& rates);

@@ -4,7 +4,7 @@
 #include "reports/perf/perf.h"
 #include "reports/perf/scaling.h"
 #include "reports/verbs/perf_runs.h"
-#include "reports/verbs/single_run.h"
+#include "reports/verbs/single_cell.h"
 
 namespace glint {
 

@@ -7,11 +7,9 @@
 #include "glint/scene/camera_path.h"
 #include "metrics/tools/numeric_options.h"
 #include "reports/bench/path_frames.h"
-#include "reports/bench/run_stage.h"
-#include "reports/bench/stage_documents.h"
 #include "reports/bench/video.h"
 #include "reports/records/parcel_run.h"
-#include "reports/verbs/single_run.h"
+#include "reports/verbs/single_cell.h"
 
 namespace glint {
 
@@ -20,7 +18,9 @@ namespace {
 constexpr int kDefaultFrames = 120;
 constexpr double kDefaultFps = 24;
 
-struct RenderArguments : ModelRunOptions {  // run, dataset: also of runs of ours
+struct RenderArguments : NewCellOptions {  // run, dataset: also of runs of ours
+  RenderArguments() { method = "model"; }
+
   // Of camera paths.
   std::string path, keys = "train", size, to;
   int frames = 0;  // 0: kDefaultFrames, or those of a file
@@ -30,15 +30,9 @@ struct RenderArguments : ModelRunOptions {  // run, dataset: also of runs of our
   bool values = false;
 };
 
-int render_test_views(const CommonOptions& common, const SingleRun& single) {
-  const auto method = load_trained(single.spec);
-  const fs::path& run = single.spec.folder;
-  const std::string train_key = stage_key(finished_stage(run, Stage::kTrain, "train").document);
-  run_stage(run, Stage::kRender, render_document(single.spec.method, train_key), [&] {
-    render_stage(single.spec, single.scene, *method);
-    return std::string();
-  });
-  const std::string renders = (run / "renders").string();
+int render_test_views(const CommonOptions& common, const SingleCell& single) {
+  render_stage(single.spec, single.scene, *load_trained(single.spec));
+  const std::string renders = (single.spec.folder / "renders").string();
   if (common.json)
     print_json({{"renders", renders}, {"views", single.scene.test.size()}});
   else
@@ -142,7 +136,7 @@ void print_path(const CommonOptions& common, const PathFrames& options, const Pa
 }
 
 int render_along_path(
-    const CommonOptions& common, const RenderArguments& arguments, const SingleRun& single
+    const CommonOptions& common, const RenderArguments& arguments, const SingleCell& single
 ) {
   PathFrames options;
   options.path = path_of(arguments, single.scene);
@@ -164,9 +158,9 @@ int run_render(const CommonOptions& common, const RenderArguments& arguments) {
       "give --run FOLDER, or --model PLY --dataset FOLDER"
   );
   if (arguments.model.empty()) refuse_parcel_run(arguments.run, "render");
-  const SingleRun single = arguments.model.empty()
-                               ? open_single_run(arguments.run, arguments.dataset)
-                               : new_model_run(common, arguments);
+  const SingleCell single = arguments.model.empty()
+                                ? open_single_cell(arguments.run, arguments.dataset)
+                                : new_single_cell(common, arguments);
   try {
     return arguments.path.empty() ? render_test_views(common, single)
                                   : render_along_path(common, arguments, single);
@@ -209,7 +203,7 @@ void add_model_options(CLI::App& verb, RenderArguments& arguments) {
       "run"
   );
   model->needs(verb.get_option("--dataset"));
-  verb.add_option("--method", arguments.row, "row of the model in tables")
+  verb.add_option("--method", arguments.method, "row of the model in tables")
       ->needs(model)
       ->capture_default_str();
   verb.add_option(

@@ -4,7 +4,7 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "metrics/tools/numeric_options.h"
-#include "reports/verbs/single_run.h"
+#include "reports/verbs/single_cell.h"
 
 namespace glint {
 
@@ -21,11 +21,11 @@ std::string void_steps_text(const Json& steps) {
 }
 
 int run_train(
-    CommonOptions common, const SingleRunOptions& options, const std::string& transmission
+    CommonOptions common, const NewCellOptions& options, const std::string& transmission
 ) {
   if (!transmission.empty()) common.set.push_back("transmission=" + transmission);
   install_interrupt_handler();
-  const SingleRun single = new_single_run(common, options);
+  const SingleCell single = new_single_cell(common, options);
   const std::string folder = single.spec.folder.string();
   try {
     const auto method = train_stage(single.spec, single.scene);
@@ -60,7 +60,7 @@ int run_train(
 }
 
 void add_train_verb(CommandLine& line) {
-  auto options = std::make_shared<SingleRunOptions>();
+  auto options = std::make_shared<NewCellOptions>();
   auto transmission = std::make_shared<std::string>();
   CLI::App* verb = line.add_verb(
       line.app,

@@ -9,7 +9,7 @@
 #include "glint/core/rows.h"
 #include "reports/provenance/verify_run.h"
 #include "reports/records/earlier_run.h"
-#include "reports/verbs/single_run.h"
+#include "reports/verbs/single_cell.h"
 
 namespace glint {
 
@@ -35,7 +35,7 @@ struct VerifiedRun {
 struct VerifyPlan {
   std::vector<fs::path> runs;
   std::vector<Record> records;
-  fs::path root;            // of the records; empty: a run that lies apart
+  fs::path root;            // of the records
   bool is_one_run = false;  // that was named
 };
 
@@ -72,9 +72,8 @@ VerifyPlan plan_of_folder(const fs::path& folder, const CellFilter& filter) {
 // The records of a run lie above it, or in OUT/single.
 VerifyPlan plan_of_run(const CommonOptions& common, const fs::path& run) {
   const RunSpec spec = read_run_spec(run);
-  const fs::path root = root_of_run(spec);
-  const fs::path records = root.empty() ? fs::path(common.out) / kSingleProfile : root;
-  return {{run}, read_records(records / "records.jsonl"), root, true};
+  const fs::path root = records_folder(common, spec);
+  return {{run}, read_records(root / "records.jsonl"), root, true};
 }
 
 VerifyPlan make_verify_plan(const CommonOptions& common, const VerifyArguments& arguments) {
@@ -180,7 +179,7 @@ class Verification {
 
   // A number in a table has to have a run that it comes from.
   void add_records_without_runs(std::vector<VerifiedRun>& verified) const {
-    if (plan_.root.empty() || is_of_one_run()) return;
+    if (is_of_one_run()) return;
     for (const Record& record : plan_.records) {
       const fs::path run = run_folder(plan_.root, record.cell);
       if (record.ok() && !is_our_run(run))

@@ -105,7 +105,7 @@ TEST_CASE("a mesh that lies beside a note of the stage is not scored") {
     RunSpec spec = read_run_spec(cell.run);
     MeshProtocol protocol;
     protocol.num_samples = 1000;
-    return has_mesh_values(eval_stage(spec, fake_scene("room_1"), {}, protocol));
+    return has_mesh_values(eval_stage(spec, fake_scene("room_1"), {.mesh = protocol}));
   };
   CHECK(scored(""));
   CHECK_FALSE(scored("no mesh: no depth to fuse"));

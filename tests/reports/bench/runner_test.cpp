@@ -122,7 +122,7 @@ TEST_CASE("scores come from the files of the run folder") {
   run_profile(options);
   const RunSpec spec = read_run_spec(folder.path() / "runs/room_1/fake/0");
   write_exr(spec.folder / "renders/0002/rgb.exr", Image(16, 12, 3, 0.6f));
-  const auto means = eval_stage(spec, fake_scene("room_1"), {});
+  const auto means = eval_stage(spec, fake_scene("room_1"));
   CHECK(means.at("psnr") > 50);
 }
 
@@ -349,9 +349,8 @@ TEST_CASE("a damaged render is an error of the prediction, naming the file") {
   run_profile(fake_run(folder.path()));
   const RunSpec spec = read_run_spec(folder.path() / "runs/room_1/fake/0");
   const auto check = [&](const char* message) {
-    const std::string error = test::error_of(ExitCode::kBadPrediction, [&] {
-      eval_stage(spec, fake_scene("room_1"), {});
-    });
+    const std::string error =
+        test::error_of(ExitCode::kBadPrediction, [&] { eval_stage(spec, fake_scene("room_1")); });
     CHECK_THAT(error, Catch::Contains(message));
   };
   const fs::path rgb = spec.folder / "renders/0002/rgb.exr";

@@ -69,7 +69,7 @@ TEST_CASE("The truth in another program's conventions scores as the truth") {
   Case c;
   const auto notes = c.import({DepthConvention::kRay, NormalAxes::kOpengl, {}});
   CHECK(notes.size() == 2);  // whose they are, and that the images have 8 bits
-  const auto means = eval_stage(c.spec, test::small_room(), {});
+  const auto means = eval_stage(c.spec, test::small_room());
   CHECK(means.at("psnr-8bit") == 100);
   CHECK(means.at("depth-absrel") < 1e-6);
   CHECK(means.at("normal-mae") < 0.01);
@@ -79,7 +79,7 @@ TEST_CASE("The truth in another program's conventions scores as the truth") {
 TEST_CASE("A PNG's PSNR is psnr-8bit only, a float image has both") {
   Case c;
   c.import({});
-  auto means = eval_stage(c.spec, test::small_room(), {});
+  auto means = eval_stage(c.spec, test::small_room());
   for (const auto& [id, value] : means) CHECK((id != "psnr" && !id.starts_with("psnr@")));
   CHECK(means.contains("psnr-8bit"));
   CHECK(means.contains("ssim-3dgs"));
@@ -87,7 +87,7 @@ TEST_CASE("A PNG's PSNR is psnr-8bit only, a float image has both") {
   for (const View& view : test::small_room().test)
     write_exr(c.folder.path() / "theirs/rgb" / (view.name + ".exr"), view.rgb);
   c.import({});
-  means = eval_stage(c.spec, test::small_room(), {});
+  means = eval_stage(c.spec, test::small_room());
   CHECK(means.at("psnr") == 100);
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("Maps whose pixels lie in one row, as EasyVolcap's geo_metric has them
     write_npy(folder / "normals_pred" / (view.name + ".npy"), in_one_row(view.truth["normal"]));
   }
   c.import({});
-  const auto means = eval_stage(c.spec, test::small_room(), {});
+  const auto means = eval_stage(c.spec, test::small_room());
   CHECK(means.at("depth-absrel") == 0);
   CHECK(means.at("normal-mae") < 0.01);
 }
@@ -140,7 +140,7 @@ TEST_CASE("Normals in the world's axes come back, too") {
   for (const View& view : test::small_room().test)
     write_npy(c.folder.path() / "theirs/normal" / (view.name + ".npy"), world_normals(view));
   c.import({DepthConvention::kRay, NormalAxes::kWorld, {}});
-  CHECK(eval_stage(c.spec, test::small_room(), {}).at("normal-mae") < 0.01);
+  CHECK(eval_stage(c.spec, test::small_room()).at("normal-mae") < 0.01);
 }
 
 TEST_CASE("A wrong convention is noticed where there is ground truth, and not corrected silently") {
@@ -148,7 +148,7 @@ TEST_CASE("A wrong convention is noticed where there is ground truth, and not co
   const auto notes = c.import({});
   const std::string all = fmt::format("{}", fmt::join(notes, "; "));
   CHECK_THAT(all, Catch::Contains("--depth-kind ray") && Catch::Contains("--normal-axes opengl"));
-  CHECK(eval_stage(c.spec, test::small_room(), {}).at("normal-mae") > 20);
+  CHECK(eval_stage(c.spec, test::small_room()).at("normal-mae") > 20);
 }
 
 TEST_CASE("Of gsplat's pictures, truth beside render, the render counts") {

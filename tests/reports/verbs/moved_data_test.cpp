@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: MIT
 // A run whose data have moved: `render`, `mesh` and `eval` take --dataset.
-#include <catch2/catch.hpp>
-
-#include "glint/core/progress.h"
-#include "reports/verbs/command_line.h"
-#include "tests/support/temp_folder.h"
+#include "tests/reports/run_words.h"
 
 using namespace glint;
+using test::run;
 
 namespace {
-
-int run(std::vector<std::string> words) {
-  words.insert(words.begin(), "glint-bench");
-  std::vector<const char*> arguments;
-  for (const std::string& word : words) arguments.push_back(word.c_str());
-  return run_command_line(static_cast<int>(arguments.size()), arguments.data());
-}
 
 void make_room(const std::string& scene, const std::string& to) {
   std::vector<std::string> words{"dataset", "make", "glassroom", "--scene", scene, "--out", to};
