@@ -162,13 +162,13 @@ pack_evidence() {
   [ -z "$speed" ] || $bench dataset pack "$speed" $bundle/scenes/speed.safetensors --compact --without basecolor >&2
   local nothing scene
   nothing=$(mktemp -d)
-  $bench plan --tasks --quiet --profile "$source_profile" --out "$nothing" --data "$data" "${skip[@]}" | cut -f1 >$build/all_cells.txt
+  $bench status --tasks --quiet --profile "$source_profile" --out "$nothing" --data "$data" "${skip[@]}" | cut -f1 >$build/all_cells.txt
   rm -r "$nothing"
   wanted_cells "${records:-docs/results/$name.jsonl}" <$build/all_cells.txt >$build/cells.txt
   cut -d/ -f1 $build/cells.txt | sort -u >$build/scenes.txt
   [ -s $build/scenes.txt ] || { echo "bundle: every cell of $name has a record" >&2; exit 1; }
   while read -r scene; do
-    $bench run --profile "$source_profile" --data "$data" --data-only --only "$scene/*" </dev/null >&2
+    $bench all --profile "$source_profile" --data "$data" --data-only --only "$scene/*" </dev/null >&2
     pack_one "$scene" "$(room_folder "$scene")"
   done <$build/scenes.txt
   [ ${#packed[@]} -gt 0 ] || { echo "bundle: no room for any scene" >&2; exit 4; }

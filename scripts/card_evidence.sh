@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Cells of a profile that have no record yet, on a bare machine with a GPU and without a network, until the time is up; from the folder that
 # `scripts/bundle.sh --evidence` makes:
-#   ./card_evidence.sh [--seconds N (570)] [--profile FILE (profile/*.toml)] [--jobs N (4)] [--device cuda|cpu] [options of `glint-bench run`]
+#   ./card_evidence.sh [--seconds N (570)] [--profile FILE (profile/*.toml)] [--jobs N (4)] [--device cuda|cpu] [options of `glint-bench all`]
 # Cells run side by side in the order of cells.txt, most wanted first. To $OUT (default ./card_out), as they come, so that a kill loses one cell:
 # parcels_1.tar to parcels_6.tar of at most 15 MiB, which `glint-bench merge parcels_*.tar` takes over at home; summary.md; log.txt.
 # Time that is left goes to what else only a card can tell: frames a second of the trained models, a long training on speed.safetensors,
@@ -92,7 +92,7 @@ fi
 
 time_for_cells=$(($(left) - reserve))
 [ $time_for_cells -ge 10 ] || { say "No time for any cell: $time_for_cells s of $seconds are left; give more --seconds"; exit 6; }
-glint-bench run --profile "$profile" --data scenes --out "$work/out" --device "$device" --jobs "$jobs" --order given --cells cells.txt \
+glint-bench all --no-tables --profile "$profile" --data scenes --out "$work/out" --device "$device" --jobs "$jobs" --order given --cells cells.txt \
   --for "${time_for_cells}s" --parcels "$parcels" --quiet "${options[@]}" >>"$log" 2>&1 &
 runner=$!
 while kill -0 $runner 2>/dev/null; do
@@ -104,7 +104,7 @@ code=$?
 runner=
 pack
 say ""
-say "glint-bench run: exit code $code; $num_packed parcels in $(find "$out" -name 'parcels_*.tar' | wc -l) archives, $SECONDS of $seconds s"
+say "glint-bench all: exit code $code; $num_packed parcels in $(find "$out" -name 'parcels_*.tar' | wc -l) archives, $SECONDS of $seconds s"
 [ ${#no_room[@]} -eq 0 ] || say "No room in $most_archives archives for: ${no_room[*]}"
 [ "$code" = 0 ] || say "$(grep -v '^==' "$log" | tail -n 3)"
 say ""

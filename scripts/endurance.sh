@@ -62,7 +62,7 @@ start() {
   run=$!
 }
 # Those whose starter was killed end after their step; until then their cells are theirs.
-no_workers() { for _ in $(seq 600); do pgrep -f "run --executor inline .*--out $disk/out" >/dev/null || return 0; sleep 0.1; done; }
+no_workers() { for _ in $(seq 600); do pgrep -f "all --no-tables --executor inline .*--out $disk/out" >/dev/null || return 0; sleep 0.1; done; }
 killed_run() { start "$1"; pause "${took[$1]}"; kill -9 $run 2>/dev/null || true; wait $run 2>/dev/null || true; no_workers; }
 # Killed while another one has begun on the same folder: they share its cell, or one waits.
 two_runs() {
@@ -75,7 +75,7 @@ two_runs() {
 killed_worker() {
   start "$1"
   pause "${took[$1]}"
-  pkill -9 -f "run --executor inline .*--out $disk/out" || true
+  pkill -9 -f "all --no-tables --executor inline .*--out $disk/out" || true
   wait $run 2>/dev/null || true
 }
 told_to_stop() { start "$1"; pause "${took[$1]}"; kill -TERM $run 2>/dev/null || true; wait $run 2>/dev/null || true; }
@@ -109,7 +109,7 @@ what_is_wrong() {
   [ "$(surfels "$1")" = "${expected[$1]}" ] || { echo "other surfels"; return; }
   grep -q "torn record" "$work/err.txt" && { echo "a torn record"; return; }
   local left
-  left=$("$bench" clean --profile smoke --out "$disk/out" --quiet)
+  left=$("$bench" status --leftovers --profile smoke --out "$disk/out" --quiet)
   [ "$left" = "nothing is left over" ] || echo "left over: $left"
 }
 

@@ -2,7 +2,7 @@
 # Cells of a profile until the time is over; the record of each goes to docs/results/PROFILE.jsonl, and cells that stand there are not
 # run again. So days of work are done in pieces, on one machine after the other:
 #   scripts/evidence.sh [--profile NAME (small)] [--minutes N (60)] [--jobs N (all cores)] [--records FILE] [--work DIR (out/evidence)]
-#     [--bench GLINT_BENCH] [--keep] [options of `glint-bench run`, as --methods 2dgs,glint]
+#     [--bench GLINT_BENCH] [--keep] [options of `glint-bench all`, as --methods 2dgs,glint]
 # Scene by scene, so that a machine makes few of them, and seed by seed within. A cell that began before the time was over is finished.
 # Surfels, renders and meshes go when the cell is recorded; --keep leaves them, for `glint-bench figures`. Failed cells are recorded, too, and
 # tried again by the next call. Exit 5: some failed.
@@ -42,7 +42,7 @@ has() {
 }
 # Cells to do, scene by scene and seed by seed, otherwise in the profile's order.
 pending() {
-  "$bench" plan --tasks "${common[@]}" "${options[@]}" --quiet |
+  "$bench" status --tasks "${common[@]}" "${options[@]}" --quiet |
     awk -F/ '{ print $1, $NF, NR, $0 }' | sort -k1,1 -k2,2n -k3,3n | cut -d' ' -f4- |
     while read -r cell; do has "$records" "$cell" '"status":"ok"' || echo "$cell"; done
 }
@@ -63,7 +63,7 @@ for ((i = 0; i < ${#cells[@]} && SECONDS < end; i += jobs)); do
   names=()
   for cell in "${batch[@]}"; do names+=(--cell "$cell"); done
   rm -f "$work/out/$name/records.jsonl"
-  "$bench" run "${common[@]}" "${options[@]}" "${names[@]}" --jobs "$jobs" --quiet || failed=5
+  "$bench" all --no-tables "${common[@]}" "${options[@]}" "${names[@]}" --jobs "$jobs" --quiet || failed=5
   for cell in "${batch[@]}"; do
     has "$work/out/$name/records.jsonl" "$cell" || { echo "$cell: no record" >&2; failed=5; continue; }
     keep "$cell"

@@ -42,7 +42,7 @@ struct ExecutorOptions {
   std::vector<std::string> look_at_card;
 
   // For engines that start this program elsewhere: what every verb has to be told so that it is
-  // about this profile, and what `run` has to be told beside that.
+  // about this profile, and what `all` has to be told beside that.
   std::vector<std::string> profile_words, run_words;
   std::vector<std::string> sbatch;  // options for sbatch, as "--partition=gpu"
   bool on_gpu = false;              // asked for by --device cuda

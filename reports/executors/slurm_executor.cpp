@@ -145,9 +145,9 @@ class Submission {
           "--array=0-{}{}", count - 1, how_.jobs > 1 ? fmt::format("%{}", how_.jobs) : ""
       ));
       append(
-          words, {file("task", "sh").string(), std::to_string(offset), program_.string(), "run"}
+          words, {file("task", "sh").string(), std::to_string(offset), program_.string(), "all"}
       );
-      append(words, {"--executor", "local", "--tasks", tasks.string()});
+      append(words, {"--no-tables", "--executor", "local", "--tasks", tasks.string()});
       append(words, how_.profile_words);
       append(words, how_.run_words);
       append(words, more);

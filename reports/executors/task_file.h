@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lists of cells for engines that start `glint-bench run --tasks FILE --task N`: a line for each
+// Lists of cells for engines that start `glint-bench all --tasks FILE --task N`: a line for each
 // cell, "scene/method/seed", then columns for people.
 #pragma once
 

@@ -151,7 +151,7 @@ class ParcelReader {
     GLINT_CHECK(
         metadata("format") == kFormat,
         kBadPrediction,
-        "{}: no parcel: its format is '{}', expected '{}' (glint-bench run --parcels)",
+        "{}: no parcel: its format is '{}', expected '{}' (glint-bench all --parcels)",
         path_.string(),
         metadata("format"),
         kFormat

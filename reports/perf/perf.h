@@ -75,12 +75,9 @@ std::vector<KernelRow> run_kernel_times(const PerfOptions& options);
 // and camera.json (pixels; cam_from_world: 3x4, by rows) in `folder`.
 void write_perf_scene(const PerfOptions& options, const fs::path& folder);
 
-// Seconds of one training step of a method (id and config as create_method takes them) on the scene
-// of the ops: the least of a few, after one to warm up.
-double seconds_of_step(const std::string& method, const Json& config, const PerfOptions& options);
-
-// The same step, and the memory that the method, its scene and its steps take at most, megabytes
-// (10^6 bytes): the highest less what there was before, of the process or, on a GPU, in use there.
+// Seconds of one training step of a method on the scene of the ops, the least of a few after one to
+// warm up, and the memory that the method, its scene and its steps take at most, megabytes (10^6
+// bytes): the highest less what there was before, of the process or, on a GPU, in use there.
 struct StepCost {
   double seconds = 0, memory_mb = 0;
 };

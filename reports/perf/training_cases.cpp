@@ -168,10 +168,6 @@ double least_seconds(const PerfCase& timed, int runs) {
 
 }  // namespace
 
-double seconds_of_step(const std::string& method, const Json& config, const PerfOptions& options) {
-  return least_seconds(step_case(method, method, config, options), options.runs);
-}
-
 StepCost cost_of_step(const std::string& method, const PerfOptions& options) {
   ::malloc_trim(0);  // what was freed before is not this method's
   const double before = static_cast<double>(resident_memory_bytes()) / 1e6;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One thing that was looked at, and how it was found: rows of `verify`, `audit` and `doctor`.
+// One thing that was looked at, and how it was found: rows of `verify` and `doctor`.
 #pragma once
 
 #include <string>

@@ -23,7 +23,7 @@ const std::vector<FailureKind>& failure_kinds() {
       {kTimeout, "ran longer than --time-limit", 0, "goes on from its checkpoint; a longer limit"},
       {kCrash, "the process ended without a word of its own", 1, "see the end of its output"},
       {kPreempted, "was told to stop from outside", 3, "goes on from its checkpoint"},
-      {kDiskFull, "the disk is full", 0, "free some space, `clean`, or another --out"},
+      {kDiskFull, "the disk is full", 0, "free some space, `status --leftovers`, or another --out"},
       {kMissingWeights, "weights of a network are missing", 0, "`doctor` says where they go"},
       {kUnknown, "none of the others", 0, "see the message"}};
   return kinds;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a profile's folder holds that belongs to no finished cell: `glint-bench clean`.
+// What a profile's folder holds that belongs to no finished cell: `glint-bench status --leftovers`.
 #pragma once
 
 #include <string>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
+#include <set>
 
+#include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "reports/figures/figures.h"
 #include "reports/verbs/report_verb.h"
@@ -39,8 +41,46 @@ int handed_over(const CommonOptions& common, const fs::path& folder, const RunSu
   return 0;
 }
 
+// Makes what is not there yet.
+int make_data(const fs::path& data_folder, RunnerOptions options) {
+  install_interrupt_handler();
+  leave_out_missing(data_folder, options);
+  std::set<std::string> scenes;
+  for (const PlanCell& cell : make_plan(options.profile, options.filter, options.assignments))
+    if (scenes.insert(cell.cell.scene).second) options.load(cell.source);
+  return 0;
+}
+
+int run_without_tables(
+    const CommonOptions& common, const CellRunOptions& how, RunnerOptions& options
+) {
+  // Whoever asks for one cell in this process knows which.
+  options.announced = how.executor == "inline" && options.filter.cells.size() == 1;
+  const RunSummary summary = run_cells(common, how, options);
+  if (!options.announced) log::info(summary_text(summary));
+  if (common.json) print_json(summary_json(summary));
+  return exit_code_of(summary);
+}
+
+void add_all_verb(CommandLine& line) {
+  auto how = std::make_shared<CellRunOptions>();
+  CLI::App* verb = line.add_verb(
+      line.app,
+      "all",
+      "run every cell of a profile, print the tables and write the report",
+      [&line, how] { return run_all(line.common, *how); },
+      kAllOptions | kDeviceLater
+  );
+  add_cell_run_options(*verb, *how);
+}
+
+}  // namespace
+
 int run_all(const CommonOptions& common, const CellRunOptions& how) {
-  const RunSummary summary = run_cells(common, how, runner_options(common, how));
+  RunnerOptions options = runner_options(common, how);
+  if (how.data_only) return make_data(common.data, options);
+  if (how.no_tables) return run_without_tables(common, how, options);
+  const RunSummary summary = run_cells(common, how, options);
   const fs::path folder = common.own_folder(common.resolved_profile());
   if (summary.submitted > 0) return handed_over(common, folder, summary);
   const auto tables = result_tables(folder);
@@ -59,20 +99,6 @@ int run_all(const CommonOptions& common, const CellRunOptions& how) {
   ));
   return exit_code_of(summary);
 }
-
-void add_all_verb(CommandLine& line) {
-  auto how = std::make_shared<CellRunOptions>();
-  CLI::App* verb = line.add_verb(
-      line.app,
-      "all",
-      "run every cell of a profile, print the tables and write the report",
-      [&line, how] { return run_all(line.common, *how); },
-      kAllOptions | kDeviceLater
-  );
-  add_cell_run_options(*verb, *how);
-}
-
-}  // namespace
 
 GLINT_REGISTER(Verb, {"all", add_all_verb})
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The cells of a profile with what is done of each: for `plan` and `status`.
+// The cells of a profile with what is done of each: for `status`.
 #pragma once
 
 #include "reports/bench/cell_stages.h"

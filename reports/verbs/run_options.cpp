@@ -54,7 +54,7 @@ Words words_of_cell(
     bool force,
     const ProcessShare& share
 ) {
-  Words words = {kThisProgram, "run", "--executor", "inline"};
+  Words words = {kThisProgram, "all", "--no-tables", "--executor", "inline"};
   for (const Words& more :
        {profile_words(common),
         run_words(common, share.gpu ? "cuda" : common.device),
@@ -125,7 +125,8 @@ void check_cells(const RunnerOptions& options) {
     GLINT_CHECK(
         known.contains(cell),
         kUsage,
-        "cell {}: profile {} has none of that name; {}`plan` lists them; a method that the profile "
+        "cell {}: profile {} has none of that name; {}`status` lists them; a method that the "
+        "profile "
         "does not name is run by --methods",
         cell,
         options.profile.name,
@@ -150,6 +151,7 @@ RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& 
   if (!how.cells_file.empty())
     for (const std::string& cell : cells_of_tasks(how.cells_file))
       if (!cell.empty()) options.filter.cells.push_back(cell);
+  if (!how.tasks.empty()) options.filter.cells = {cell_of_task(how.tasks, how.task)};
   check_cells(options);
   return options;
 }
@@ -163,6 +165,10 @@ void add_cell_run_options(CLI::App& verb, CellRunOptions& options) {
   verb.add_option("--executor", options.executor, executors)->capture_default_str();
   verb.add_option("--cell", options.cells, "only this scene/method/seed; may be given again");
   verb.add_option("--cells", options.cells_file, "only those of a file, one a line");
+  verb.add_option("--tasks", options.tasks, "file of cells, one a line (`status --tasks`)");
+  verb.add_option("--task", options.task, "which line of --tasks alone; the first is 0");
+  verb.add_flag("--data-only", options.data_only, "make the data of the cells, no more");
+  verb.add_flag("--no-tables", options.no_tables, "neither tables nor figures and page");
   const char* order =
       "longest or given (by --cell and --cells, else the profile); else longest where --jobs > 1";
   verb.add_option("--order", options.order, order);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options of the verbs that run cells.
+// What `all` is told about cells.
 #pragma once
 
 #include <string>
@@ -19,15 +19,22 @@ struct CellRunOptions {
   std::string order;               // "longest", "given"; empty: as ExecutorOptions has it
   std::vector<std::string> cells;  // "scene/method/seed"
   std::string cells_file;          // more of them, one a line; empty: none
-  std::string parcels;             // folder for parcels of cells that ended; empty: none
+  std::string tasks;               // a file of them, of which line `task` is run; empty: none
+  std::size_t task = 0;
+  bool data_only = false, no_tables = false;
+  std::string parcels;  // folder for parcels of cells that ended; empty: none
   int max_failures = 0;
   std::vector<std::string> sbatch;
 };
 
+// The cells of a profile, then tables, figures and page unless it is told otherwise.
+int run_all(const CommonOptions& common, const CellRunOptions& how);
+
 // `options` must live as long as `verb`.
 void add_cell_run_options(CLI::App& verb, CellRunOptions& options);
 
-// Errors (kUsage): a cell of --cell or --cells that the profile does not have, no such file.
+// Errors (kUsage): a cell of --cell, --cells or --tasks that the profile does not have, no such
+// file or line.
 RunnerOptions runner_options(const CommonOptions& common, const CellRunOptions& how);
 
 // Cells of published datasets whose scenes are not below `data_folder` are told once, not one by

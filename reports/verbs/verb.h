@@ -96,7 +96,7 @@ struct CommandLine {
 // Help of --out for a verb whose results lie in no profile's folder.
 void describe_out(CLI::App& verb, const std::string& meaning);
 
-// Registered with GLINT_REGISTER(Verb, {"plan", add_plan_verb}); help lists them by id.
+// Registered with GLINT_REGISTER(Verb, {"status", add_status_verb}); help lists them by id.
 struct Verb {
   std::string id;
   void (*add)(CommandLine& line);

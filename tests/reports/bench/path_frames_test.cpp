@@ -108,7 +108,7 @@ TEST_CASE("ffmpeg makes the video where it is installed, and may fail") {
   const std::string frames = (fs::current_path() / "layers/%04d.png").string();
   CHECK(read_file(video).find("-framerate 12 -i " + frames) != std::string::npos);
   fs::remove(video);
-  // Under a name that `clean` knows until it is whole.
+  // Under a name that `status --leftovers` knows until it is whole.
   const fs::path names = folder / "names";
   install_ffmpeg(
       folder.path(), "for last; do :; done\necho \"$last\" > " + names.string() + "\nexit 3\n"

@@ -8,7 +8,7 @@ trap 'rm -rf "$folder"' EXIT
 fail() { echo "FAILED: $*" >&2; cat "$folder"/*.err >&2; exit 1; }
 
 common=(--profile smoke --methods 2dgs,envgs,glint --iterations 160 --device cpu --data "$folder/data" --quiet)
-workers() { pgrep -f -- "run --executor inline .*--out $folder/pool " || true; }
+workers() { pgrep -f -- "all --no-tables --executor inline .*--out $folder/pool " || true; }
 no_worker_within() {  # SECONDS
   for _ in $(seq $(($1 * 10))); do [ -n "$(workers)" ] || return 0; sleep 0.1; done
   return 1

@@ -119,7 +119,7 @@ jobs=$folder/slurm/smoke/slurm/jobs.jsonl
 cat "$jobs"
 [ "$(grep -c '"stage":"cells"' "$jobs")" -eq 2 ] || fail "four cells with MaxArraySize 3 are not two arrays"
 
-worker_of() { pgrep -f -- "run --executor inline .*--out $folder/slurm .*--cell room_1/$1/0 " | head -n 1; }
+worker_of() { pgrep -f -- "all --no-tables --executor inline .*--out $folder/slurm .*--cell room_1/$1/0 " | head -n 1; }
 wait_for() {  # METHOD: until it has a checkpoint; its worker
   for _ in $(seq $((600 * patience))); do
     if [ -f "$folder/slurm/smoke/runs/room_1/$1/0/checkpoint/state.safetensors" ] && [ -n "$(worker_of "$1")" ]; then

@@ -39,13 +39,13 @@ TEST_CASE("help and version succeed") {
 TEST_CASE("wrong command lines exit with 1") {
   CHECK(run({}) == 1);
   CHECK(run({"fly"}) == 1);
-  CHECK(run({"plan", "--no-such-option"}) == 1);
-  CHECK(run({"plan", "--profile", "no-such-profile"}) == 1);
-  CHECK(run({"plan", "--seed", "minus one"}) == 1);
-  CHECK(run({"plan", "--threads", "-1"}) == 1);
-  CHECK(run({"plan", "--set", "nonsense"}) == 1);
-  CHECK(run({"plan", "--only", "room_9"}) == 1);
-  CHECK(run({"plan", "--device", "tpu"}) == 1);
+  CHECK(run({"status", "--no-such-option"}) == 1);
+  CHECK(run({"status", "--profile", "no-such-profile"}) == 1);
+  CHECK(run({"status", "--seed", "minus one"}) == 1);
+  CHECK(run({"status", "--threads", "-1"}) == 1);
+  CHECK(run({"status", "--set", "nonsense"}) == 1);
+  CHECK(run({"status", "--only", "room_9"}) == 1);
+  CHECK(run({"status", "--device", "tpu"}) == 1);
   CHECK(run({"table", "--format", "docx"}) == 1);
   CHECK(run({"table", "table9", "--profile", "ci"}) == 1);
   CHECK(run({"train", "--method", "2dgs"}) == 1);
@@ -84,10 +84,10 @@ TEST_CASE("doctor exits with 6 where there has to be a GPU and is none") {
 
 TEST_CASE("a GPU is used where there is one; asking for it elsewhere exits with 6") {
   const bool has_gpu = gpu::cuda_device().usable;
-  CHECK(run({"plan", "--device", "cuda"}) == (has_gpu ? 0 : 6));
-  CHECK(run({"plan", "--device", "auto"}) == 0);
+  CHECK(run({"status", "--device", "cuda"}) == (has_gpu ? 0 : 6));
+  CHECK(run({"status", "--device", "auto"}) == 0);
   CHECK(on_gpu() == has_gpu);
-  CHECK(run({"plan", "--device", "cpu"}) == 0);
+  CHECK(run({"status", "--device", "cpu"}) == 0);
   CHECK(!on_gpu());
   CHECK(has_gpu == gpu::cuda_device().why_not.empty());
 }
@@ -98,12 +98,12 @@ TEST_CASE("damaged records exit with 2") {
   CHECK(run({"table", "--out", folder.path().c_str()}) == 2);
 }
 
-TEST_CASE("plan and status work before anything was run, table exits with 2 and writes nothing") {
+TEST_CASE("status works before anything was run, table exits with 2 and writes nothing") {
   const test::TempFolder folder;
   const char* out = folder.path().c_str();
-  CHECK(run({"plan", "--profile", "smoke", "--out", out}) == 0);
-  CHECK(run({"plan", "--profile", "smoke", "--out", out, "--json"}) == 0);
   CHECK(run({"status", "--profile", "smoke", "--out", out}) == 0);
+  CHECK(run({"status", "--profile", "smoke", "--out", out, "--json"}) == 0);
+  CHECK(run({"status", "--profile", "smoke", "--out", out, "--leftovers"}) == 0);
   CHECK(run({"table", "--profile", "smoke", "--out", out}) == 2);
   CHECK(fs::is_empty(folder.path()));
 }
@@ -121,7 +121,6 @@ TEST_CASE("--out is the folder above the profile's or the profile's own, for eve
     fs::remove_all(own / "report");
     CHECK(run({"table", "--profile", "smoke", "--out", out.c_str()}) == 0);
     CHECK(run({"report", "--profile", "smoke", "--out", out.c_str()}) == 0);
-    CHECK(run({"plan", "--profile", "smoke", "--out", out.c_str()}) == 0);
     CHECK(run({"status", "--profile", "smoke", "--out", out.c_str()}) == 0);
     CHECK(fs::exists(own / "tables/table1_photometric.csv"));
     CHECK(fs::exists(own / "report/index.html"));
@@ -147,8 +146,8 @@ TEST_CASE("a choice of methods is printed, not written, and names what there is"
   CHECK(run({"table", "--profile", "smoke", "--out", out, "--methods", "nothing"}) == 1);
   CHECK(run({"table", "--profile", "smoke", "--out", out, "--skip", "mine"}) == 1);
   CHECK(run({"report", "--profile", "smoke", "--out", out, "--methods", "mine"}) == 0);
-  CHECK(run({"plan", "--profile", "smoke", "--out", out, "--methods", "glint,pgsr"}) == 0);
-  CHECK(run({"plan", "--profile", "smoke", "--out", out, "--methods", "nothing"}) == 1);
+  CHECK(run({"status", "--profile", "smoke", "--out", out, "--methods", "glint,pgsr"}) == 0);
+  CHECK(run({"status", "--profile", "smoke", "--out", out, "--methods", "nothing"}) == 1);
   CHECK(run({"table", "--profile", "smoke", "--out", out, "--table", "summary"}) == 0);
 }
 
@@ -253,13 +252,29 @@ TEST_CASE("seeds that no 64 bits hold and numbers out of range are told in a sho
   };
   for (const char* seed : {"-1", "-5", "99999999999999999999"})
     CHECK_THAT(
-        errors_of({"plan", "--seed", seed}),
+        errors_of({"status", "--seed", seed}),
         Catch::Contains(std::string("--seed is ") + seed + "; expected a whole number from 0 to")
     );
-  const std::string errors = errors_of({"plan", "--iterations", "0"});
+  const std::string errors = errors_of({"status", "--iterations", "0"});
   CHECK_THAT(errors, Catch::Contains("--iterations: '0' must be above 0"));
   CHECK(errors.size() < 200);
   CHECK_THAT(
-      errors_of({"plan", "--checkpoint-seconds", "nan"}), Catch::Contains("must be at least 0")
+      errors_of({"status", "--checkpoint-seconds", "nan"}), Catch::Contains("must be at least 0")
   );
+}
+
+TEST_CASE("verbs that others do now say which") {
+  const test::TempFolder folder;
+  const std::string out = folder.path().string();
+  const auto said = [](const std::vector<std::string>& words, int code) {
+    return test::captured(2, [&] { CHECK(test::run(words) == code); });
+  };
+  CHECK_THAT(said({"clean", "--yes"}, 1), Catch::Contains("status --leftovers"));
+  CHECK_THAT(said({"audit", "--methods", "2dgs"}, 1), Catch::Contains("glint-bench compare"));
+  const std::vector<std::string> plan{"plan", "--profile", "smoke", "--out", out};
+  CHECK_THAT(said(plan, 0), Catch::Contains("use `glint-bench status`"));
+  const std::string unknown = said({"run", "--profile", "smoke", "--cell", "room_9/2dgs/0"}, 1);
+  CHECK_THAT(unknown, Catch::Contains("use `glint-bench all --no-tables`"));
+  CHECK_THAT(unknown, Catch::Contains("none of that name"));
+  CHECK_THAT(said({"--help"}, 0), !Catch::Contains("audit"));
 }

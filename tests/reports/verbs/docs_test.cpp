@@ -44,6 +44,11 @@ std::set<std::string> field_names(const Config& config) {
   return names;
 }
 
+// Those that help shows.
+std::vector<const CLI::App*> shown_verbs(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* verb) { return !verb->get_group().empty(); });
+}
+
 // "dataset make" of the program's verbs; those alone that show the option.
 void add_verbs_with(
     const CLI::App& app,
@@ -51,7 +56,7 @@ void add_verbs_with(
     const std::string& prefix,
     std::set<std::string>& names
 ) {
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+  for (const CLI::App* verb : shown_verbs(app)) {
     const std::string name = prefix + verb->get_name();
     const CLI::Option* found = verb->get_option_no_throw(option);
     if (found != nullptr && !found->get_group().empty()) names.insert(name);
@@ -71,11 +76,12 @@ TEST_CASE("docs/PROFILES.md has every field of a profile, and no other") {
 
 TEST_CASE("docs/ARCHITECTURE.md has every verb, and no other") {
   std::set<std::string> verbs;
-  for (const auto& [id, verb] : Registry<Verb>::all()) verbs.insert(id);
+  const CommandLine line;
+  for (const CLI::App* verb : shown_verbs(line.app)) verbs.insert(verb->get_name());
   std::set<std::string> named;
   std::istringstream lines(section(doc("ARCHITECTURE.md"), "## Verbs"));
-  for (std::string line; std::getline(lines, line);)
-    if (line.starts_with("| `")) named.insert(line.substr(3, line.find('`', 3) - 3));
+  for (std::string row; std::getline(lines, row);)
+    if (row.starts_with("| `")) named.insert(row.substr(3, row.find('`', 3) - 3));
   CHECK(named == verbs);
 }
 
@@ -83,7 +89,7 @@ TEST_CASE("docs/JSON.md has every verb that prints JSON, and no other") {
   const CommandLine line;
   std::set<std::string> verbs;
   add_verbs_with(line.app, "--json", "", verbs);
-  CHECK(verbs.contains("plan"));
+  CHECK(verbs.contains("status"));
   CHECK(verbs.contains("dataset info"));
   CHECK(first_cells(doc("JSON.md")) == verbs);
 }

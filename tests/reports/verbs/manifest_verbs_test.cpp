@@ -102,7 +102,10 @@ struct ShortProfile {
   }
   Json run_cells(const std::string& only, int code) const {
     const std::string summary = captured(1, [&] {
-      CHECK(run(with_common({"run", "--executor", "inline", "--only", only, "--json"})) == code);
+      CHECK(
+          run(with_common({"all", "--no-tables", "--executor", "inline", "--only", only, "--json"})
+          ) == code
+      );
     });
     return summary.empty() ? Json() : Json::parse(summary);
   }

@@ -96,7 +96,7 @@ class Machines {
     printed_ = test::captured(1, [&] { code_ = run(own); });
     REQUIRE(code_ == 0);
     pack();
-    Words there = {"run", "--executor", "inline", "--parcels", away() / "parcels"};
+    Words there = {"all", "--no-tables", "--executor", "inline", "--parcels", away() / "parcels"};
     add(there, away(), "out");
     REQUIRE(run(there) == 0);
     for (const char* method : {"2dgs", "glint"})
@@ -279,7 +279,7 @@ TEST_CASE("a parcel that came damaged is named, the others are taken, and the ex
 TEST_CASE("a cell that failed sends a parcel, too") {
   const Machines& machines = Machines::get();
   const test::TempFolder folder;
-  Words words = {"run", "--executor", "inline", "--methods", "2dgs"};
+  Words words = {"all", "--no-tables", "--executor", "inline", "--methods", "2dgs"};
   for (const auto& [option, value] :
        {std::pair("--profile", machines.away() / "tiny.toml"),
         std::pair("--data", folder / "nowhere"),
