@@ -6,7 +6,7 @@
 #include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/machine.h"
-#include "reports/bench/memory_estimate.h"
+#include "reports/bench/cell_needs.h"
 #include "reports/bench/mesh_stage.h"
 #include "reports/bench/run_record.h"
 #include "reports/records/failure_kinds.h"
@@ -112,7 +112,7 @@ class CellRun {
   }
 
   void check_memory(const std::vector<Record>& records) {
-    const MemoryEstimate estimate = estimate_memory(
+    const Estimate estimate = estimate_memory(
         memory_user(spec_.method, spec_.config, profile_), size_of(scene_), records
     );
     record_.estimated_memory_mb = estimate.bytes / 1e6;

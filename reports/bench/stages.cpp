@@ -36,10 +36,7 @@ void write_metrics(
     const std::optional<TimingOptions>& timing
 ) {
   Json json = {{"scene", spec.scene}, {"method", spec.method}, {"seed", spec.options.seed}};
-  json["metrics"] = scores.means;
-  json["views"] = Json::array();
-  for (std::size_t i = 0; i < views.size(); ++i)
-    json["views"].push_back({{"name", views[i].name}, {"metrics", scores.views[i]}});
+  json.update(scores_json(scores, views));
   json["protocol"] = score_protocols();
   if (timing) json["protocol"]["fps"] = fps_protocol(*timing);
   if (!scores.meshes.empty()) json["meshes"] = scores.meshes;
@@ -108,6 +105,13 @@ RunScores score_run(
   scores.means = mean_scores(scores.views);
   if (score_meshes.here()) scores.means.merge(score_meshes(spec, scene, mesh, scores.meshes));
   return scores;
+}
+
+Json scores_json(const RunScores& scores, const std::vector<View>& views) {
+  Json json = {{"metrics", scores.means}, {"views", Json::array()}};
+  for (std::size_t i = 0; i < views.size(); ++i)
+    json["views"].push_back({{"name", views[i].name}, {"metrics", scores.views[i]}});
+  return json;
 }
 
 Scores eval_stage(const RunSpec& spec, const Scene& scene, const ScoreOptions& options) {

@@ -46,6 +46,9 @@ RunScores score_run(
     const std::function<void(std::string_view)>& scored
 );
 
+// As metrics.json has them: "metrics" (means) and "views" with their names.
+Json scores_json(const RunScores& scores, const std::vector<View>& views);
+
 struct ScoreOptions {
   MeshProtocol mesh;
   Scores cost;  // joins the means: "fps", "train-minutes", "peak-memory", "num-surfels", ...

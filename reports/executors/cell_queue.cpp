@@ -5,8 +5,8 @@
 
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
+#include "reports/bench/cell_needs.h"
 #include "reports/bench/cell_stages.h"
-#include "reports/bench/memory_estimate.h"
 #include "reports/records/run_folder.h"
 
 namespace glint {

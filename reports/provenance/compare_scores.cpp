@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 
 #include "metrics/metric.h"
 #include "reports/bench/mesh_eval.h"
@@ -12,7 +12,8 @@ namespace glint {
 namespace {
 
 // Of values that other kernels computed: networks on another CPU, anything on a GPU.
-constexpr double kRounding = 1e-6;  // relative
+constexpr double kRounding = 1e-6;          // relative
+constexpr std::string_view kOfView = ": ";  // between a view's name and an id
 
 // "psnr@glass" is psnr on a region; of meshes '@' belongs to the id.
 std::string metric_of(const std::string& id) {
@@ -40,106 +41,80 @@ bool cannot_recompute(const std::string& id) {
          (is_of_meshes(metric) && !score_meshes.here());
 }
 
-void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
-  to.insert(to.end(), from.begin(), from.end());
+// Value by "psnr", of views "0001: psnr"; null where it was not finite.
+using Values = std::map<std::string, Json>;
+
+void add_values(const Json& list, const std::string& prefix, Values& values) {
+  const Json metrics = list.value("metrics", Json::object());
+  for (const auto& [id, value] : metrics.items()) values[prefix + id] = value;
 }
 
-class ValueComparer {
- public:
-  explicit ValueComparer(const ScoreRules& rules) : rules_(rules) {}
+Values values_of(const Json& metrics_file) {
+  Values values;
+  add_values(metrics_file, "", values);
+  for (const Json& view : metrics_file.value("views", Json::array()))
+    if (view.is_object()) add_values(view, view.value("name", "") + std::string(kOfView), values);
+  return values;
+}
 
-  ScoreComparison compare(const Json& then, const std::map<std::string, double>& now) {
-    for (const auto& [id, value] : then.items()) {
-      const auto found = now.find(id);
-      if (found != now.end())
-        compare_value(id, value, found->second);
-      else if (cannot_recompute(id))
-        result_.not_recomputed.push_back(id);
-      else
-        result_.differing.push_back(id + " cannot be computed any more");
-    }
-    for (const auto& [id, value] : now)
-      if (!then.contains(id)) note_new(id, value);
+class ScoreComparer {
+ public:
+  ScoreComparer(const Json& then, const Json& now)
+      : then_(values_of(then)),
+        now_(values_of(parse_json(now.dump()))),  // as a file has what is not finite
+        protocols_(then.value("protocol", Json::object())) {}
+
+  ScoreComparison compare() {
+    for (const auto& [name, value] : then_)
+      if (const auto found = now_.find(name); found != now_.end())
+        compare_value(name, value, found->second);
+      else if (!cannot_recompute(id_of(name)))
+        result_.differing.push_back(name + " cannot be computed any more");
+      else if (is_mean(name))
+        result_.not_recomputed.push_back(name);
+    for (const auto& [name, value] : now_)
+      if (!then_.contains(name)) note_new(name, value);
     return std::move(result_);
   }
 
  private:
-  void compare_value(const std::string& id, const Json& then, double now) {
-    const bool both_infinite = then.is_null() && !std::isfinite(now);
-    if (both_infinite || (then.is_number() && then.get<double>() == now)) {
+  static bool is_mean(const std::string& name) { return name.find(kOfView) == std::string::npos; }
+  static std::string id_of(const std::string& name) {
+    return is_mean(name) ? name : name.substr(name.rfind(kOfView) + kOfView.size());
+  }
+
+  void compare_value(const std::string& name, const Json& then, const Json& now) {
+    if (then == now) {
       ++result_.equal;
       return;
     }
-    const double value = then.is_number() ? then.get<double>() : 0;
-    const double difference = std::abs(now - value);
-    const bool may_round = !rules_.same_device || has_files(metric_of(id));
-    if (then.is_number() && may_round && difference <= kRounding * std::abs(value))
-      result_.rounded.push_back(fmt::format("{} {:.1g}", id, difference));
+    const bool numbers = then.is_number() && now.is_number();
+    const double value = numbers ? then.get<double>() : 0,
+                 difference = numbers ? std::abs(now.get<double>() - value) : 1;
+    if (difference <= kRounding * std::abs(value))
+      result_.rounded.push_back(fmt::format("{} {:.1g}", name, difference));
     else
-      result_.differing.push_back(fmt::format("{} {}, now {}", id, then.dump(), Json(now).dump()));
+      result_.differing.push_back(fmt::format("{} {}, now {}", name, then.dump(), now.dump()));
   }
 
   // Of a metric that came later, or whose weights were missing then.
-  void note_new(const std::string& id, double value) {
-    const std::string metric = metric_of(id);
-    const bool known = rules_.protocols.contains(metric) && !has_files(metric);
-    if (known)
-      result_.differing.push_back(fmt::format("{} was not there, now {}", id, value));
-    else
-      result_.added.push_back(id);
+  void note_new(const std::string& name, const Json& value) {
+    const std::string metric = metric_of(id_of(name));
+    if (protocols_.contains(metric) && !has_files(metric))
+      result_.differing.push_back(fmt::format("{} was not there, now {}", name, value.dump()));
+    else if (is_mean(name))
+      result_.added.push_back(name);
   }
 
-  const ScoreRules& rules_;
+  Values then_, now_;
+  Json protocols_;
   ScoreComparison result_;
 };
 
-Json values_of_view(const Json& metrics_file, const std::string& view) {
-  for (const Json& entry : metrics_file.value("views", Json::array()))
-    if (entry.is_object() && entry.value("name", "") == view)
-      return entry.value("metrics", Json::object());
-  return {};
-}
-
 }  // namespace
 
-void ScoreComparison::add(const ScoreComparison& other) {
-  equal += other.equal;
-  append(rounded, other.rounded);
-  append(differing, other.differing);
-  append(not_recomputed, other.not_recomputed);
-  append(added, other.added);
-}
-
-ScoreComparison compare_values(
-    const Json& then, const std::map<std::string, double>& now, const ScoreRules& rules
-) {
-  return ValueComparer(rules).compare(then, now);
-}
-
-ScoreComparison compare_scores(
-    const Json& metrics_file,
-    const RunScores& now,
-    const std::vector<View>& views,
-    const ScoreRules& rules
-) {
-  ScoreComparison all =
-      compare_values(metrics_file.value("metrics", Json::object()), now.means, rules);
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const Json then = values_of_view(metrics_file, views[i].name);
-    if (then.is_object()) {
-      ScoreComparison view = compare_values(then, now.views[i], rules);
-      for (std::string& line : view.differing) line = views[i].name + ": " + line;
-      view.not_recomputed.clear();  // the means say so
-      view.added.clear();
-      all.add(view);
-    } else {
-      all.differing.push_back(views[i].name + " has no values");
-    }
-  }
-  const std::size_t listed = metrics_file.value("views", Json::array()).size();
-  if (listed > views.size())
-    all.differing.push_back(fmt::format("{} views, the data have {}", listed, views.size()));
-  return all;
+ScoreComparison compare_scores(const Json& then, const Json& now) {
+  return ScoreComparer(then, now).compare();
 }
 
 }  // namespace glint

@@ -10,7 +10,7 @@
 #include "glint/core/machine.h"
 #include "glint/method.h"
 #include "glint/train/perceptual.h"
-#include "reports/provenance/profile_needs.h"
+#include "reports/bench/cell_needs.h"
 #include "reports/records/manifest.h"
 #include "reports/records/stage_files.h"
 

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "datasets/dataset.h"
-#include "glint/core/device.h"
 #include "glint/core/interrupt.h"
 #include "reports/bench/run_stage.h"
 #include "reports/bench/stage_documents.h"
@@ -339,11 +338,7 @@ class RunExamination {
         options_in<MeshProtocol>(scored->document, "mesh_metrics"),
         [](std::string_view) { throw_if_interrupted(); }
     );
-    const Json file = metrics_file();
-    const ScoreRules rules{
-        scored->document.at("device") == "cpu" && !on_gpu(),
-        file.value("protocol", Json::object())};
-    add_scores(compare_scores(file, now, scene_->test, rules));
+    add_scores(compare_scores(metrics_file(), scores_json(now, scene_->test)));
   }
 
   void add_scores(const ScoreComparison& found) {

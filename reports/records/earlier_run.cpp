@@ -205,21 +205,7 @@ bool is_our_run(const fs::path& folder) {
   const fs::path path = folder / "config.json";
   if (!fs::is_regular_file(path, code)) return false;
   const Json json = parse_json(read_file(path));
-  if (!json.is_object()) return false;
-  if (json.value(kWrittenByField, Json()) == kWrittenBy) return true;
-  constexpr std::array kFields = {
-      "method",
-      "overrides",
-      "iterations",
-      "seed",
-      "dataset",
-      "scene",
-      "max_pixels",
-      "dataset_hash",
-      "config"};
-  return std::all_of(kFields.begin(), kFields.end(), [&](const char* field) {
-    return json.contains(field);
-  });
+  return json.is_object() && json.value(kWrittenByField, Json()) == kWrittenBy;
 }
 
 std::vector<fs::path> runs_below(const fs::path& folder) {

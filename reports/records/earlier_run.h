@@ -16,8 +16,7 @@ inline constexpr const char* kWrittenBy = "glint-bench";
 // In a run folder: the finished run whose place a new one is taking.
 inline constexpr const char* kPreviousRun = "previous_run";
 
-// Does config.json say that the folder is a run of ours? Those of earlier versions are known by
-// their fields.
+// Does config.json say that the folder is a run of ours?
 bool is_our_run(const fs::path& folder);
 
 // Runs of ours in a folder and in its folders, sorted; not what lies in the folder of a run.

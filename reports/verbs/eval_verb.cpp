@@ -26,13 +26,14 @@ void add_earlier_cost(const fs::path& metrics_file, ScoreOptions& options) {
         fmt::format("{}: damaged; fps and surfels are not known any more", metrics_file.string())
     );
   const Json means = json.value("metrics", Json()),
-             timing = json.value("/protocol/fps"_json_pointer, Json());
+             timing = json.value(Json::json_pointer("/protocol/fps"), Json());
   for (const char* id : {"fps", "num-surfels"})
-    if (means.is_object() && means.value(id, Json()).is_number()) options.cost[id] = means[id];
+    if (means.is_object() && means.value(id, Json()).is_number())
+      options.cost[id] = means[id].get<double>();
   if (!timing.is_object()) return;
   const double frames = number_or(timing, "frames", -1), warmup = number_or(timing, "warmup", -1);
   if (frames >= 0 && warmup >= 0 && frames + warmup < 1e9)
-    options.timing = {static_cast<int>(frames), static_cast<int>(warmup)};
+    options.timing = TimingOptions{static_cast<int>(frames), static_cast<int>(warmup)};
 }
 
 // Of the trained model, where nobody has; not of another program's renders.

@@ -7,7 +7,7 @@
 namespace glint {
 
 // Of each cell its stages and why they are not done; `tasks`: the names of those alone that are not
-// done. Errors: as planned_cells().
+// done. Errors: as make_plan, identify_source.
 int print_status(const CommonOptions& common, bool tasks);
 
 }  // namespace glint

@@ -5,9 +5,9 @@
 #include <catch2/catch.hpp>
 
 #include "glint/train/checkpoint.h"
+#include "reports/bench/cell_needs.h"
 #include "reports/bench/cell_stages.h"
 #include "reports/bench/device_of_cells.h"
-#include "reports/bench/memory_estimate.h"
 #include "reports/records/run_folder.h"
 #include "tests/reports/fake_method.h"
 #include "tests/support/temp_folder.h"

@@ -2,8 +2,8 @@
 // What `doctor` finds before a long run: folders, clock, data, disk and memory of a profile.
 #include <catch2/catch.hpp>
 
+#include "reports/bench/cell_needs.h"
 #include "reports/provenance/examine_machine.h"
-#include "reports/provenance/profile_needs.h"
 #include "reports/records/run_folder.h"
 #include "reports/records/stage_files.h"
 #include "tests/reports/run_words.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reports/bench/memory_estimate.h"
+#include "reports/bench/cell_needs.h"
 
 #include <catch2/catch.hpp>
 
@@ -30,7 +30,7 @@ TEST_CASE("a room that is not made yet counts as it will be loaded") {
 
 TEST_CASE("what cells of a method took goes before what images and surfels say") {
   const SceneSize scene = size_of(fake_scene("room_1"));
-  const MemoryEstimate unknown = estimate_memory({"fake", 1000, 0}, scene, {});
+  const Estimate unknown = estimate_memory({"fake", 1000, 0}, scene, {});
   CHECK(unknown.from == "its images and surfels");
   Record record;
   record.cell = {"room_9", "fake", 3};
@@ -60,15 +60,15 @@ TEST_CASE("more surfels and larger images take more, up to the limit of the meth
 
 TEST_CASE("the samples of meshes count where they take more than the training") {
   const SceneSize scene = size_of(fake_scene("room_1"));
-  const MemoryEstimate sampled = estimate_memory({"fake", 1000, 1000000}, scene, {});
+  const Estimate sampled = estimate_memory({"fake", 1000, 1000000}, scene, {});
   CHECK(sampled.from == "its images and the samples of meshes");
   CHECK(sampled.bytes > estimate_memory({"fake", 1000, 0}, scene, {}).bytes);
 }
 
 TEST_CASE("the fusion of meshes counts where it takes most: with the square of the voxels") {
   const SceneSize scene = size_of(fake_scene("room_1"));
-  const MemoryEstimate coarse = estimate_memory({"fake", 1000, 0, 0.02}, scene, {});
-  const MemoryEstimate fine = estimate_memory({"fake", 1000, 0, 0.01}, scene, {});
+  const Estimate coarse = estimate_memory({"fake", 1000, 0, 0.02}, scene, {});
+  const Estimate fine = estimate_memory({"fake", 1000, 0, 0.01}, scene, {});
   CHECK(coarse.from == "its images and the fusion of meshes");
   CHECK(coarse.bytes == Approx(750e6).epsilon(0.1));  // 720 to 814 MB were taken with 128x72 pixels
   CHECK(fine.bytes > 3.5 * coarse.bytes);

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-// What a cell will take, so that one that does not fit says so before its training and not hours
-// into it.
+// How much memory and disk cells take, by what finished ones took, else by sizes of pictures: one
+// that does not fit says so before its training and not hours into it. Estimates, and named so.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "glint/scene/scene.h"
-#include "reports/records/profile.h"
-#include "reports/records/records.h"
+#include "reports/bench/plan.h"
 
 namespace glint {
 
-struct MemoryEstimate {
+struct Estimate {
   double bytes = 0;
-  std::string from;  // what it goes by
+  std::string from;  // what it goes by: "3 finished runs", "sizes of pictures"
 };
 
 struct MemoryUser {
@@ -40,7 +40,7 @@ SceneSize size_of(const SceneSource& room);
 // By what cells of this method took at this size of images, where `records` has some; else by the
 // images of the scene, and the largest of: the surfels that it begins with, or will have; the
 // fusion of its meshes in a room; the scores of the meshes.
-MemoryEstimate estimate_memory(
+Estimate estimate_memory(
     const MemoryUser& user, const SceneSize& scene, const std::vector<Record>& records
 );
 
@@ -56,6 +56,21 @@ double bytes_taken(const Record& record);
 
 // Errors: OutOfMemory when more is needed than `available` bytes; the message says how much and
 // why.
-void check_fits(const MemoryEstimate& estimate, std::uint64_t available);
+void check_fits(const Estimate& estimate, std::uint64_t available);
+
+// Of the cells whose runs are not finished. `folder`: the profile's. Nothing: their data are
+// folders of the user's, whose sizes are not known, and nothing has run.
+std::optional<Estimate> disk_of_runs(
+    const std::vector<PlanCell>& plan, const Profile& profile, const fs::path& folder
+);
+
+// Of rooms that have to be made.
+double disk_of_room(const SceneSource& source);
+
+// Of the largest of the planned cells, by what such cells took before, else by images and surfels
+// of rooms. Nothing: their data are folders of the user's, and none has run.
+std::optional<Estimate> memory_of_cells(
+    const std::vector<PlanCell>& plan, const Profile& profile, const std::vector<Record>& records
+);
 
 }  // namespace glint
