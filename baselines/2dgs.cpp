@@ -11,16 +11,13 @@
 // unbounded scenes; "2dgs/bounded" the setting that paper and code name for bounded ones.
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
-#include "glint/method.h"
 #include "glint/render/map_kernels.h"
 #include "glint/render/map_ops.h"
-#include "glint/scene/ply.h"
+#include "glint/surfel_method.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/initial_points.h"
 #include "glint/train/photometric.h"
-#include "glint/train/trainable_set.h"
 #include "glint/train/trainer.h"
-#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -69,10 +66,10 @@ struct TwoDgsConfig {
   }
 };
 
-class TwoDgs final : public Method {
+class TwoDgs final : public MethodOf<TwoDgsConfig> {
  public:
-  explicit TwoDgs(const Json& overrides) {
-    config_from_json(config_, overrides, "2dgs");
+  explicit TwoDgs(TwoDgsConfig config) : MethodOf(std::move(config)) {
+    sets_ = {{"interface", &set_}};
     GLINT_CHECK(
         config_.depth == "expected" || config_.depth == "median",
         kUsage,
@@ -129,28 +126,19 @@ class TwoDgs final : public Method {
 
   void draw(const Camera& camera) override { set_.forward(camera, sh_degree_); }
 
-  void save(const std::string& folder) const override {
-    write_surfel_ply(fs::path(folder) / "interface.ply", set_.cloud());
-  }
   void load(const std::string& folder) override {
-    set_.load(read_surfel_ply(fs::path(folder) / "interface.ply"));
+    MethodOf::load(folder);
     sh_degree_ = 3;
   }
-  Json config() const override { return config_to_json(config_); }
-  std::vector<ConfigField> fields() const override { return config_fields(config_); }
   std::vector<std::string> inputs() const override {
     std::vector<std::string> inputs;
     config_.geometry.add_inputs(inputs);
     return inputs;
   }
-  void check_finite() const override { glint::check_finite(set_.cloud(), "interface"); }
   bool visit_state(TrainingState& state) override {
-    state("set", set_);
     state("views", views_);
-    return true;
+    return MethodOf::visit_state(state);
   }
-  std::size_t num_surfels() const override { return set_.cloud().size(); }
-  std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
   // Of the last forward call.
@@ -176,10 +164,9 @@ class TwoDgs final : public Method {
     gradient_.distortion.array().fill(weight);
   }
 
-  TwoDgsConfig config_, windows_;
+  TwoDgsConfig windows_;
   LossDepth depth_kind_ = LossDepth::kExpected;
   const Scene* scene_ = nullptr;
-  std::vector<std::string> warnings_;
   TrainableSet set_;
   ViewSampler views_;
   int sh_degree_ = 3;
@@ -190,46 +177,32 @@ class TwoDgs final : public Method {
   Image depth_;
 };
 
-MethodSpec two_dgs_spec() {
-  MethodSpec spec;
-  spec.id = "2dgs";
-  spec.title = "2DGS";
-  spec.citation = "huang20242d";
-  spec.paper_row = "2DGS";
-  spec.description = "2D Gaussian Splatting: one set of surfels, rasterised";
-  spec.create = [](const Json& config) { return std::make_unique<TwoDgs>(config); };
-  return spec;
-}
-
 // The paper's setting for bounded scenes: median depth (depth_ratio 1), so that normals are
 // consistent with the surface itself, and distortion of 1000, which its code uses for DTU. Rooms
 // are as bounded, and their scale fits: with cameras a few units from the surface, 0.2 / z^2 is
 // about what it is there. It is harsh on panes, where two layers are right (docs/GLINT_NOTES.md).
-MethodSpec two_dgs_bounded_spec() {
-  MethodSpec spec = two_dgs_spec();
-  spec.id = "2dgs/bounded";
-  spec.title = "2DGS (bounded)";
-  spec.paper_row = "";
-  spec.description = "2DGS in its setting for bounded scenes: depth distortion, median depth";
-  spec.overrides = {{"lambda_distortion", 1000.0}, {"depth", "median"}};
-  return spec;
+void set_bounded(TwoDgsConfig& config) {
+  config.lambda_distortion = 1000;
+  config.depth = "median";
 }
 
-// Control: priors alone may explain a gain. The losses, weights and gate of GLINT's priors.
-MethodSpec two_dgs_prior_spec() {
-  MethodSpec spec = two_dgs_spec();
-  spec.id = "2dgs/prior";
-  spec.title = "2DGS + priors";
-  spec.paper_row = "";
-  spec.description = "2DGS with the depth and normal priors of GLINT";
-  spec.overrides = prior_control(30000);
-  return spec;
-}
+[[maybe_unused]] const bool registered = register_methods<TwoDgs>(
+    __FILE__,
+    "huang20242d",
+    {{"2dgs", "2DGS", "2DGS", "2D Gaussian Splatting: one set of surfels, rasterised"},
+     {"2dgs/bounded",
+      "2DGS (bounded)",
+      "",
+      "2DGS in its setting for bounded scenes: depth distortion, median depth",
+      set_bounded},
+     // Control: priors alone may explain a gain. The losses, weights and gate of GLINT's priors.
+     {"2dgs/prior",
+      "2DGS + priors",
+      "",
+      "2DGS with the depth and normal priors of GLINT",
+      [](TwoDgsConfig& config) { config.geometry.use_priors(30000); }}}
+);
 
 }  // namespace
-
-GLINT_REGISTER(MethodSpec, two_dgs_spec())
-GLINT_REGISTER(MethodSpec, two_dgs_bounded_spec())
-GLINT_REGISTER(MethodSpec, two_dgs_prior_spec())
 
 }  // namespace glint

@@ -20,10 +20,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "glint/method.h"
 #include "glint/render/glass_transport.h"
 #include "glint/render/map_ops.h"
-#include "glint/scene/ply.h"
+#include "glint/surfel_method.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/initial_points.h"
 #include "glint/train/mirrored_layer.h"
@@ -31,7 +30,6 @@
 #include "glint/train/photometric.h"
 #include "glint/train/reflection_bootstrap.h"
 #include "glint/train/trainer.h"
-#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -88,7 +86,15 @@ struct EnvGsConfig {
     grid.visit(v);
     mirror.visit(v);
     geometry.visit(v);
+    v("near_consistency", geometry.near_consistency, "normal consistency weighs near pixels more");
     densify.visit(v);
+    v("densify_slow_interval",
+      densify.slow_interval,
+      "steps between densifications of the base in the middle of a run; 0: as ever");
+    v("split_large", densify.split_large, "large surfels are split in five, least seen ones pruned"
+    );
+    v("cap_by_visibility", densify.cap_by_visibility, "above 0.9 x max_surfels those least seen go"
+    );
     rates.visit(v);
     v("rate_specular", rate_specular, "learning rate of specularity");
     v("reset_specular", reset_specular, "opacity resets lower s to its initial value, too");
@@ -147,9 +153,11 @@ struct EnvGsConfig {
   }
 };
 
-class EnvGs final : public Method {
+class EnvGs final : public MethodOf<EnvGsConfig> {
  public:
-  explicit EnvGs(const Json& overrides) { config_from_json(config_, overrides, "envgs"); }
+  explicit EnvGs(EnvGsConfig config) : MethodOf(std::move(config)) {
+    sets_ = {{"interface", &base_}, {"reflection", &environment_}};
+  }
 
   void initialize(const Scene& scene, const RunOptions& options) override {
     scene_ = &scene;
@@ -222,45 +230,23 @@ class EnvGs final : public Method {
 
   void draw(const Camera& camera) override { forward(camera); }
 
-  void save(const std::string& folder) const override {
-    write_surfel_ply(fs::path(folder) / "interface.ply", base_.cloud());
-    write_surfel_ply(fs::path(folder) / "reflection.ply", environment_.cloud());
-  }
   void load(const std::string& folder) override {
-    base_.load(read_surfel_ply(fs::path(folder) / "interface.ply"));
-    environment_.load(read_surfel_ply(fs::path(folder) / "reflection.ply"));
-    GLINT_CHECK(
-        base_.cloud().extra_names == std::vector<std::string>({kSpecular}),
-        kBadPrediction,
-        "{}/interface.ply: expected the extra field specular; was it trained by another method?",
-        folder
-    );
+    MethodOf::load(folder);
+    check_channels(folder, {kSpecular});
     with_environment_ = true;
     base_degree_ = environment_degree_ = 3;
   }
-  Json config() const override { return config_to_json(config_); }
-  std::vector<ConfigField> fields() const override { return config_fields(config_); }
   std::vector<std::string> inputs() const override {
     std::vector<std::string> inputs;
     config_.geometry.add_inputs(inputs);
     config_.perceptual.add_inputs(inputs);
     return inputs;
   }
-  void check_finite() const override {
-    glint::check_finite(base_.cloud(), "interface");
-    glint::check_finite(environment_.cloud(), "environment");
-  }
   bool visit_state(TrainingState& state) override {
-    state("base", base_);
-    state("environment", environment_);
     state("views", views_);
     state("bootstrap", bootstrap_);
-    return true;
+    return MethodOf::visit_state(state);
   }
-  std::size_t num_surfels() const override {
-    return base_.cloud().size() + environment_.cloud().size();
-  }
-  std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
   TrainableSet new_set(
@@ -299,9 +285,8 @@ class EnvGs final : public Method {
     base_.backward(dL_dbase_);
   }
 
-  EnvGsConfig config_, windows_;
+  EnvGsConfig windows_;
   const Scene* scene_ = nullptr;
-  std::vector<std::string> warnings_;
   ViewSampler views_;
   TrainableSet base_, environment_;
   ReflectionBootstrap bootstrap_;
@@ -318,57 +303,37 @@ class EnvGs final : public Method {
   MirroredLayer mirrored_;
 };
 
-MethodSpec envgs_spec() {
-  MethodSpec spec;
-  spec.id = "envgs";
-  spec.title = "EnvGS";
-  spec.citation = "xie2025envgs";
-  spec.paper_row = "EnvGS";
-  spec.description = "a base set with specularity and an environment set, traced";
-  spec.create = [](const Json& config) { return std::make_unique<EnvGs>(config); };
-  return spec;
-}
-
 // As the other methods' density control has it, to see what the rest does.
-MethodSpec envgs_simple_spec() {
-  MethodSpec spec = envgs_spec();
-  spec.id = "envgs/simple";
-  spec.title = "EnvGS (simplified)";
-  spec.paper_row = "";
-  spec.description = "EnvGS without what helps its environment along, density control as in 2DGS";
-  spec.overrides = {
-      {"color_sabotage", false},
-      {"normal_propagation", false},
-      {"reset_specular", false},
-      {"reset_environment", false},
-      {"split_large", false},
-      {"cap_by_visibility", false},
-      {"max_surfels", 1000000},
-      {"environment_max_surfels", 1000000},
-      {"densify_slow_interval", 0},
-      {"environment_clock", 3000},
-      {"environment_densify_from", 3500},
-      {"environment_densify_until", 24000},
-      {"environment_reset_interval", 3000},
-      {"near_consistency", false}};
-  return spec;
+void simplify(EnvGsConfig& config) {
+  config.bootstrap.color_sabotage = config.bootstrap.normal_propagation = false;
+  config.reset_specular = config.reset_environment = false;
+  config.densify.split_large = config.densify.cap_by_visibility = false;
+  config.densify.max_surfels = config.environment_max_surfels = 1000000;
+  config.densify.slow_interval = 0;
+  config.environment_clock = 3000;
+  config.environment_densify_from = 3500;
+  config.environment_densify_until = 24000;
+  config.environment_reset_interval = 3000;
+  config.geometry.near_consistency = false;
 }
 
-// Control: priors alone may explain a gain. The losses, weights and gate of GLINT's priors.
-MethodSpec envgs_prior_spec() {
-  MethodSpec spec = envgs_spec();
-  spec.id = "envgs/prior";
-  spec.title = "EnvGS + priors";
-  spec.paper_row = "";
-  spec.description = "EnvGS with the depth and normal priors of GLINT";
-  spec.overrides = prior_control(kPublishedIterations);
-  return spec;
-}
+[[maybe_unused]] const bool registered = register_methods<EnvGs>(
+    __FILE__,
+    "xie2025envgs",
+    {{"envgs", "EnvGS", "EnvGS", "a base set with specularity and an environment set, traced"},
+     {"envgs/simple",
+      "EnvGS (simplified)",
+      "",
+      "EnvGS without what helps its environment along, density control as in 2DGS",
+      simplify},
+     // Control: priors alone may explain a gain. The losses, weights and gate of GLINT's priors.
+     {"envgs/prior",
+      "EnvGS + priors",
+      "",
+      "EnvGS with the depth and normal priors of GLINT",
+      [](EnvGsConfig& config) { config.geometry.use_priors(kPublishedIterations); }}}
+);
 
 }  // namespace
-
-GLINT_REGISTER(MethodSpec, envgs_spec())
-GLINT_REGISTER(MethodSpec, envgs_simple_spec())
-GLINT_REGISTER(MethodSpec, envgs_prior_spec())
 
 }  // namespace glint

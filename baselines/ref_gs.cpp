@@ -11,7 +11,7 @@
 // weight of the harmonics' picture and its loss are zero, and the picture is the shaded colour over
 // a background, random in training and black in renders, with a gradient for alpha: the recipe of
 // its synthetic scenes. Times an alpha that is held constant, as the blended weight of the inside
-// is in the real ones (random_background=false), our one run ended without a surfel.
+// is in the real ones, our one run ended without a surfel.
 //
 // Deviations: the map has 64 rows and the network 64 hidden values, for CPUs, which notes() say
 // (map_height=512 hidden=256 are the published ones); features start small and random, not at zero,
@@ -24,16 +24,14 @@
 
 #include "baselines/ref_gs_kernels.h"
 #include "glint/core/rng.h"
-#include "glint/method.h"
 #include "glint/render/map_ops.h"
 #include "glint/scene/ply.h"
+#include "glint/surfel_method.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/initial_points.h"
 #include "glint/train/photometric.h"
 #include "glint/train/specular_field.h"
-#include "glint/train/trainable_set.h"
 #include "glint/train/trainer.h"
-#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -46,7 +44,6 @@ struct RefGsConfig {
   float lambda_ssim = 0.2f;
   float lambda_entropy = 0.001f;
   int warm_up = 700, sh_interval = 1000;  // published iterations
-  bool random_background = true;
   int random_points = 30000;
   float initial_scale = 0.31622777f;   // sqrt(0.1), of the distance to neighbours
   float initial_albedo = 0.02706706f;  // e^-2 / 5, real scenes
@@ -70,10 +67,6 @@ struct RefGsConfig {
     v("lambda_entropy", lambda_entropy, "weight of the entropy of the opacities in view");
     v("warm_up", warm_up, "iterations with spherical harmonics alone (of 31,000)");
     v("sh_interval", sh_interval, "iterations per SH degree (of 31,000)");
-    v("random_background",
-      random_background,
-      "what is shaded trains over random colours, with a gradient for alpha; else on black, without"
-    );
     v("random_points", random_points, "initial surfels of scenes without points");
     v("initial_scale", initial_scale, "of initial surfels, of the distance to neighbours");
     v("initial_albedo", initial_albedo, "albedo of the initial surfels, linear");
@@ -110,10 +103,10 @@ struct RefGsConfig {
 constexpr int kAlbedo = 3;                           // of the rasterised features
 constexpr SpecularChannels kSpecularChannels{6, 7};  // roughness, feature
 
-class RefGs final : public Method {
+class RefGs final : public MethodOf<RefGsConfig> {
  public:
-  explicit RefGs(const Json& overrides) {
-    config_from_json(config_, overrides, "ref-gs");
+  explicit RefGs(RefGsConfig config) : MethodOf(std::move(config)) {
+    sets_ = {{"interface", &set_}};
     // Loaded ones are of the config's sizes, too.
     field_ = SpecularField(config_.field, std::vector<float>(3, std::log(0.25f)), 0);
   }
@@ -141,9 +134,7 @@ class RefGs final : public Method {
         scene_->train[view_rng_.below(static_cast<std::uint32_t>(scene_->train.size()))];
     deferred_ = iteration >= windows_.warm_up;
     sh_degree_ = std::min(3, iteration / windows_.sh_interval);
-    background_ = {};
-    if (config_.random_background)
-      for (int c = 0; c < 3; ++c) background_[c] = background_rng_.uniform();
+    for (int c = 0; c < 3; ++c) background_[c] = background_rng_.uniform();
     const Image& image = forward(view.camera);
     StepStats stats;
     stats.iteration = iteration;
@@ -186,7 +177,7 @@ class RefGs final : public Method {
   }
 
   void save(const std::string& folder) const override {
-    write_surfel_ply(fs::path(folder) / "interface.ply", set_.cloud());
+    MethodOf::save(folder);
     field_.save(folder, deferred_ ? 1 : 0);
   }
   void load(const std::string& folder) override {
@@ -197,26 +188,21 @@ class RefGs final : public Method {
     deferred_ = field_.load(folder, 2) == 1;
     sh_degree_ = 3;
   }
-  Json config() const override { return config_to_json(config_); }
-  std::vector<ConfigField> fields() const override { return config_fields(config_); }
   std::vector<std::string> inputs() const override {
     std::vector<std::string> inputs;
     config_.geometry.add_inputs(inputs);
     return inputs;
   }
   void check_finite() const override {
-    glint::check_finite(set_.cloud(), "interface");
+    MethodOf::check_finite();
     field_.check_finite();
   }
   bool visit_state(TrainingState& state) override {
-    state("set", set_);
     state("field", field_);
     state("view_rng", view_rng_);
     state("background_rng", background_rng_);
-    return true;
+    return MethodOf::visit_state(state);
   }
-  std::size_t num_surfels() const override { return set_.cloud().size(); }
-  std::vector<std::string> warnings() const override { return warnings_; }
   std::vector<std::string> notes() const override { return config_.field.notes(); }
 
  private:
@@ -247,8 +233,6 @@ class RefGs final : public Method {
       return set_.backward(gradient_);
     }
     dL_doutputs_.resize(network_outputs_->size());
-    float* dL_dalpha = nullptr;
-    if (config_.random_background) dL_dalpha = gradient_.alpha.on_device();
     run_kernel(
         image_.num_pixels(),
         kGrain,
@@ -256,7 +240,7 @@ class RefGs final : public Method {
             pixels(),
             dL_dimage_.on_device(),
             gradient_.features.on_device(),
-            dL_dalpha,
+            gradient_.alpha.on_device(),
             dL_doutputs_.on_device()}
     );
     field_.backward(dL_doutputs_, gradient_);
@@ -269,9 +253,8 @@ class RefGs final : public Method {
     stats.terms["entropy"] = static_cast<double>(weight) * entropy;
   }
 
-  RefGsConfig config_, windows_;
+  RefGsConfig windows_;
   const Scene* scene_ = nullptr;
-  std::vector<std::string> warnings_;
   TrainableSet set_;
   SpecularField field_;
   Rng view_rng_{0}, background_rng_{0};
@@ -288,19 +271,12 @@ class RefGs final : public Method {
   RasterOutputGradient gradient_;
 };
 
-MethodSpec ref_gs_spec() {
-  MethodSpec spec;
-  spec.id = "ref-gs";
-  spec.title = "Ref-GS";
-  spec.citation = "zhang2025refgs";
-  spec.paper_row = "Ref-GS";
-  spec.description = "deferred shading by a learned map of directions";
-  spec.create = [](const Json& config) { return std::make_unique<RefGs>(config); };
-  return spec;
-}
+[[maybe_unused]] const bool registered = register_methods<RefGs>(
+    __FILE__,
+    "zhang2025refgs",
+    {{"ref-gs", "Ref-GS", "Ref-GS", "deferred shading by a learned map of directions"}}
+);
 
 }  // namespace
-
-GLINT_REGISTER(MethodSpec, ref_gs_spec())
 
 }  // namespace glint

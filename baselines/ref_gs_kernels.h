@@ -71,7 +71,7 @@ struct ShadeDeferred {
 struct ShadeDeferredVjp {
   DeferredPixels pixels;
   const float* dL_dimage;
-  float *dL_dfeatures, *dL_dalpha;  // added to; dL_dalpha null: alpha is held constant
+  float *dL_dfeatures, *dL_dalpha;  // added to
   float* dL_doutputs;
 
   GLINT_HD void operator()(std::size_t i) const {
@@ -91,7 +91,7 @@ struct ShadeDeferredVjp {
       );
     else
       dL_da = -dot(dL_dcolor, pixels.background);
-    if (dL_dalpha != nullptr) dL_dalpha[i] += dL_da;
+    dL_dalpha[i] += dL_da;
     float* g = dL_dfeatures + pixels.albedo_at(i);
     put3(g, 0, get3(g, 0) + dL_dalbedo);
     put3(dL_doutputs, i, dL_dx);

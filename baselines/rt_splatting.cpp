@@ -30,9 +30,9 @@
 
 #include "baselines/rt_splatting_kernels.h"
 #include "glint/core/rng.h"
-#include "glint/method.h"
 #include "glint/render/map_ops.h"
 #include "glint/scene/ply.h"
+#include "glint/surfel_method.h"
 #include "glint/train/check_fits.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/glass_masks.h"
@@ -40,9 +40,7 @@
 #include "glint/train/perceptual.h"
 #include "glint/train/photometric.h"
 #include "glint/train/specular_field.h"
-#include "glint/train/trainable_set.h"
 #include "glint/train/trainer.h"
-#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -131,10 +129,10 @@ struct RtSplattingConfig {
   }
 };
 
-class RtSplatting final : public Method {
+class RtSplatting final : public MethodOf<RtSplattingConfig> {
  public:
-  explicit RtSplatting(const Json& overrides) {
-    config_from_json(config_, overrides, "rt-splatting");
+  explicit RtSplatting(RtSplattingConfig config) : MethodOf(std::move(config)) {
+    sets_ = {{"interface", &set_}};
     field_ = config_.new_field(0);
     volume_.activated.options = {.opacity_factor = 0, .color_only = true};
   }
@@ -217,7 +215,7 @@ class RtSplatting final : public Method {
   void draw(const Camera& camera) override { forward(camera); }
 
   void save(const std::string& folder) const override {
-    write_surfel_ply(fs::path(folder) / "interface.ply", set_.cloud());
+    MethodOf::save(folder);
     field_.save(folder, static_cast<int>(stage_));
   }
   void load(const std::string& folder) override {
@@ -228,8 +226,6 @@ class RtSplatting final : public Method {
     stage_ = static_cast<RtStage>(field_.load(folder, kRtStages));
     sh_degree_ = 3;
   }
-  Json config() const override { return config_to_json(config_); }
-  std::vector<ConfigField> fields() const override { return config_fields(config_); }
   std::vector<std::string> inputs() const override {
     std::vector<std::string> inputs;
     config_.geometry.add_inputs(inputs);
@@ -238,17 +234,14 @@ class RtSplatting final : public Method {
     return inputs;
   }
   void check_finite() const override {
-    glint::check_finite(set_.cloud(), "interface");
+    MethodOf::check_finite();
     field_.check_finite();
   }
   bool visit_state(TrainingState& state) override {
-    state("set", set_);
     state("field", field_);
     state("view_rng", view_rng_);
-    return true;
+    return MethodOf::visit_state(state);
   }
-  std::size_t num_surfels() const override { return set_.cloud().size(); }
-  std::vector<std::string> warnings() const override { return warnings_; }
   std::vector<std::string> notes() const override { return notes_; }
 
  private:
@@ -367,9 +360,9 @@ class RtSplatting final : public Method {
     );
   }
 
-  RtSplattingConfig config_, windows_;
+  RtSplattingConfig windows_;
   const Scene* scene_ = nullptr;
-  std::vector<std::string> warnings_, notes_;
+  std::vector<std::string> notes_;
   Rng view_rng_{0};
   TrainableSet set_;
   RasterPass volume_, surface_;
@@ -389,20 +382,16 @@ class RtSplatting final : public Method {
   RasterOutputGradient dL_dvolume_, dL_dsurface_;
 };
 
-MethodSpec rt_splatting_spec() {
-  MethodSpec spec;
-  spec.id = "rt-splatting";
-  spec.title = "RT-Splatting";
-  spec.citation = "rtsplatting2026";
-  spec.description =
+[[maybe_unused]] const bool registered = register_methods<RtSplatting>(
+    __FILE__,
+    "rtsplatting2026",
+    {{"rt-splatting",
+      "RT-Splatting",
+      "",
       "one set rasterised as a volume and as a surface, with reflections from a map of directions; "
-      "not in the paper's tables";
-  spec.create = [](const Json& config) { return std::make_unique<RtSplatting>(config); };
-  return spec;
-}
+      "not in the paper's tables"}}
+);
 
 }  // namespace
-
-GLINT_REGISTER(MethodSpec, rt_splatting_spec())
 
 }  // namespace glint

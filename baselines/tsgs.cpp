@@ -15,9 +15,9 @@
 // only glass is masked, not the background, which rooms have not: no loss on alpha; features of
 // lobes are made when lobes start instead of at the start of the run, which is the same, since
 // surfels stay the same ones from half of the run on and features are zero until then; their rates
-// follow the rule of shorter runs. `lobes` is "real", its authors' network for rooms (is_real with
-// is_indoor). Left out: the transparency tau of each splat, which has its own loss and changes no
-// output.
+// follow the rule of shorter runs. Lobes are its authors' network for rooms (is_real with
+// is_indoor), not the larger one for objects. Left out: the transparency tau of each splat, which
+// has its own loss and changes no output.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,15 +25,14 @@
 
 #include "baselines/tsgs_kernels.h"
 #include "glint/core/kernel.h"
-#include "glint/method.h"
 #include "glint/render/map_ops.h"
+#include "glint/surfel_method.h"
 #include "glint/train/check_fits.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/glass_masks.h"
 #include "glint/train/lobe_appearance.h"
 #include "glint/train/planar_model.h"
 #include "glint/train/share_kernels.h"
-#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -44,9 +43,7 @@ constexpr const char* kSceneFile = "scene_unit.json";
 constexpr const char* kBaseColor = "basecolor";
 constexpr const char* kLobesFile = "lobes.safetensors";
 constexpr const char* kNoLobes = "off";
-bool is_kind_of_lobes(std::string_view kind) {
-  return kind == "full" || kind == "real" || kind == kNoLobes;
-}
+bool is_kind_of_lobes(std::string_view kind) { return kind == "real" || kind == kNoLobes; }
 
 struct TsgsConfig {
   PlanarConfig planar;
@@ -59,7 +56,6 @@ struct TsgsConfig {
   bool freeze_opacity = true;
   float surface_window = 0.03f;  // published scene units
   float surface_weight = 0.2f;   // what its code renders test views with; .1 elsewhere
-  // Its authors' setting for rooms; "full" is for objects.
   std::string lobes = "real";
   int lobes_from = 18000;
   LobeRates lobe_rates;
@@ -82,7 +78,7 @@ struct TsgsConfig {
     v("freeze_opacity", freeze_opacity, "opacities stay from then on");
     v("surface_window", surface_window, "of depths of the first surface, published scene units");
     v("surface_weight", surface_weight, "cumulative weight within which it is looked for");
-    v("lobes", lobes, "lobes that add to colours: full, real (a smaller network) or off");
+    v("lobes", lobes, "lobes that add to colours: real or off");
     v("lobes_from", lobes_from, "first published iteration with lobes");
     lobe_rates.visit(v);
   }
@@ -103,10 +99,7 @@ struct TsgsConfig {
         delighted_by
     );
     GLINT_CHECK(
-        is_kind_of_lobes(lobes),
-        kUsage,
-        "tsgs: lobes cannot be '{}'; expected full, real or off",
-        lobes
+        is_kind_of_lobes(lobes), kUsage, "tsgs: lobes cannot be '{}'; expected real or off", lobes
     );
     GLINT_CHECK(
         lobes == kNoLobes || std::max(planar.densify.until, planar.trim_until) <= lobes_from,
@@ -120,10 +113,10 @@ struct TsgsConfig {
   }
 };
 
-class Tsgs final : public Method {
+class Tsgs final : public MethodOf<TsgsConfig> {
  public:
-  explicit Tsgs(const Json& overrides) {
-    config_from_json(config_, overrides, "tsgs");
+  explicit Tsgs(TsgsConfig config) : MethodOf(std::move(config)), model_(set_) {
+    sets_ = {{"interface", &set_}};
     config_.check();
   }
 
@@ -157,7 +150,7 @@ class Tsgs final : public Method {
 
   StepStats step(int iteration) override {
     StepStats stats;
-    if (iteration == windows_.photo_from && config_.freeze_opacity) model_.set().freeze_opacity();
+    if (iteration == windows_.photo_from && config_.freeze_opacity) set_.freeze_opacity();
     if (iteration >= windows_.lobes_from && config_.lobes != kNoLobes && !lobes_)
       start_lobes(config_.lobes);
     const View& view = model_.forward(iteration, stats);
@@ -174,13 +167,14 @@ class Tsgs final : public Method {
   MapSet render_view(const View& view) override { return rendered(view.camera, glass_mask(view)); }
   void draw(const Camera& camera) override { model_.draw(camera); }
   void save(const std::string& folder) const override {
-    model_.save(folder);
+    MethodOf::save(folder);
     if (lobes_) write_safetensors(fs::path(folder) / kLobesFile, {}, lobes_->tensors("lobes"));
     const Json scene{{"scene_unit", scene_unit_}, {"lobes", kind_of_lobes_}};
     write_file(fs::path(folder) / kSceneFile, scene.dump() + "\n");
   }
   void load(const std::string& folder) override {
-    model_.load(folder);
+    MethodOf::load(folder);
+    model_.use_all_degrees();
     const fs::path file = fs::path(folder) / kSceneFile;
     const Json json = read_json_object(file, ExitCode::kBadPrediction);
     GLINT_CHECK(
@@ -192,8 +186,6 @@ class Tsgs final : public Method {
     scene_unit_ = json["scene_unit"].get<float>();
     load_lobes(folder, json.value("lobes", Json(kNoLobes)));  // older runs have none
   }
-  Json config() const override { return config_to_json(config_); }
-  std::vector<ConfigField> fields() const override { return config_fields(config_); }
   std::vector<std::string> inputs() const override {
     std::vector<std::string> inputs;
     if (config_.lambda_normal > 0) inputs.push_back(prior_input("normal"));
@@ -202,10 +194,11 @@ class Tsgs final : public Method {
     return inputs;
   }
   void check_finite() const override {
-    glint::check_finite(model_.set().cloud(), "interface");
+    MethodOf::check_finite();
     if (lobes_) lobes_->check_finite("lobes");
   }
   bool visit_state(TrainingState& state) override {
+    MethodOf::visit_state(state);
     state("model", model_);
     std::string kind = kind_of_lobes_;
     state("kind_of_lobes", kind);
@@ -213,17 +206,14 @@ class Tsgs final : public Method {
     if (lobes_) state("lobes", *lobes_);
     return true;
   }
-  std::size_t num_surfels() const override { return model_.set().cloud().size(); }
-  std::vector<std::string> warnings() const override { return warnings_; }
   std::vector<std::string> notes() const override { return notes_; }
 
  private:
   void start_lobes(const std::string& kind) {
     kind_of_lobes_ = kind;
-    LobeAppearanceConfig sizes =
-        kind == "real" ? LobeAppearanceConfig::real() : LobeAppearanceConfig{};
+    LobeAppearanceConfig sizes;
     sizes.rates = windows_.lobe_rates;
-    lobes_.emplace(sizes, model_.set().cloud().size(), options_.seed);
+    lobes_.emplace(sizes, set_.cloud().size(), options_.seed);
     model_.add_lobes(&*lobes_);
   }
   void stop_lobes() {
@@ -235,7 +225,7 @@ class Tsgs final : public Method {
     GLINT_CHECK(
         kind.is_string() && is_kind_of_lobes(kind.get<std::string>()),
         kBadPrediction,
-        "{}: lobes is {}, expected full, real or off; train the run again",
+        "{}: lobes is {}, expected real or off; train the run again",
         (folder / kSceneFile).string(),
         kind.dump()
     );
@@ -287,7 +277,7 @@ class Tsgs final : public Method {
   // Without a mask no pixel sees through glass.
   MapSet rendered(const Camera& camera, const Image& mask) {
     MapSet maps = model_.render(camera);
-    add_depth_modes(model_.set().pass().rasterizer, maps);
+    add_depth_modes(set_.pass().rasterizer, maps);
     if (mask.empty()) {
       maps["depth"] = model_.output().depth_median;
       return maps;
@@ -295,12 +285,13 @@ class Tsgs final : public Method {
     check_fits("glass mask", mask, camera.size(), 1);
     const FirstSurfaceSettings settings{
         config_.surface_window * scene_unit_, config_.surface_weight};
-    model_.set().first_surface(mask, settings, maps["depth"]);
+    set_.first_surface(mask, settings, maps["depth"]);
     return maps;
   }
 
-  TsgsConfig config_, windows_;
-  std::vector<std::string> warnings_, notes_;
+  TsgsConfig windows_;
+  std::vector<std::string> notes_;
+  TrainableSet set_;
   PlanarModel model_;
   std::optional<LobeAppearance> lobes_;   // once they started
   std::string kind_of_lobes_ = kNoLobes;  // of those
@@ -309,31 +300,21 @@ class Tsgs final : public Method {
   float scene_unit_ = 1;  // metres that a published scene unit stands for
 };
 
-MethodSpec tsgs_spec() {
-  MethodSpec spec;
-  spec.id = "tsgs";
-  spec.title = "TSGS";
-  spec.citation = "li2025tsgs";
-  spec.paper_row = "TSGS";
-  spec.description = "PGSR with glass masks, normal and de-lighting priors, first-surface depth";
-  spec.create = [](const Json& config) { return std::make_unique<Tsgs>(config); };
-  return spec;
-}
-
-// GlassRoom has no de-lighted photos: here its simulated base colours take their place on glass.
-MethodSpec tsgs_basecolor_spec() {
-  MethodSpec spec = tsgs_spec();
-  spec.id = "tsgs/basecolor";
-  spec.title = "TSGS + base colour";
-  spec.paper_row = "";
-  spec.description = "TSGS with the base colour prior as its de-lighted photo";
-  spec.overrides = {{"delighted_by", kBaseColor}};
-  return spec;
-}
+[[maybe_unused]] const bool registered = register_methods<Tsgs>(
+    __FILE__,
+    "li2025tsgs",
+    {{"tsgs",
+      "TSGS",
+      "TSGS",
+      "PGSR with glass masks, normal and de-lighting priors, first-surface depth"},
+     // GlassRoom has no de-lighted photos: its simulated base colours take their place on glass.
+     {"tsgs/basecolor",
+      "TSGS + base colour",
+      "",
+      "TSGS with the base colour prior as its de-lighted photo",
+      [](TsgsConfig& config) { config.delighted_by = kBaseColor; }}}
+);
 
 }  // namespace
-
-GLINT_REGISTER(MethodSpec, tsgs_spec())
-GLINT_REGISTER(MethodSpec, tsgs_basecolor_spec())
 
 }  // namespace glint

@@ -30,14 +30,12 @@
 
 #include "glint/glint_config.h"
 #include "glint/glint_model.h"
-#include "glint/method.h"
 #include "glint/render/map_ops.h"
-#include "glint/scene/ply.h"
-#include "glint/train/clipped_photo.h"
+#include "glint/setting_guide.h"
+#include "glint/surfel_method.h"
 #include "glint/train/photometric.h"
 #include "glint/train/planar_losses.h"
 #include "glint/train/trainer.h"
-#include "glint/train/training_state.h"
 
 namespace glint {
 
@@ -62,11 +60,14 @@ PlanarLossConfig planar_losses(const MultiViewConfig& config) {
   return planar;
 }
 
-class Glint final : public Method {
+class Glint final : public MethodOf<GlintConfig> {
  public:
-  explicit Glint(const Json& overrides) {
-    config_from_json(config_, overrides, "glint");
+  explicit Glint(GlintConfig config) : MethodOf(std::move(config)) {
     config_.check();
+    sets_ = {
+        {"interface", &model_.interface},
+        {"transmission", &model_.transmission},
+        {"reflection", &model_.reflection}};
   }
 
   void initialize(const Scene& scene, const RunOptions& options) override {
@@ -90,15 +91,14 @@ class Glint final : public Method {
         config_.grid.points(scene, options.seed),
         initial,
         windows_.reflection_densify(scene.train.front().camera.size()),
-        windows_.reflection_rates()
+        windows_.secondary_rates(windows_.reflection_from)
     );
     initial = {};
     initial.seed = options.seed;
     initial.extra = {
         {kTransparency, config_.initial_transparency, config_.rate_transparency},
         {kSpecular, config_.initial_specular, config_.rate_specular}};
-    model_.interface =
-        new_set(points, initial, windows_.interface_densify(scene.train.size()), windows_.rates);
+    model_.interface = new_set(points, initial, windows_.interface_densify(), windows_.rates);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
 
@@ -123,11 +123,8 @@ class Glint final : public Method {
           index, iteration, model_.interface, model_.interface_output(), dL_dinterface_, stats
       );
     }
-    float dL_dalpha = 0;
-    if (phase_.transmission)
-      dL_dalpha = transmission_losses_.add_opacity(iteration, model_.transmission_alpha(), stats);
     for (const auto& [name, value] : stats.terms) stats.loss += value;
-    model_.backward(dL_dimage_, dL_dtransparency_, dL_dalpha, !frozen_, dL_dinterface_);
+    model_.backward(dL_dimage_, dL_dtransparency_, !frozen_, dL_dinterface_);
     update(iteration, stats);
     phase_.planes = false;
     stats.sets = sets();
@@ -143,32 +140,13 @@ class Glint final : public Method {
   }
   void draw(const Camera& camera) override { model_.forward(camera, config_, phase_); }
 
-  void save(const std::string& folder) const override {
-    write_surfel_ply(fs::path(folder) / "interface.ply", model_.interface.cloud());
-    write_surfel_ply(fs::path(folder) / "transmission.ply", model_.transmission.cloud());
-    write_surfel_ply(fs::path(folder) / "reflection.ply", model_.reflection.cloud());
-  }
   void load(const std::string& folder) override {
-    const auto load = [&](TrainableSet& set, const char* name) {
-      set.load(read_surfel_ply(fs::path(folder) / name));
-    };
-    load(model_.interface, "interface.ply");
-    load(model_.transmission, "transmission.ply");
-    load(model_.reflection, "reflection.ply");
-    GLINT_CHECK(
-        model_.interface.cloud().extra_names ==
-            std::vector<std::string>({kTransparency, kSpecular}),
-        kBadPrediction,
-        "{}/interface.ply: expected the extra fields transparency and specular; was it trained by "
-        "another method?",
-        folder
-    );
+    MethodOf::load(folder);
+    check_channels(folder, {kTransparency, kSpecular});
     phase_ = {};
     phase_.transmission = config_.with_transmission;
     phase_.reflection = config_.with_reflection;
   }
-  Json config() const override { return config_to_json(config_); }
-  std::vector<ConfigField> fields() const override { return config_fields(config_); }
   std::vector<std::string> inputs() const override {
     std::vector<std::string> inputs;
     config_.geometry.add_inputs(inputs);
@@ -176,24 +154,15 @@ class Glint final : public Method {
     config_.perceptual.add_inputs(inputs);
     return inputs;
   }
-  void check_finite() const override {
-    glint::check_finite(model_.interface.cloud(), "interface");
-    glint::check_finite(model_.transmission.cloud(), "transmission");
-    glint::check_finite(model_.reflection.cloud(), "reflection");
-  }
   bool visit_state(TrainingState& state) override {
-    state("interface", model_.interface);
-    state("transmission", model_.transmission);
-    state("reflection", model_.reflection);
     state("views", views_);
-    return true;
+    return MethodOf::visit_state(state);
   }
   std::size_t num_surfels() const override {
     std::size_t sum = 0;
     for (const auto& [name, count] : sets()) sum += count;
     return sum;
   }
-  std::vector<std::string> warnings() const override { return warnings_; }
   std::vector<std::string> notes() const override {
     if (!config_.oracle) return {};
     return {"given the true depth, normals and transparency of the first surface: no rival"};
@@ -273,15 +242,12 @@ class Glint final : public Method {
   PhotometricWeights photo_weights() const { return {config_.l1_weight, config_.ssim_weight}; }
   void add_picture_losses(const View& view, int iteration, const Image& image, StepStats& stats) {
     const PhotometricWeights weights = photo_weights();
-    const bool clip = config_.clipped_photos;
-    const Image& picture = clip ? clipped_photo_.clip(image, view.rgb) : image;
-    const PhotometricTerms photo = photometric_.evaluate(picture, view, weights, dL_dimage_);
+    const PhotometricTerms photo = photometric_.evaluate(image, view, weights, dL_dimage_);
     stats.terms["photometric"] = photo.weighted(weights);
     stats.psnr = photo.psnr();
     add_perceptual(
-        perceptual_.get(), windows_.perceptual, iteration, picture, view, dL_dimage_, stats
+        perceptual_.get(), windows_.perceptual, iteration, image, view, dL_dimage_, stats
     );
-    if (clip) ClippedPhoto::clip_vjp(image, view.rgb, dL_dimage_);
   }
   void add_map_losses(const View& view, int iteration, StepStats& stats) {
     const RasterOutput& interface = model_.interface_output();
@@ -318,16 +284,14 @@ class Glint final : public Method {
       update_set(model_.reflection, start(windows_.reflection_from), "reflection");
   }
 
-  GlintConfig config_, windows_;
+  GlintConfig windows_;
   const Scene* scene_ = nullptr;
-  std::vector<std::string> warnings_;
   ViewSampler views_;
   GlintModel model_;
   GlintPhase phase_;
   bool frozen_ = false;
   static constexpr std::size_t kTransparencyChannel = 0;  // of the interface's extra ones
   PhotometricLoss photometric_;
-  ClippedPhoto clipped_photo_;
   PlanarLosses planes_;
   std::unique_ptr<PerceptualLoss> perceptual_;
   GeometryLosses geometry_;
@@ -336,146 +300,119 @@ class Glint final : public Method {
   RasterOutputGradient dL_dinterface_;
 };
 
-MethodSpec glint_spec(
-    const char* id,
-    const char* title,
-    const char* row,
-    const char* description,
-    Json overrides = Json::object()
-) {
-  MethodSpec spec;
-  spec.id = id;
-  spec.title = title;
-  spec.citation = "na2026glint";
-  spec.paper_row = row;
-  spec.description = description;
-  spec.overrides = std::move(overrides);
-  spec.create = [](const Json& config) { return std::make_unique<Glint>(config); };
-  return spec;
+// Values by source: docs/GLINT_NOTES.md, "What the paper leaves open".
+SettingGuide guide() {
+  return {
+      .id = "glint",
+      .first =
+          {"max_surfels",
+           "lambda_lpips",
+           "lambda_depth",
+           "lambda_normal",
+           "lambda_transparency",
+           "low_albedo",
+           "transparent_weight",
+           "lambda_multi_view",
+           "mirror_share_below",
+           "freeze"},
+      .groups =
+          {{"with_transmission", "radiance transport"},
+           {"mirror_transmittance", "mirrored rays"},
+           {"initial_transparency", "initial sets"},
+           {"transmission_from", "phases"},
+           {"l1_weight", "losses"},
+           {"densify_from", "density control"},
+           {"rate_position", "learning rates"}},
+      .sources = {
+          {"paper",
+           "with_transmission with_reflection transmission_from reflection_from freeze_from freeze "
+           "min_cosine guidance depth_threshold low_albedo transparent_weight reflection_cells "
+           "clone_interface clone_reflection"},
+          {"release",
+           "l1_weight ssim_weight lambda_lpips lpips_from lambda_depth lambda_normal "
+           "lambda_consistency consistency_from lambda_smooth transparency_from "
+           "lambda_transparency_prior lambda_direct lambda_direct_consistency lambda_plausible "
+           "lambda_multi_view initial_transparency rate_transparency rate_specular position_steps "
+           "densify_until densify_interval densify_gradient densify_slow_interval min_opacity "
+           "opacity_reset_interval transmission_gradient reflection_gradient "
+           "secondary_densify_interval secondary_reset_interval reset_secondary"},
+          {"2DGS",
+           "sh_interval densify_from opacity_resets rate_position rate_position_final rate_color "
+           "rate_sh rate_opacity rate_scale rate_rotation"}}};
 }
 
-}  // namespace
-
-GLINT_REGISTER(
-    MethodSpec, glint_spec("glint", "GLINT", "GLINT", "interface, transmission and reflection sets")
-)
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/release",
-        "GLINT (release)",
-        "",
-        "as the official code trains it, also where it differs from the paper",
-        glint_release_overrides()
-    )
-)
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/text",
-        "GLINT (text)",
-        "",
-        "the paper, with our own values where it is silent",
-        glint_text_overrides()
-    )
-)
-GLINT_REGISTER(MethodSpec, [] {
-  MethodSpec spec = glint_spec(
-      "glint/oracle",
+[[maybe_unused]] const bool registered = register_methods<Glint>(
+    __FILE__,
+    "na2026glint",
+    {{"glint", "GLINT", "GLINT", "interface, transmission and reflection sets"},
+     {"glint/release",
+      "GLINT (release)",
+      "",
+      "as the official code trains it, also where it differs from the paper",
+      set_release},
+     {"glint/text",
+      "GLINT (text)",
+      "",
+      "the paper, with our own values where it is silent",
+      set_text},
+     {"glint/oracle",
       "GLINT (true pane)",
       "",
       "no rival: depth, normals and transparency of the first surface are the true ones",
-      glint_oracle_overrides()
-  );
-  spec.rival = false;
-  return spec;
-}())
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/linear",
-        "GLINT (linear light)",
-        "",
-        "beyond the paper: the sets' light is added as linear values",
-        {{"linear_light", true}}
-    )
-)
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/plus",
-        "GLINT+",
-        "",
-        "beyond the paper: secondary sets start as copies of the interface, few resets, rates that "
-        "settle",
-        glint_plus_overrides()
-    )
-)
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/robust",
-        "GLINT (robust)",
-        "",
-        "beyond the paper: labels of L_trans that say glass count four times",
-        {{"transparent_weight", 4.0}}
-    )
-)
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/no-trans",
-        "w/o G_trans",
-        "w/o G_trans",
-        "no transmission set: t counts as 0",
-        {{"with_transmission", false}}
-    )
-)
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/no-refl",
-        "w/o G_refl",
-        "w/o G_refl",
-        "no reflection set: k_s counts as 0",
-        {{"with_reflection", false}}
-    )
-)
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/no-ltrans",
-        "w/o L_trans",
-        "w/o L_trans",
-        "no transparency guidance",
-        {{"lambda_transparency", 0.0}}
-    )
-)
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/no-lnormal",
-        "w/o L_normal",
-        "w/o L_normal",
-        "no normal prior",
-        {{"lambda_normal", 0.0}}
-    )
-)
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/no-ldepth", "w/o L_depth", "w/o L_depth", "no depth prior", {{"lambda_depth", 0.0}}
-    )
-)
-GLINT_REGISTER(
-    MethodSpec,
-    glint_spec(
-        "glint/no-lgeo",
-        "w/o L_geo",
-        "w/o L_geo",
-        "neither normal nor depth prior",
-        {{"lambda_normal", 0.0}, {"lambda_depth", 0.0}}
-    )
-)
+      set_oracle,
+      false},
+     {"glint/linear",
+      "GLINT (linear light)",
+      "",
+      "beyond the paper: the sets' light is added as linear values",
+      [](GlintConfig& config) { config.linear_light = true; }},
+     {"glint/plus",
+      "GLINT+",
+      "",
+      "beyond the paper: secondary sets start as copies of the interface, few resets, rates that "
+      "settle",
+      set_plus},
+     {"glint/robust",
+      "GLINT (robust)",
+      "",
+      "beyond the paper: labels of L_trans that say glass count four times",
+      [](GlintConfig& config) { config.transmission_losses.transparent_weight = 4; }},
+     {"glint/no-trans",
+      "w/o G_trans",
+      "w/o G_trans",
+      "no transmission set: t counts as 0",
+      [](GlintConfig& config) { config.with_transmission = false; }},
+     {"glint/no-refl",
+      "w/o G_refl",
+      "w/o G_refl",
+      "no reflection set: k_s counts as 0",
+      [](GlintConfig& config) { config.with_reflection = false; }},
+     {"glint/no-ltrans",
+      "w/o L_trans",
+      "w/o L_trans",
+      "no transparency guidance",
+      [](GlintConfig& config) { config.transmission_losses.lambda_transparency = 0; }},
+     {"glint/no-lnormal",
+      "w/o L_normal",
+      "w/o L_normal",
+      "no normal prior",
+      [](GlintConfig& config) { config.geometry.lambda_normal = 0; }},
+     {"glint/no-ldepth",
+      "w/o L_depth",
+      "w/o L_depth",
+      "no depth prior",
+      [](GlintConfig& config) { config.geometry.lambda_depth = 0; }},
+     {"glint/no-lgeo",
+      "w/o L_geo",
+      "w/o L_geo",
+      "neither normal nor depth prior",
+      [](GlintConfig& config) {
+        config.geometry.lambda_depth = config.geometry.lambda_normal = 0;
+      }}}
+);
+
+}  // namespace
+
+GLINT_REGISTER(SettingGuide, guide())
 
 }  // namespace glint

@@ -22,7 +22,6 @@ GlintConfig::GlintConfig() {
   transmission_losses.lambda_direct = 1;
   transmission_losses.direct_lpips = true;
   transmission_losses.lambda_direct_consistency = 0.1f;
-  transmission_losses.direct_near_consistency = true;
   transmission_losses.direct_cosine_consistency = true;
   transmission_losses.lambda_plausible = 0.05f;
   transmission_losses.lambda_transparency_prior = 0.01f;
@@ -58,16 +57,9 @@ GlintConfig GlintConfig::scaled_to(int iterations) const {
   return run;
 }
 
-// s is first reset with the second reset of opacities, as published, and once reflection takes
-// part.
-DensifyConfig GlintConfig::interface_densify(std::size_t training_views) const {
+DensifyConfig GlintConfig::interface_densify() const {
   DensifyConfig config = densify;
-  const int first = densify.for_views(training_views).reset_interval;
   if (reset_transparency) config.channel_resets.push_back({kTransparency, initial_transparency});
-  if (reset_specular)
-    config.channel_resets.push_back(
-        {kSpecular, initial_specular, std::max(first, reflection_from) + 1}
-    );
   return config;
 }
 
@@ -86,7 +78,7 @@ DensifyConfig GlintConfig::transmission_densify() const {
   DensifyConfig config = secondary_densify();
   config.gradient_threshold = transmission_gradient;
   config.wait_from(secondary_run_clock ? transmission_from : 0);
-  config.only_weighted_views = transmission_weighted_views;
+  config.only_weighted_views = true;  // as the official code, which traces it
   if (transmission_min_opacity >= 0) config.min_opacity = transmission_min_opacity;
   config.min_share = transmission_min_share;
   return config;
@@ -109,13 +101,6 @@ SurfelRates GlintConfig::secondary_rates(int from) const {
   return result;
 }
 
-SurfelRates GlintConfig::reflection_rates() const {
-  SurfelRates result = secondary_rates(reflection_from);
-  result.sh_dc *= reflection_color_rate;
-  result.sh_rest *= reflection_color_rate;
-  return result;
-}
-
 void GlintConfig::check() const {
   GLINT_CHECK(
       transmission == "raster" || transmission == "trace",
@@ -132,113 +117,90 @@ void GlintConfig::check() const {
   transmission_losses.check("glint");
 }
 
-Json glint_release_overrides() {
-  return Json{
-      {"lpips_unit_range", true},
-      {"transmission_from", 1000},
-      {"reflection_from", 3000},
-      {"freeze_from", 31000},
-      {"freeze", "geometry"},
-      {"depth_gradient_scales", 4},
-      {"near_first", true},
-      {"weighted_normals", true},
-      {"min_cosine", 0.5},
-      {"guidance", "release"},
-      {"lambda_transparency", 0.01},
-      {"depth_threshold", 0.005},
-      {"mirror_share_below", 0.0},
-      {"mirror_transmittance", kMinTransmittance},
-      {"mirror_hits", 256},
-  };
+void set_release(GlintConfig& config) {
+  config.perceptual.lpips_unit_range = true;
+  config.transmission_from = 1000;
+  config.reflection_from = 3000;
+  config.freeze_from = 31000;
+  config.freeze = "geometry";
+  config.geometry.depth_gradient_scales = 4;
+  config.geometry.near_first = config.geometry.weighted_normals = true;
+  config.geometry.min_cosine = 0.5f;
+  config.transmission_losses.guidance = "release";
+  config.transmission_losses.lambda_transparency = 0.01f;
+  config.transmission_losses.depth_threshold = 0.005f;
+  config.mirror.share_below = 0;
+  config.mirror.transmittance = kMinTransmittance;
+  config.mirror.hits = 256;
 }
 
-Json glint_text_overrides() {
-  return Json{
-      {"detach_transparency", false},
-      {"initial_transparency", 0.1},
-      {"l1_weight", 0.8},
-      {"ssim_weight", 0.2},
-      {"lambda_lpips", 0.01},
-      {"lambda_multi_view", 0.0},
-      {"lambda_depth", 0.1},
-      {"lambda_normal", 0.1},
-      {"lambda_consistency", 0.05},
-      {"consistency_from", 14000},  // the share of the run that [Huang24] leaves it off
-      {"near_consistency", false},
-      {"cosine_consistency", false},
-      {"lambda_smooth", 0.01},
-      {"transparency_from", 7000},
-      {"lambda_direct", 0.0},
-      {"direct_lpips", false},
-      {"lambda_direct_consistency", 0.0},
-      {"lambda_plausible", 0.0},
-      {"lambda_transparency_prior", 0.0},
-      {"densify_until", 30000},
-      {"densify_slow_interval", 0},
-      {"min_opacity", 0.05},
-      {"min_surfels", 0},
-      {"scale_limit", 0.0},
-      {"reflection_gradient", 1e-4},
-      {"reflection_quantile", 0.0},
-      {"secondary_run_clock", false},
-      {"secondary_densify_interval", 100},
-      {"secondary_reset_interval", 3000},
-      {"reset_secondary", false},
-      {"reset_transparency", false},
-      {"transmission_min_opacity", -1.0},
-      {"transmission_min_share", 0.0},
-      {"reflection_min_share", 0.0},
-      {"secondary_prune_light_large", false},
-      {"secondary_scale_limit", 0.0},
-      {"position_steps", 60000},
-      {"freeze_at_least", 10000},
-      {"run_clock_rates", false},
-      {"mirror_observe_every", 0},
-  };
+void set_text(GlintConfig& config) {
+  config.detach_transparency = false;
+  config.initial_transparency = 0.1f;
+  config.l1_weight = 0.8f;
+  config.ssim_weight = 0.2f;
+  config.perceptual.lambda_lpips = 0.01f;
+  config.multi_view.lambda = 0;
+  config.geometry.lambda_depth = config.geometry.lambda_normal = 0.1f;
+  config.geometry.lambda_consistency = 0.05f;
+  config.geometry.consistency_from = 14000;  // the share of the run that [Huang24] leaves it off
+  config.geometry.near_consistency = config.geometry.cosine_consistency = false;
+  config.geometry.lambda_smooth = 0.01f;
+  TransmissionLossConfig& transmission = config.transmission_losses;
+  transmission.transparency_from = 7000;
+  transmission.lambda_direct = transmission.lambda_direct_consistency = 0;
+  transmission.direct_lpips = false;
+  transmission.lambda_plausible = transmission.lambda_transparency_prior = 0;
+  config.densify.until = 30000;
+  config.densify.slow_interval = config.densify.min_surfels = 0;
+  config.densify.min_opacity = 0.05f;
+  config.densify.scale_limit = 0;
+  config.reflection_gradient = 1e-4f;
+  config.reflection_quantile = 0;
+  config.secondary_run_clock = config.run_clock_rates = false;
+  config.secondary_densify_interval = 100;
+  config.secondary_reset_interval = 3000;
+  config.reset_secondary = config.reset_transparency = false;
+  config.transmission_min_opacity = -1;
+  config.transmission_min_share = config.reflection_min_share = 0;
+  config.secondary_prune_light_large = false;
+  config.secondary_scale_limit = 0;
+  config.rates.means_steps = 60000;
+  config.freeze_at_least = 10000;
+  config.mirror.observe_every = 0;
 }
 
 // docs/GLINT_NOTES.md has what each does alone.
-Json glint_plus_overrides() {
-  Json overrides = glint_text_overrides();
-  overrides.update({
-      // Both secondary sets start as copies of the interface, and a quarter of the resets.
-      {"clone_interface", true},
-      {"clone_reflection", true},
-      {"opacity_reset_interval", 12000},
-      // The row's weights of photos and geometry.
-      {"l1_weight", 1.2},
-      {"ssim_weight", 0.4},
-      {"lambda_depth", 0.05},
-      {"lambda_normal", 0.3},
-      {"lambda_consistency", 0.1},
-      {"consistency_from", 0},
-      {"near_consistency", true},
-      {"unit_consistency", true},
-      {"lambda_smooth", 0.05 / 3},
-      // The row's growth, by rays of their own.
-      {"densify_until", 21000},
-      {"densify_slow_interval", 500},
-      {"min_opacity", 0.08},
-      {"transmission_min_opacity", 0.05},
-      {"mirror_observe_every", 4},
-      // The transmission set alone is held to the photos, less than in the row.
-      {"lambda_direct", 0.3},
-      {"lambda_direct_consistency", 0.1},
-      {"direct_near_consistency", true},
-      // Once the sets are grown, rates fall: what is left of the run averages over views and noise.
-      {"rate_settled", 0.03},
-      {"freeze", "nothing"},
-  });
-  return overrides;
+void set_plus(GlintConfig& config) {
+  set_text(config);
+  // Both secondary sets start as copies of the interface, and a quarter of the resets.
+  config.clone_interface = config.clone_reflection = true;
+  config.densify.reset_interval = 12000;
+  // The row's weights of photos and geometry.
+  const GlintConfig row;
+  config.l1_weight = row.l1_weight;
+  config.ssim_weight = row.ssim_weight;
+  config.geometry = row.geometry;
+  config.geometry.cosine_consistency = false;
+  config.geometry.unit_consistency = true;
+  // The row's growth, by rays of their own.
+  config.densify.until = row.densify.until;
+  config.densify.slow_interval = row.densify.slow_interval;
+  config.densify.min_opacity = row.densify.min_opacity;
+  config.transmission_min_opacity = row.transmission_min_opacity;
+  config.mirror.observe_every = row.mirror.observe_every;
+  // The transmission set alone is held to the photos, less than in the row.
+  config.transmission_losses.lambda_direct = 0.3f;
+  config.transmission_losses.lambda_direct_consistency = 0.1f;
+  // Once the sets are grown, rates fall: what is left of the run averages over views and noise.
+  config.rates.settled = 0.03f;
+  config.freeze = "nothing";
 }
 
-Json glint_oracle_overrides() {
-  return Json{
-      {"oracle", true},
-      {"lambda_transparency", 0.0},
-      {"lambda_transparency_prior", 0.0},
-      {"lambda_plausible", 0.0},
-  };
+void set_oracle(GlintConfig& config) {
+  config.oracle = true;
+  TransmissionLossConfig& losses = config.transmission_losses;
+  losses.lambda_transparency = losses.lambda_transparency_prior = losses.lambda_plausible = 0;
 }
 
 }  // namespace glint

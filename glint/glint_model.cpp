@@ -26,16 +26,6 @@ Image part_of_picture(
   return part;
 }
 
-// One value everywhere; 0 is an empty image, which counts as zero.
-void fill_or_empty(ImageSize size, float value, Image& image) {
-  if (value == 0) {
-    image = {};
-    return;
-  }
-  fit(image, size, 1);
-  image.array().fill(value);
-}
-
 }  // namespace
 
 const Image& GlintModel::forward(
@@ -52,12 +42,10 @@ const Image& GlintModel::compose(
   phase_ = phase;
   transport_.set_options(
       {.channels = interface_channels(interface.cloud()),
-       .f0 = config.f0,
        .transmission = phase.transmission,
        .reflection = phase.reflection,
-       .detach_origins = config.detach_origins,
-       .linear_light = config.linear_light,
-       .quiet_below = config.quiet_below}
+       .detach_origins = true,
+       .linear_light = config.linear_light}
   );
   interface_output_ =
       &interface.forward(camera, phase.interface_degree, interface_settings(config));
@@ -111,25 +99,21 @@ void GlintModel::render_transmission(
     );
     const TraceOutput& out = transmission.trace(through_, phase_.transmission_degree, {});
     copy_color(out.color, layers_.transmission);
-    transmission_alpha_ = &out.alpha;
   } else {
     RasterSettings settings;
     settings.with_surface = with_behind;
     const RasterOutput& out =
         transmission.forward(camera, phase_.transmission_degree, settings, near_limit_);
     copy_color(out.features, layers_.transmission);
-    transmission_alpha_ = &out.alpha;
   }
 }
 
-void GlintModel::transmission_vjp(const Image& dL_dradiance, float dL_dalpha) {
+void GlintModel::transmission_vjp(const Image& dL_dradiance) {
   if (!rasterized_) {
     copy_color(dL_dradiance, dL_dthrough_.color);
-    fill_or_empty(dL_dradiance.size(), dL_dalpha, dL_dthrough_.alpha);
     transmission.trace_backward(dL_dthrough_);
   } else {
     copy_color(dL_dradiance, dL_dtransmission_.features);
-    fill_or_empty(dL_dradiance.size(), dL_dalpha, dL_dtransmission_.alpha);
     transmission.backward(dL_dtransmission_);
   }
 }
@@ -137,14 +121,13 @@ void GlintModel::transmission_vjp(const Image& dL_dradiance, float dL_dalpha) {
 void GlintModel::backward(
     const Image& dL_dimage,
     const Image& dL_dtransparency,
-    float dL_dalpha,
     bool interface_too,
     RasterOutputGradient& dL_dinterface
 ) {
   const GlassLayers& dL_dlayers = transport_.compose_vjp(layers_, dL_dimage);
   const Rays* dL_drays = nullptr;
   if (phase_.reflection) dL_drays = &mirrored_.trace_backward(reflection, dL_dlayers.reflection);
-  if (phase_.transmission) transmission_vjp(dL_dlayers.transmission, dL_dalpha);
+  if (phase_.transmission) transmission_vjp(dL_dlayers.transmission);
   if (!interface_too) return;
   const bool given = surface_ != interface_output_;
   transport_.interface_vjp(

@@ -32,12 +32,10 @@ class GlintModel {
   const Image& forward(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
   // Back through the last forward call, to all sets that took part. dL_dinterface holds, and is
   // added to, the gradient of losses on the interface's maps; dL_dtransparency that of t (may be
-  // empty), dL_dalpha that of the transmission set's alpha, the same at every pixel.
-  // `interface_too` off: the interface stays as it is.
+  // empty). `interface_too` off: the interface stays as it is.
   void backward(
       const Image& dL_dimage,
       const Image& dL_dtransparency,
-      float dL_dalpha,
       bool interface_too,
       RasterOutputGradient& dL_dinterface
   );
@@ -46,8 +44,6 @@ class GlintModel {
   const Image& interface_depth();
   const GlassBuffer& buffer() const { return transport_.buffer(); }
   const GlassLayers& layers() const { return layers_; }
-  // [H][W][1] of the transmission set behind the interface, where it took part.
-  const Image& transmission_alpha() const { return *transmission_alpha_; }
   // Of the last forward call: what rasterised the transmission set; null: nothing, or it was
   // traced.
   RasterPass* transmission_pass() { return rasterized_ ? &transmission.pass() : nullptr; }
@@ -61,7 +57,7 @@ class GlintModel {
       const Camera& camera, const GlintConfig& config, const GlintPhase& phase, bool with_behind
   );
   void render_transmission(const Camera& camera, const GlintConfig& config, bool with_behind);
-  void transmission_vjp(const Image& dL_dradiance, float dL_dalpha);
+  void transmission_vjp(const Image& dL_dradiance);
   void add_behind_depth(const Camera& camera, MapSet& out);
   void add_components(bool linear_light, MapSet& out) const;
 
@@ -71,8 +67,7 @@ class GlintModel {
   const RasterOutput* interface_output_ = nullptr;
   const RasterOutput* surface_ = nullptr;  // that output, or what was given for it
   GivenSurface given_;
-  Image own_depth_;  // of the surfels, where the surface was given
-  const Image* transmission_alpha_ = nullptr;
+  Image own_depth_;          // of the surfels, where the surface was given
   bool rasterized_ = false;  // the transmission set
   GlassLayers layers_;
   Image near_limit_;

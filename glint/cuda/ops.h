@@ -151,8 +151,7 @@ inline DeviceTraceCall device_call(const TraceCall& call, TraceOutput& output) {
       .rays =
           {.origins = call.rays.origins.on_device(),
            .directions = call.rays.directions.on_device(),
-           .count = call.rays.origins.num_pixels(),
-           .stops = pointer(call.rays.stops)},
+           .count = call.rays.origins.num_pixels()},
       .num_rays = call.rays.origins.num_pixels(),
       .cutoffs = cutoffs(call.settings),
       .out = device_output(output),

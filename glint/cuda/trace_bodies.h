@@ -16,11 +16,9 @@ struct DeviceRays {
   const float *origins, *directions;  // [rays][3]
   std::size_t count;
   std::size_t width = 0;
-  const float* stops = nullptr;  // [rays] see Rays; null: 0
 
   GLINT_HD Vec3f origin(std::size_t i) const { return at(origins, i); }
   GLINT_HD Vec3f direction(std::size_t i) const { return at(directions, i); }
-  GLINT_HD float stop(std::size_t i) const { return stops == nullptr ? 0.0f : stops[i]; }
   GLINT_HD static Vec3f at(const float* p, std::size_t i) {
     return {p[3 * i], p[3 * i + 1], p[3 * i + 2]};
   }
@@ -94,7 +92,7 @@ struct FindHits {
       if (is_ray(origin, direction)) {
         const WalkedRay ray(origin, direction);
         TreeWalk<NearestList<kHits>, Shared, Counts> walk(tree, ray, stack, thread, count);
-        hits = keep(walk, ray, rays.stop(i), place, count);
+        hits = keep(walk, ray, place, count);
       }
       if constexpr (Counts::kCounts) counts[i] = count;
     }
@@ -102,8 +100,7 @@ struct FindHits {
   }
   // Those that count, up to where the ray stops.
   template <class Walk>
-  GLINT_HD int keep(Walk& walk, const WalkedRay& ray, float stop, std::size_t place, Counts& counts)
-      const {
+  GLINT_HD int keep(Walk& walk, const WalkedRay& ray, std::size_t place, Counts& counts) const {
     NearestList<kHits> list(cutoffs.near);
     float transmittance = 1;
     int hits = 0;
@@ -124,7 +121,7 @@ struct FindHits {
         }
         counts.hit();
         saved.slot(hits++, place) = slot;
-        return hits < cutoffs.max_hits && !(transmittance < stop);
+        return hits < cutoffs.max_hits;
       });
     }
     return hits;

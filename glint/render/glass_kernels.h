@@ -26,9 +26,6 @@ struct GlassOptions {
   bool detach_origins = false;  // no gradient from reflections to the interface's depth
   bool fresnel = true;          // off: k_s = s, for methods without it
   bool linear_light = false;    // layers are added as linear values, not as displayed ones
-  // Interface and transmission get no gradient from pixels of which they are less than this share
-  // (1 - t and t): Adam would make full steps of gradients that are next to nothing.
-  float quiet_below = 0;
 };
 
 // Zero where there is no such map.
@@ -135,9 +132,8 @@ struct ComposeGlassVjp {
     const Vec3f dL_dpixel = map3(dL_dimage, i);
     const GlassRadiance<float> g = options.linear_light ? outgoing_displayed_vjp(p, dL_dpixel)
                                                         : outgoing_radiance_vjp(p, dL_dpixel);
-    const float t = in.transparency[i];
-    put3(dL_dinterface, i, 1 - t < options.quiet_below ? Vec3f{} : g.interface);
-    put3(dL_dtransmission, i, t < options.quiet_below ? Vec3f{} : g.transmission);
+    put3(dL_dinterface, i, g.interface);
+    put3(dL_dtransmission, i, g.transmission);
     put3(dL_dreflection, i, g.reflection);
     dL_dtransparency[i] = keep(options.transmission, g.transparency);
     dL_dmirrored[i] = keep(options.reflection, g.mirrored);

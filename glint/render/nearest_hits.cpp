@@ -18,12 +18,11 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-NearestHits::NearestHits(float near, float min_alpha, float min_transmittance, float stop)
+NearestHits::NearestHits(float near, float min_alpha, float min_transmittance)
     : after_{std::max(near, 0.0f), kLastSurfel, 0, 0},
       last_{},
       min_alpha_(min_alpha),
-      min_transmittance_(min_transmittance),
-      stop_(stop) {}
+      min_transmittance_(min_transmittance) {}
 
 void NearestHits::start(float transmittance, std::size_t most) {
   if (count_ > 0) after_ = sorted_[count_ - 1];
@@ -60,15 +59,6 @@ void NearestHits::append(
   if (count_ >= next_look_) shorten();
 }
 
-void NearestHits::add(const FoundHit& hit) {
-  if (!(after_ < hit) || last_ < hit || !(hit.alpha >= min_alpha_)) return;
-  ts_[count_] = hit.t;
-  alphas_[count_] = hit.alpha;
-  surfels_[count_] = hit.surfel;
-  slots_[count_] = hit.slot;
-  if (++count_ >= next_look_) shorten();
-}
-
 // A hit's rank is the number of nearer ones. Equal t show in the sum of the ranks.
 void NearestHits::sort() {
   constexpr int kAtOnce = 2 * Float8::kLanes;
@@ -96,8 +86,6 @@ void NearestHits::sort() {
 void NearestHits::sort_ties() {
   for (int i = 0; i < count_; ++i) sorted_[i] = hit(i);
   std::sort(sorted_, sorted_ + count_);
-  // A surfel comes twice where a ray meets both triangles of a quad.
-  keep_first(static_cast<int>(std::unique(sorted_, sorted_ + count_) - sorted_));
 }
 
 // Bounds the transmittance behind all hits found so far from above, but for rounding.
@@ -108,7 +96,7 @@ bool NearestHits::may_stop() {
     clear = clear * (Float8(1.0f) - Float8::load(alphas_ + i));
   float transmittance = transmittance_;
   for (int lane = 0; lane < Float8::kLanes; ++lane) transmittance *= clear[lane];
-  return transmittance < std::max(min_transmittance_, stop_);
+  return transmittance < min_transmittance_;
 }
 
 // Hits behind the one that stops the ray do not matter, whatever else is found in front of it.
@@ -116,7 +104,7 @@ int NearestHits::hits_until_stop() const {
   float transmittance = transmittance_;
   for (int i = 0; i < count_; ++i) {
     transmittance = blend_step(transmittance, sorted_[i].alpha, min_transmittance_).transmittance;
-    if (transmittance < std::max(stop_, 0.0f)) return i + 1;
+    if (transmittance < 0) return i + 1;
   }
   return count_;
 }

@@ -31,9 +31,8 @@ class NearestHits {
   static constexpr float kFarthest = std::numeric_limits<float>::max();
 
   // The first search is for t > near. Hits fainter than min_alpha do not count.
-  // A ray ends in front of the hit that would take its transmittance below min_transmittance, or
-  // behind the one that takes it below `stop`.
-  NearestHits(float near, float min_alpha, float min_transmittance, float stop = 0);
+  // A ray ends in front of the hit that would take its transmittance below min_transmittance.
+  NearestHits(float near, float min_alpha, float min_transmittance);
 
   // Before a search: `transmittance` is what the ray has left there; hits behind the first `most`,
   // at least 1, are not asked for.
@@ -49,7 +48,6 @@ class NearestHits {
   float last_t() const { return last_.t; }
   // Of eight surfels, those in `met`.
   void add(Float8 t, Float8 alpha, Mask8 met, Mask8::Lanes surfels, Mask8::Lanes slots);
-  void add(const FoundHit& hit);
 
  private:
   void append(Float8 t, Float8 alpha, unsigned lanes, Mask8::Lanes surfels, Mask8::Lanes slots);
@@ -64,7 +62,7 @@ class NearestHits {
 
   static constexpr int kSize = kCapacity + 3 * Float8::kLanes;  // whole vectors are appended
   FoundHit after_, last_;
-  float min_alpha_, min_transmittance_, stop_, transmittance_ = 1;
+  float min_alpha_, min_transmittance_, transmittance_ = 1;
   int count_ = 0;
   int most_ = kCapacity;
   int next_look_ = 0;  // count at which to shorten

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "glint/render/shared_rays.h"
 
-#include "glint/core/error.h"
-
 namespace glint {
 
 namespace {
@@ -12,20 +10,17 @@ constexpr std::size_t kGrain = 4096;  // pixels a block
 // Not the step itself, which would give every view the same pixels each time.
 LeaderOfBlock leader_at(const ShareBlocks& blocks, int step) {
   const std::uint32_t mixed = static_cast<std::uint32_t>(step) * 2654435761u >> 16;
-  const auto side = static_cast<std::uint32_t>(blocks.side);
-  return {blocks, static_cast<int>(mixed % side), static_cast<int>(mixed / side % side)};
+  constexpr auto kSide = static_cast<std::uint32_t>(ShareBlocks::kSide);
+  return {blocks, static_cast<int>(mixed % kSide), static_cast<int>(mixed / kSide % kSide)};
 }
 
 }  // namespace
 
 SharersOf SharedRays::sharers() const { return {blocks_, source_.on_device()}; }
 
-const Rays& SharedRays::choose(
-    const GlassBuffer& buffer, const RaySharing& sharing, const RayStops& stops, int step
-) {
-  GLINT_CHECK(sharing.block >= 1, kUsage, "blocks of {} pixels cannot share rays", sharing.block);
+const Rays& SharedRays::choose(const GlassBuffer& buffer, const RaySharing& sharing, int step) {
   const ImageSize size = buffer.depth.size();
-  blocks_ = {size.width, size.height, sharing.block};
+  blocks_ = {size.width, size.height};
   rays_.origins = buffer.reflected.origins;
   fit(rays_.directions, size, 3);
   source_.resize(size.num_pixels());
@@ -42,16 +37,6 @@ const Rays& SharedRays::choose(
           source_.on_device(),
           rays_.directions.on_device()}
   );
-  if (stops.weight_below > 0) {
-    fit(rays_.stops, size, 1);
-    run_kernel(
-        size.num_pixels(),
-        kGrain,
-        StopRays{sharers(), stops, buffer.specularity.on_device(), rays_.stops.on_device()}
-    );
-  } else {
-    rays_.stops = {};
-  }
   return rays_;
 }
 

@@ -12,7 +12,6 @@ namespace glint {
 // Which pixels can do with a neighbour's mirrored ray.
 struct RaySharing {
   float below = 0;  // k_s; 0: none
-  int block = 2;    // pixels, across and down, of which one has the ray of all; at least 1
   float max_transparency = 0.5f;
   float min_cosine = 0.95f;  // between their normals
 
@@ -21,25 +20,12 @@ struct RaySharing {
   }
 };
 
-// Where the rays end of pixels that mirror little: at the transmittance whose share of the pixel
-// is `weight_below`, within these bounds. Also a pixel with k_s = 0 has a ray, since k_s is learned
-// from what that sees.
-struct RayStops {
-  float weight_below = 0;                 // transmittance times k_s; 0: at `latest`, all of them
-  float earliest = 0.3f, latest = 0.02f;  // transmittance
-
-  GLINT_HD float at(float mirrored) const {
-    const float limit = weight_below / max_of(mirrored, 1e-6f);
-    return max_of(latest, min_of(earliest, limit));
-  }
-};
-
 // The blocks of a picture.
 struct ShareBlocks {
-  int width, height;  // of the picture
-  int side;           // of a block
-  GLINT_HD int left_of(std::size_t i) const { return static_cast<int>(i) % width / side * side; }
-  GLINT_HD int top_of(std::size_t i) const { return static_cast<int>(i) / width / side * side; }
+  static constexpr int kSide = 2;  // pixels, of a block
+  int width, height;               // of the picture
+  GLINT_HD int left_of(std::size_t i) const { return static_cast<int>(i) % width / kSide * kSide; }
+  GLINT_HD int top_of(std::size_t i) const { return static_cast<int>(i) / width / kSide * kSide; }
 };
 
 // The pixel of a block whose ray the others take.
@@ -81,25 +67,11 @@ struct SharersOf {
   GLINT_HD void each(std::size_t i, F&& f) const {
     if (source[i] != i) return;
     const int left = blocks.left_of(i), top = blocks.top_of(i);
-    for (int y = top; y < top + blocks.side && y < blocks.height; ++y)
-      for (int x = left; x < left + blocks.side && x < blocks.width; ++x) {
+    for (int y = top; y < top + ShareBlocks::kSide && y < blocks.height; ++y)
+      for (int x = left; x < left + ShareBlocks::kSide && x < blocks.width; ++x) {
         const auto from = static_cast<std::uint32_t>(y * blocks.width + x);
         if (source[from] == i) f(from);
       }
-  }
-};
-
-// A ray goes as far as the pixel needs it that mirrors most of those that take it.
-struct StopRays {
-  SharersOf sharers;
-  RayStops stops;
-  const float* mirrored;
-  float* out;
-
-  GLINT_HD void operator()(std::size_t i) const {
-    float most = 0;
-    sharers.each(i, [&](std::uint32_t pixel) { most = max_of(most, mirrored[pixel]); });
-    out[i] = stops.at(most);
   }
 };
 
@@ -121,6 +93,6 @@ struct SpreadColorVjp {
   }
 };
 
-using SharedRaysKernels = KernelList<ShareRays, StopRays, SpreadColor, SpreadColorVjp>;
+using SharedRaysKernels = KernelList<ShareRays, SpreadColor, SpreadColorVjp>;
 
 }  // namespace glint

@@ -43,17 +43,6 @@ void check_call(const TraceCall& call) {
       rays.directions.height(),
       rays.directions.channels()
   );
-  const Image& stops = rays.stops;
-  GLINT_CHECK(
-      stops.empty() || (stops.size() == rays.origins.size() && stops.channels() == 1),
-      kUsage,
-      "trace: stops are {}x{}x{}, expected one for each of {}x{} rays, or none",
-      stops.width(),
-      stops.height(),
-      stops.channels(),
-      rays.origins.width(),
-      rays.origins.height()
-  );
 }
 
 void fit_output(ImageSize size, TraceOutput& out) {

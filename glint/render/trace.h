@@ -4,9 +4,9 @@
 // no screen-space low-pass. Same formulas (intersect.h, blend.h), same cut-offs.
 //
 // A surfel contributes to a ray iff t > near, rho = u^2 + v^2 <= max_rho, alpha >= min_alpha, and
-// the ray's transmittance after it stays >= min_transmittance; and the ray did not end before
-// (Rays::stops). Order: (t, index), so that coincident surfels (clones) count once each. Colour:
-// spherical harmonics in the direction of the ray.
+// the ray's transmittance after it stays >= min_transmittance. Order: (t, index), so that
+// coincident surfels (clones) count once each. Colour: spherical harmonics in the direction of the
+// ray.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,7 @@ struct TraceSettings {
   float max_rho = kMaxRho;
   float min_alpha = kMinAlpha;
   float min_transmittance = kMinTransmittance;
-  int max_hits = 256;      // contributors of a ray
-  bool triangles = false;  // Embree sees two triangles a surfel [Na26], no disc; same picture
+  int max_hits = 256;  // contributors of a ray
 };
 
 // Activated surfels, structure of arrays; borrowed. N surfels.
@@ -49,9 +48,6 @@ TraceInput trace_input(const SurfelCloud& cloud, const ActivatedSurfels& activat
 struct Rays {
   Image origins;     // [H][W][3] world, metres
   Image directions;  // [H][W][3]
-  // [H][W][1] or empty: a ray ends behind the hit that takes its transmittance below this, which
-  // counts, so that what is left out of its colour weighs less than this.
-  Image stops = {};
 };
 
 // Borrowed arrays and rays must stay where and what they are until the call's backward().

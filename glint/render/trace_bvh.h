@@ -18,8 +18,6 @@ namespace glint {
 
 class SurfelBvh {
  public:
-  static bool has_triangles();  // not in our own tree
-
   SurfelBvh();
   ~SurfelBvh();
   SurfelBvh(const SurfelBvh&) = delete;
@@ -27,11 +25,11 @@ class SurfelBvh {
 
   // Keeps a reference to `surfels`, in slot order. `refit`: the tree of the last call may be kept;
   // for surfels that are the same ones in the same slots.
-  // Errors (kEnvironment): Embree fails; our own tree has no triangles.
-  void update(const std::vector<TracedSurfel>& surfels, bool triangles, bool refit);
-  // Adds the hits behind hits.after(). Returns how many clusters (or triangles) it took.
+  // Errors (kEnvironment): Embree fails.
+  void update(const std::vector<TracedSurfel>& surfels, bool refit);
+  // Adds the hits behind hits.after(). Returns how many clusters it took.
   std::size_t nearest(Vec3f origin, Vec3f direction, NearestHits& hits) const;
-  // All surfels, eight consecutive slots each; none where the tree is of triangles.
+  // All surfels, eight consecutive slots each.
   std::span<const SurfelCluster> clusters() const;
 
  private:

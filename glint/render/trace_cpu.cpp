@@ -94,7 +94,6 @@ bool weigh(
     if (step.transmittance < 0) return false;
     prefetch_hit(saved, hit.slot);
     hits.push(hit.slot, step.weight, hit.t);
-    if (step.transmittance < ray.stop) return false;
   }
   return left > 0;
 }
@@ -138,7 +137,7 @@ void trace_ray(
     std::vector<std::uint32_t>& slots,
     RaySums& sums
 ) {
-  NearestHits nearest(settings.near, settings.min_alpha, settings.min_transmittance, ray.stop);
+  NearestHits nearest(settings.near, settings.min_alpha, settings.min_transmittance);
   WeightedHits hits;
   auto left = static_cast<std::size_t>(std::max(settings.max_hits, 0));
   for (bool more = left > 0; more;) {
@@ -201,7 +200,7 @@ void prepare(const TraceCall& call, std::size_t num_rays, TraceSaved& saved) {
     saved.surfels[slot] = traced_surfel(input, call.settings, i);
     saved.sh[slot] = ShRow::pack(&input.sh_dc[3 * i], &input.sh_rest[45 * i]);
   });
-  if (n > 0) saved.bvh.update(saved.surfels, call.settings.triangles, refit);
+  if (n > 0) saved.bvh.update(saved.surfels, refit);
   saved.blocks.resize((num_rays + kRaysPerBlock - 1) / kRaysPerBlock);
   saved.counts.resize(num_rays);
 }
@@ -213,7 +212,6 @@ RayState ray_at(const Rays& rays, int sh_degree, std::size_t i) {
   RayState ray;
   ray.origin = get3(rays.origins.data(), i);
   ray.direction = get3(rays.directions.data(), i);
-  if (!rays.stops.empty()) ray.stop = rays.stops.data()[i];
   const float norm = length(ray.direction);
   float basis[ShRow::kCoefficients] = {};
   if (norm > 0) sh_basis(sh_degree, (1 / norm) * ray.direction, basis);

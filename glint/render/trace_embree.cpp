@@ -21,22 +21,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 struct Context {
   RTCIntersectContext embree;
   const SurfelCluster* clusters;
-  const TracedSurfel* surfels;
   Vec3<Float8> origin, direction;
   NearestHits* hits;
   std::size_t looked_at = 0;
 };
-
-void offer_surfel(const Context& context, std::uint32_t slot) {
-  const TracedSurfel& s = context.surfels[slot];
-  NearestHits& hits = *context.hits;
-  const auto first_lane = [](Vec3<Float8> v) { return Vec3f{v.x[0], v.y[0], v.z[0]}; };
-  const PlaneHit<float> hit =
-      meet(s.fields, first_lane(context.origin), first_lane(context.direction));
-  const float rho = squared_radius(hit);
-  if (!(rho <= s.fields.max_rho && hit.t <= hits.last_t())) return;
-  hits.add({hit.t, s.surfel, slot, splat_alpha(s.fields.opacity, rho).alpha});
-}
 
 // Tells Embree where to stop looking, if anywhere; ties with the last place still have to be seen.
 bool shorten(RTCRay& ray, const NearestHits& hits) {
@@ -54,32 +42,10 @@ void intersect_cluster(const RTCIntersectFunctionNArguments* args) {
   shorten(reinterpret_cast<RTCRayHit*>(args->rayhit)->ray, *context.hits);
 }
 
-// Rejects every triangle hit after having looked at its surfel; a hit is accepted only to shorten
-// the ray, which is the one way to do so.
-void filter_triangle(const RTCFilterFunctionNArguments* args) {
-  auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-  auto& context = *reinterpret_cast<Context*>(args->context);
-  ++context.looked_at;
-  offer_surfel(context, reinterpret_cast<const RTCHit*>(args->hit)->primID / 2);
-  if (!shorten(ray, *context.hits)) args->valid[0] = 0;
-}
-
 void cluster_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& surfels = *static_cast<const std::vector<TracedSurfel>*>(args->geometryUserPtr);
   const auto [low, high] = box_of_cluster(surfels, args->primID);
   *args->bounds_o = {low.x, low.y, low.z, 0, high.x, high.y, high.z, 0};
-}
-
-// Corners of a quad at the surfel's reach along both axes, in the order (-,+), (-,-), (+,+), (+,-).
-void write_quad(const SurfelFields<float>& s, float* corners) {
-  const bool counts = s.max_rho > 0;
-  const float k = counts ? std::sqrt(s.max_rho) * (1 + kBoxMargin) : 0.0f;
-  const float signs[4][2] = {{-1, 1}, {-1, -1}, {1, 1}, {1, -1}};
-  for (int i = 0; i < 4; ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      corners[3 * i + axis] =
-          counts ? s.mean[axis] + k * (signs[i][0] * s.h0[axis] + signs[i][1] * s.h1[axis])
-                 : std::numeric_limits<float>::quiet_NaN();  // Embree skips such triangles
 }
 
 }  // namespace
@@ -91,7 +57,6 @@ struct SurfelBvh::Impl {
   const std::vector<TracedSurfel>* surfels = nullptr;
   std::vector<SurfelCluster> clusters;
   std::size_t count = 0;
-  bool triangles = false;
 
   void check(const char* what) const {
     const RTCError error = rtcGetDeviceError(device);
@@ -102,24 +67,6 @@ struct SurfelBvh::Impl {
   void release_scene() {
     if (scene != nullptr) rtcReleaseScene(scene);
     scene = nullptr;
-  }
-  void write_corners() const {
-    auto* corners =
-        static_cast<float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
-    for (std::size_t i = 0; i < count; ++i) write_quad((*surfels)[i].fields, corners + 12 * i);
-  }
-  void add_triangles() {
-    geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * count
-    );
-    auto* faces = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), 2 * count
-    ));
-    for (unsigned i = 0; i < count; ++i)
-      for (unsigned j = 0; j < 6; ++j) faces[6 * i + j] = 4 * i + (j < 3 ? j : j - 2);
-    write_corners();
-    rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
   }
   void add_discs() {
     geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -132,10 +79,7 @@ struct SurfelBvh::Impl {
     release_scene();
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
-    if (triangles)
-      add_triangles();
-    else
-      add_discs();
+    add_discs();
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
@@ -145,19 +89,12 @@ struct SurfelBvh::Impl {
   }
   void refit() {
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
-    if (triangles) {
-      write_corners();
-      rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
-    } else {
-      rtcSetGeometryUserData(geometry, const_cast<std::vector<TracedSurfel>*>(surfels));
-    }
+    rtcSetGeometryUserData(geometry, const_cast<std::vector<TracedSurfel>*>(surfels));
     rtcCommitGeometry(geometry);
     rtcCommitScene(scene);
     check("refitting the tree");
   }
 };
-
-bool SurfelBvh::has_triangles() { return true; }
 
 SurfelBvh::SurfelBvh() : impl_(std::make_unique<Impl>()) {
   // One instruction set everywhere: which boxes a ray visits must not depend on the machine.
@@ -178,16 +115,11 @@ SurfelBvh::~SurfelBvh() {
   rtcReleaseDevice(impl_->device);
 }
 
-void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool triangles, bool refit) {
-  const bool same =
-      impl_->scene != nullptr && impl_->count == surfels.size() && impl_->triangles == triangles;
+void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool refit) {
+  const bool same = impl_->scene != nullptr && impl_->count == surfels.size();
   impl_->surfels = &surfels;
   impl_->count = surfels.size();
-  impl_->triangles = triangles;
-  if (triangles)
-    impl_->clusters.clear();
-  else
-    make_clusters(surfels, impl_->clusters);
+  make_clusters(surfels, impl_->clusters);
   if (same && refit)
     impl_->refit();
   else
@@ -200,7 +132,6 @@ std::size_t SurfelBvh::nearest(Vec3f origin, Vec3f direction, NearestHits& hits)
   Context context;
   rtcInitIntersectContext(&context.embree);
   context.clusters = impl_->clusters.data();
-  context.surfels = impl_->surfels->data();
   context.origin = all_lanes(origin);
   context.direction = all_lanes(direction);
   context.hits = &hits;

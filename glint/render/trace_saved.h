@@ -51,7 +51,6 @@ struct RayState {
   Vec3f origin, direction;
   ShBasis basis;
   float transmittance = 1;  // below 0: the ray met what it would not go through
-  float stop = 0;
 };
 
 inline Vec4f rotation_at(const TraceInput& input, std::size_t surfel) {

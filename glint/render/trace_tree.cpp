@@ -112,18 +112,10 @@ struct SurfelBvh::Impl {
   std::vector<std::vector<Node>> levels;  // over clusters, over these nodes, ..., one root
 };
 
-bool SurfelBvh::has_triangles() { return false; }
-
 SurfelBvh::SurfelBvh() : impl_(std::make_unique<Impl>()) {}
 SurfelBvh::~SurfelBvh() = default;
 
-void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool triangles, bool) {
-  GLINT_CHECK(
-      !triangles,
-      kEnvironment,
-      "rays against triangles need Embree, which this program does without; use the full build "
-      "(cmake --preset release) or triangles=false"
-  );
+void SurfelBvh::update(const std::vector<TracedSurfel>& surfels, bool) {
   make_clusters(surfels, impl_->clusters);
   impl_->levels.clear();
   impl_->levels.push_back(make_level(impl_->clusters.size(), [&](std::size_t i) {

@@ -3,7 +3,7 @@
 // needs more is void: the op that finds it out says so in a word on the device, the optimisers and
 // the statistics of density control that come after see the word and leave everything as it is, and
 // the next step that is not silent makes room. What came before in the step stays: statistics of
-// another set, steps of exposures (PGSR, TSGS).
+// another set.
 #pragma once
 
 #include <cstddef>

@@ -63,14 +63,13 @@ struct AdamArrays {
 };
 
 template <bool kOneRate>
-void update(const AdamArrays& a, float correction1, float correction2, bool only_seen) {
+void update(const AdamArrays& a, float correction1, float correction2) {
   AdamKernel<kOneRate> kernel{
       a.p->on_device(), a.g->on_device(), a.m->on_device(), a.v->on_device(), {}, 0, 0};
   kernel.columns = a.rates.size();
   kernel.scale_v = 1 / correction2;
   for (std::size_t c = 0; c < a.rates.size(); ++c) kernel.rates[c] = a.rates[c] / correction1;
   kernel.is_void = void_word();
-  kernel.only_seen = only_seen;
   run_kernel(a.p->size(), kGrain, kernel);
 }
 
@@ -147,9 +146,9 @@ void SurfelAdam::step(
   second_.for_each_array([&](const char*, FloatArray& a, std::size_t) { arrays[k++].v = &a; });
   for (const AdamArrays& a : arrays) {
     if (a.rates.size() == 1)
-      update<true>(a, correction1, correction2, rates.only_seen);
+      update<true>(a, correction1, correction2);
     else
-      update<false>(a, correction1, correction2, rates.only_seen);
+      update<false>(a, correction1, correction2);
   }
 }
 

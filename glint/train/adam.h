@@ -22,8 +22,6 @@ struct SurfelRates {
   float opacity = 0.05f;
   float scale = 0.005f;
   float rotation = 0.001f;
-  // Numbers without a gradient in a step stay, and so do their moments (no drift by momentum).
-  bool only_seen = false;
   // Beyond the papers: all rates but the positions' fall log-linearly to a share of themselves, so
   // that the end of a run averages over views and their noise. 1: they do not.
   float settled = 1;
@@ -42,10 +40,12 @@ struct SurfelRates {
     v("rate_opacity", opacity, "learning rate of opacity");
     v("rate_scale", scale, "learning rate of log scales");
     v("rate_rotation", rotation, "learning rate of quaternions");
+  }
+  template <class V>
+  void visit_settling(V&& v) {
     v("rate_settled", settled, "share to which all rates but the positions' fall; 1: none");
     v("settle_from", settle_from, "published step from which they fall");
     v("settle_until", settle_until, "published step at which they have fallen");
-    v("only_seen", only_seen, "Adam leaves numbers alone that have no gradient in a step");
   }
 
   // Rates of a run that is `shortening` times shorter than the published one: numbers of steps

@@ -22,14 +22,12 @@ struct AdamKernel {
   std::size_t columns;
   float scale_v;                           // 1 / (1 - beta2^t)
   const std::uint32_t* is_void = nullptr;  // void_steps.h; null: no
-  bool only_seen = false;  // numbers whose gradient is exactly zero stay as they are
 
   GLINT_HD void operator()(std::size_t i) const {
     if (is_void != nullptr && *is_void != 0) {
       g[i] = 0;
       return;
     }
-    if (only_seen && g[i] == 0) return;
     const float rate = kOneRate ? rates[0] : rates[i % columns];
     m[i] = kBeta1 * m[i] + (1 - kBeta1) * g[i];
     v[i] = kBeta2 * v[i] + (1 - kBeta2) * g[i] * g[i];

@@ -74,34 +74,12 @@ struct DensifyConfig {
     v("opacity_reset_interval", reset_interval, "steps between opacity resets");
     v("opacity_resets", resets, "whether there are opacity resets at all");
     v("densify_gradient", gradient_threshold, "mean NDC gradient that asks for more surfels");
-    v("densify_reference_rows", reference_rows, "image height the threshold is meant for");
-    v("clone_scale", clone_scale, "of the extent: larger surfels are split, smaller ones cloned");
     v("min_opacity", min_opacity, "surfels below are pruned");
-    v("max_scale", max_scale, "of the extent: larger surfels are pruned");
     v("max_surfels", max_surfels, "no growth beyond");
-    v("sample_clones", sample_clones, "clones are placed at points drawn from the surfel");
-    v("max_abs_splits", max_abs_splits, "splits by absolute gradient a densification; 0: none");
-    v("abs_gradient", abs_gradient, "mean absolute NDC gradient that splits large surfels");
-    v("abs_radius_px", abs_radius_px, "radius that counts as large, pixels at the reference rows");
-    v("min_observations", min_observations, "views that must see a surfel, where sets are trimmed");
     v("prune_holiday",
       prune_holiday,
       "steps after an opacity reset in which none is pruned for its opacity; -1: max(200, 2 x "
       "training views)");
-    v("densify_slow_interval", slow_interval, "steps between densifications in the slow window");
-    v("densify_slow_from", slow_from, "first step of the slow window, if it has an interval");
-    v("densify_slow_until", slow_until, "last step of the slow window");
-    v("split_large", split_large, "large surfels are split in five, those least seen pruned");
-    v("cap_by_visibility", cap_by_visibility, "above 0.9 x max_surfels those least seen go");
-    v("min_surfels", min_surfels, "a set is not pruned below so many");
-    v("min_share", min_share, "nor below this share of the surfels it starts with");
-    v("gradient_quantile",
-      gradient_quantile,
-      "the threshold is at most this quantile of the observed gradients; 0: it stays");
-    v("prune_light_large",
-      prune_light_large,
-      "of large surfels only the lightest tenth and those not seen are pruned");
-    v("scale_limit", scale_limit, "of the extent: scales are held below; 0: they are not");
   }
   // Published windows to this run's steps; scaled(published, at least).
   template <class F>

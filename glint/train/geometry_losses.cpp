@@ -43,19 +43,18 @@ void require_prior(
   ));
 }
 
-Json prior_control(int published_iterations) {
-  Json overrides = Json::object();
-  overrides["lambda_depth"] = PriorLosses::kLambdaDepth;
-  overrides["lambda_normal"] = PriorLosses::kLambdaNormal;
-  overrides["min_cosine"] = PriorLosses::kMinCosine;
-  overrides["gate_from"] =
-      scaled_step(PriorLosses::kGateFrom, published_iterations, 1, PriorLosses::kIterations);
-  overrides["lambda_smooth"] = PriorLosses::kLambdaSmooth;
-  overrides["smooth_from"] =
-      scaled_step(PriorLosses::kSmoothFrom, published_iterations, 1, PriorLosses::kIterations);
-  overrides["normal_l1"] = 0;
-  overrides["near_first"] = false;
-  return overrides;
+void GeometryLossConfig::use_priors(int published_iterations) {
+  const auto scaled = [&](int step) {
+    return scaled_step(step, published_iterations, 1, PriorLosses::kIterations);
+  };
+  lambda_depth = PriorLosses::kLambdaDepth;
+  lambda_normal = PriorLosses::kLambdaNormal;
+  min_cosine = PriorLosses::kMinCosine;
+  gate_from = scaled(PriorLosses::kGateFrom);
+  lambda_smooth = PriorLosses::kLambdaSmooth;
+  smooth_from = scaled(PriorLosses::kSmoothFrom);
+  normal_l1 = 0;
+  near_first = false;
 }
 
 std::vector<std::string> GeometryLosses::set_up(

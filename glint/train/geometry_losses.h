@@ -18,12 +18,16 @@ namespace glint {
 
 struct GeometryLossConfig {
   float lambda_depth = 0, lambda_normal = 0, lambda_consistency = 0, lambda_smooth = 0;
-  int consistency_from = 0, gate_from = 10000, smooth_from = 0;
+  int consistency_from = 0;
+  int gate_from = 10000, smooth_from = 0;  // first published iteration: of the normal prior's gate
   float min_cosine = 0.3f;
-  float normal_l1 = 0;
-  bool near_first = false, near_consistency = false;
-  bool unit_consistency = false, cosine_consistency = false, weighted_normals = false;
-  int depth_gradient_scales = 0;
+  float normal_l1 = 0;              // |n - prior|_1 beside 1 - cosine in the normal prior
+  bool near_first = false;          // the normal prior weighs near pixels more
+  bool weighted_normals = false;    // its mean divides by its weights
+  int depth_gradient_scales = 0;    // of the depth prior's gradient term
+  bool near_consistency = false;    // weighs near pixels more
+  bool unit_consistency = false;    // of unit normals
+  bool cosine_consistency = false;  // the weighted mean of 1 - cosine, without alpha
 
   template <class V>
   void visit(V&& v) {
@@ -32,21 +36,13 @@ struct GeometryLossConfig {
     v("lambda_consistency", lambda_consistency, "weight of normal consistency");
     v("lambda_smooth", lambda_smooth, "weight of edge-aware normal smoothness");
     v("consistency_from", consistency_from, "first published iteration of normal consistency");
-    v("gate_from", gate_from, "first published iteration of the normal prior's gate");
-    v("smooth_from", smooth_from, "first published iteration of normal smoothness");
     v("min_cosine", min_cosine, "tau_n: the gate of the normal prior");
-    v("normal_l1", normal_l1, "|n - prior|_1 beside 1 - cosine in the normal prior");
-    v("near_first", near_first, "the normal prior weighs near pixels more");
-    v("near_consistency", near_consistency, "normal consistency weighs near pixels more");
-    v("unit_consistency", unit_consistency, "normal consistency is of unit normals");
-    v("cosine_consistency",
-      cosine_consistency,
-      "normal consistency is the weighted mean of 1 - cosine, without alpha");
-    v("weighted_normals", weighted_normals, "the normal prior's mean divides by its weights");
-    v("depth_gradient_scales", depth_gradient_scales, "scales of the depth prior's gradient term");
   }
   // The priors that these weights look at (Method::inputs).
   void add_inputs(std::vector<std::string>& inputs) const;
+  // Gives a baseline of so many published iterations the priors and the smoothness of GLINT: same
+  // losses, weights and gate, at the same share of the run.
+  void use_priors(int published_iterations);
   // Published windows to this run's iterations.
   template <class F>
   void scale(F&& scaled) {
@@ -56,8 +52,8 @@ struct GeometryLossConfig {
 };
 
 // Depth and normal priors and the smoothness of normals as [Na26 Sec. 3.4, 4.1] uses them, and
-// as prior_control() gives them to others. Weights and starts that the paper does not give:
-// docs/GLINT_NOTES.md, "What the paper leaves open".
+// as GeometryLossConfig::use_priors() gives them to others. Weights and starts that the paper does
+// not give: docs/GLINT_NOTES.md, "What the paper leaves open".
 struct PriorLosses {
   static constexpr float kLambdaDepth = 0.05f, kLambdaNormal = 0.3f, kMinCosine = 0.3f;
   static constexpr float kLambdaSmooth = 0.05f / 3;  // there a mean over three components
@@ -136,10 +132,6 @@ class GeometryLosses {
   NormalSmoothnessLoss smoothness_;
   Image dL_ddepth_;
 };
-
-// Overrides that give a baseline of so many published iterations these priors and the smoothness:
-// same losses, weights and gate, at the same share of the run.
-Json prior_control(int published_iterations);
 
 // Warns where `weight` is not 0 and training views lack the prior; sets it to 0 where all do.
 void require_prior(

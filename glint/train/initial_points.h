@@ -33,7 +33,6 @@ struct ReflectionGrid {
   template <class V>
   void visit(V&& v) {
     v("reflection_cells", cells, "most cells of the reflection grid along each axis");
-    v("points_per_cell", points_per_cell, "initial reflection surfels of each cell");
     v("reflection_points_per_pixel", points_per_pixel, "fewer cells in small images");
     v("reflection_brightness", brightness, "initial colours are random, from 0 to this");
   }

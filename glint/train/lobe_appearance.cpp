@@ -28,23 +28,6 @@ LobeRates LobeRates::for_shorter_run(double shortening) const {
   return {faster * feature, faster * network, faster * network_final};
 }
 
-LobeAppearanceConfig LobeAppearanceConfig::real() {
-  LobeAppearanceConfig config;
-  config.lobe_feature = 12;
-  config.lobes_theta = 2;
-  config.lobes_phi = 4;
-  config.lobe_hidden = 32;
-  config.lobe_reflection = false;
-  return config;
-}
-
-void world_normals(const SurfelCloud& cloud, FloatArray& normals) {
-  normals.resize(3 * cloud.size());
-  run_kernel(
-      cloud.size(), 4 * kGrain, WorldNormals{cloud.rotations.on_device(), normals.on_device()}
-  );
-}
-
 void mark_in_pyramid(const SurfelCloud& cloud, const Camera& camera, Array<std::uint8_t>& visible) {
   visible.resize(cloud.size());
   run_kernel(
@@ -64,23 +47,22 @@ LobeAppearance::LobeAppearance(
     const LobeAppearanceConfig& config, std::size_t count, std::uint64_t seed
 )
     : config_(config), count_(count) {
-  for (const int size :
-       {config.lobe_feature, config.lobes_theta, config.lobes_phi, config.lobe_hidden})
+  for (const int size : {config.feature, config.theta, config.phi, config.hidden})
     GLINT_CHECK(size > 0, kUsage, "lobe appearance: a size is {}, expected positive ones", size);
   // The last axis around is the first again, and all are one at each pole: as published.
-  for (int t = 0; t < config.lobes_theta; ++t)
-    for (int p = 0; p < config.lobes_phi; ++p) {
-      const double theta = evenly(std::numbers::pi, t, config.lobes_theta);
-      const double phi = evenly(2 * std::numbers::pi, p, config.lobes_phi);
+  for (int t = 0; t < config.theta; ++t)
+    for (int p = 0; p < config.phi; ++p) {
+      const double theta = evenly(std::numbers::pi, t, config.theta);
+      const double phi = evenly(2 * std::numbers::pi, p, config.phi);
       const LobeFrame<double> f =
           lobe_frame(std::sin(theta), std::cos(theta), std::sin(phi), std::cos(phi));
       frames_.push_back(
           {cast<float>(f.axis), cast<float>(f.tangent_theta), cast<float>(f.tangent_phi)}
       );
     }
-  features_ = TrainableArray(count * static_cast<std::size_t>(config.lobe_feature));
-  to_lobes_ = Mlp({config.lobe_feature, kLobeNumbers * config.num_lobes()}, seed);
-  to_color_ = Mlp({config.input_width(), config.lobe_hidden, config.lobe_hidden, 3}, seed + 1);
+  features_ = TrainableArray(count * static_cast<std::size_t>(config.feature));
+  to_lobes_ = Mlp({config.feature, kLobeNumbers * config.num_lobes()}, seed);
+  to_color_ = Mlp({config.input_width(), config.hidden, config.hidden, 3}, seed + 1);
   // As published, where the networks' other parameters start as PyTorch's do.
   std::fill_n(to_color_.biases(2).begin(), 3, 0.0f);
 }
@@ -100,23 +82,19 @@ void LobeAppearance::find_visible(const Array<std::uint8_t>& visible) {
 }
 
 const FloatArray& LobeAppearance::forward(
-    const FloatArray& means,
-    const FloatArray& normals,
-    Vec3f eye,
-    const Array<std::uint8_t>& visible
+    const FloatArray& means, Vec3f eye, const Array<std::uint8_t>& visible
 ) {
   GLINT_CHECK(
-      means.size() == 3 * count_ && normals.size() == 3 * count_ && visible.size() == count_,
+      means.size() == 3 * count_ && visible.size() == count_,
       kUsage,
-      "lobe appearance: made for {} surfels, found {} means, {} normals, {} visibilities",
+      "lobe appearance: made for {} surfels, found {} means, {} visibilities",
       count_,
       means.size() / 3,
-      normals.size() / 3,
       visible.size()
   );
   find_visible(visible);
-  view_ = {means.on_device(), normals.on_device(), eye, config_.lobe_reflection};
-  const std::size_t m = surfels_.size(), width = static_cast<std::size_t>(config_.lobe_feature);
+  view_ = {means.on_device(), eye};
+  const std::size_t m = surfels_.size(), width = static_cast<std::size_t>(config_.feature);
   seen_features_.resize(m * width);
   run_kernel(
       m * width,
@@ -155,9 +133,8 @@ void LobeAppearance::clear_unseen(FloatArray& rows) const {
 }
 
 const FloatArray& LobeAppearance::forward(const SurfelCloud& cloud, const Camera& camera) {
-  world_normals(cloud, normals_);
   mark_in_pyramid(cloud, camera, visible_);
-  return forward(cloud.means, normals_, cast<float>(camera.center()), visible_);
+  return forward(cloud.means, cast<float>(camera.center()), visible_);
 }
 
 void LobeAppearance::backward(const RasterGradient& gradient, int channels) {
@@ -173,7 +150,7 @@ void LobeAppearance::backward(const FloatArray& dL_doffsets) {
       dL_doffsets.size(),
       offsets_.size()
   );
-  const std::size_t m = surfels_.size(), width = static_cast<std::size_t>(config_.lobe_feature);
+  const std::size_t m = surfels_.size(), width = static_cast<std::size_t>(config_.feature);
   dL_dcolors_.resize(3 * m);
   run_kernel(
       3 * m,
@@ -222,7 +199,7 @@ std::vector<TensorToWrite> LobeAppearance::tensors(const std::string& name) cons
   for (TensorToWrite& tensor : to_color_.tensors(name + ".to_color"))
     tensors.push_back(std::move(tensor));
   tensors.push_back(float_tensor(
-      name + ".features", {count_, static_cast<std::size_t>(config_.lobe_feature)}, features_.values
+      name + ".features", {count_, static_cast<std::size_t>(config_.feature)}, features_.values
   ));
   return tensors;
 }
@@ -233,7 +210,7 @@ void LobeAppearance::read(SafetensorsFile& file, const std::string& name) {
   read_floats(
       file,
       name + ".features",
-      {count_, static_cast<std::size_t>(config_.lobe_feature)},
+      {count_, static_cast<std::size_t>(config_.feature)},
       features_.values
   );
 }

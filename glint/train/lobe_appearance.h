@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // View-dependent colour that a network adds to surfels' spherical harmonics [TSGS, after
 // Spec-Gaussian]: a feature per surfel becomes the numbers of anisotropic spherical Gaussians about
-// fixed axes, which are asked for the mirrored viewing direction and, with that direction's
-// encoding, become RGB.
+// fixed axes, which are asked for the viewing direction and, with that direction's encoding, become
+// RGB.
 #pragma once
 
 #include <vector>
@@ -26,33 +26,17 @@ struct LobeRates {
   LobeRates for_shorter_run(double shortening) const;
 };
 
+// Its authors' network for rooms: lobes see the viewing direction.
 struct LobeAppearanceConfig {
-  int lobe_feature = 24, lobes_theta = 4, lobes_phi = 8, lobe_hidden = 128;
-  bool lobe_reflection = true;
+  int feature = 12;        // numbers of a surfel's feature
+  int theta = 2, phi = 4;  // axes of lobes between the poles and around them
+  int hidden = 32;         // width of the network's two hidden layers
   LobeRates rates;
 
-  // The smaller network of captures without strong mirrors: lobes see the viewing direction itself,
-  // and the normal is not used.
-  static LobeAppearanceConfig real();
-  int num_lobes() const { return lobes_theta * lobes_phi; }
-  // Two values a lobe, n.v with reflection, the viewing direction and its encoding.
-  int input_width() const {
-    return 2 * num_lobes() + (lobe_reflection ? 1 : 0) + 3 + kEncodedDirection;
-  }
-
-  template <class V>
-  void visit(V&& v) {
-    v("lobe_feature", lobe_feature, "numbers of a surfel's feature");
-    v("lobes_theta", lobes_theta, "axes of lobes between the poles");
-    v("lobes_phi", lobes_phi, "axes of lobes around them");
-    v("lobe_hidden", lobe_hidden, "width of the network's two hidden layers");
-    v("lobe_reflection", lobe_reflection, "lobes see the mirrored direction");
-    rates.visit(v);
-  }
+  int num_lobes() const { return theta * phi; }
+  // Two values a lobe, the viewing direction and its encoding.
+  int input_width() const { return 2 * num_lobes() + 3 + kEncodedDirection; }
 };
-
-// Unit normals of a cloud in the world, [N][3]: third columns of its rotations.
-void world_normals(const SurfelCloud& cloud, FloatArray& normals);
 
 // visible[i] becomes 1 where something of surfel i can be in the picture: its 3-sigma sphere meets
 // the pyramid of the image. All that reach a pixel are among them, and some that do not.
@@ -66,18 +50,12 @@ class LobeAppearance {
   LobeAppearance(const LobeAppearanceConfig& config, std::size_t count, std::uint64_t seed);
 
   // What to add to the colours of the surfels with visible[i] != 0, [N][3]; zero for all others.
-  // means: [N][3] metres, world; normals: [N][3] unit, world, of either side; eye: camera centre.
-  // All must stay as they are until backward(). The result is valid until the next call. Errors
-  // (kUsage): arrays of another number of surfels.
-  const FloatArray& forward(
-      const FloatArray& means,
-      const FloatArray& normals,
-      Vec3f eye,
-      const Array<std::uint8_t>& visible
-  );
+  // means: [N][3] metres, world; eye: camera centre. All must stay as they are until backward().
+  // The result is valid until the next call. Errors (kUsage): arrays of another number of surfels.
+  const FloatArray& forward(const FloatArray& means, Vec3f eye, const Array<std::uint8_t>& visible);
   // The same for a cloud as a camera sees it, which must stay as it is until backward().
   const FloatArray& forward(const SurfelCloud& cloud, const Camera& camera);
-  // Adds dL/d(features and weights) of the last forward(). Positions and normals are constants.
+  // Adds dL/d(features and weights) of the last forward(). Positions are constants.
   void backward(const FloatArray& dL_doffsets);
   // The same from what was rasterised with the offsets; channels: of its features.
   void backward(const RasterGradient& gradient, int channels);
@@ -86,7 +64,7 @@ class LobeAppearance {
 
   const LobeAppearanceConfig& config() const { return config_; }
   std::size_t num_surfels() const { return count_; }
-  TrainableArray& features() { return features_; }  // [N][lobe_feature]
+  TrainableArray& features() { return features_; }  // [N][feature]
   Mlp& to_lobes() { return to_lobes_; }
   Mlp& to_color() { return to_color_; }
 
@@ -110,7 +88,6 @@ class LobeAppearance {
   TrainableArray features_;
   Mlp to_lobes_, to_color_;
   // Of the last forward(); M visible surfels.
-  FloatArray normals_;           // [N][3], where it was given a cloud
   Array<std::uint8_t> visible_;  // [N]
   const Array<std::uint8_t>* seen_ = nullptr;
   LobeView view_{};

@@ -78,32 +78,14 @@ GLINT_HD void encode_direction(Vec3f d, float* to) {
     }
 }
 
-// Where the directions of a surfel come from: constants of the loss.
+// Where the direction of a surfel comes from, a constant of the loss.
 struct LobeView {
-  const float *means, *normals;  // [N][3], world; normals unit, of either side
+  const float* means;  // [N][3], world
   Vec3f eye;
-  bool reflect;  // lobes see the mirrored direction, else the viewing direction
 
-  struct Directions {
-    Vec3f view, seen;  // unit: from the eye; what the lobes are asked for
-    float cosine;      // of the normal and the direction to the eye, >= 0
-  };
-  GLINT_HD Directions at(std::size_t surfel) const {
+  GLINT_HD Vec3f at(std::size_t surfel) const {  // unit, from the eye
     const Vec3f d = get3(means, surfel) - eye;
-    const Vec3f view = (1 / max_of(length(d), 1e-12f)) * d;
-    if (!reflect) return {view, view, 0};
-    const Vec3f n = get3(normals, surfel);
-    return {view, mirrored_direction(view, n), abs_of(dot(n, view))};
-  }
-};
-
-// Third columns of rotations [N][4].
-struct WorldNormals {
-  const float* rotations;
-  float* normals;
-  GLINT_HD void operator()(std::size_t i) const {
-    const float* q = rotations + 4 * i;
-    put3(normals, i, column(rotation_matrix(Vec4f{q[0], q[1], q[2], q[3]}), 2));
+    return (1 / max_of(length(d), 1e-12f)) * d;
   }
 };
 
@@ -156,17 +138,15 @@ struct LobeInputs {
   float* inputs;                   // [M][width]
 
   GLINT_HD void operator()(std::size_t i) const {
-    const LobeView::Directions directions = view.at(surfels[i]);
+    const Vec3f direction = view.at(surfels[i]);
     float* to = inputs + i * width;
     for (std::size_t l = 0; l < lobes; ++l) {
-      const Vec2f value =
-          lobe(frames[l], numbers + (i * lobes + l) * kLobeNumbers, directions.seen);
+      const Vec2f value = lobe(frames[l], numbers + (i * lobes + l) * kLobeNumbers, direction);
       *to++ = value.x;
       *to++ = value.y;
     }
-    if (view.reflect) *to++ = directions.cosine;
-    for (int axis = 0; axis < 3; ++axis) *to++ = directions.view[axis];
-    encode_direction(directions.view, to);
+    for (int axis = 0; axis < 3; ++axis) *to++ = direction[axis];
+    encode_direction(direction, to);
   }
 };
 struct LobeInputsVjp {
@@ -178,11 +158,11 @@ struct LobeInputsVjp {
   float* dL_dnumbers;  // [M][lobes][4]
 
   GLINT_HD void operator()(std::size_t i) const {
-    const Vec3f seen = view.at(surfels[i]).seen;
+    const Vec3f direction = view.at(surfels[i]);
     const float* g = dL_dinputs + i * width;
     for (std::size_t l = 0; l < lobes; ++l) {
       const std::size_t at = (i * lobes + l) * kLobeNumbers;
-      lobe_vjp(frames[l], numbers + at, seen, {g[2 * l], g[2 * l + 1]}, dL_dnumbers + at);
+      lobe_vjp(frames[l], numbers + at, direction, {g[2 * l], g[2 * l + 1]}, dL_dnumbers + at);
     }
   }
 };
@@ -197,6 +177,6 @@ struct ClearUnseen {
 };
 
 using LobeAppearanceKernels =
-    KernelList<ClearUnseen, WorldNormals, MarkInPyramid, AddToRows, LobeInputs, LobeInputsVjp>;
+    KernelList<ClearUnseen, MarkInPyramid, AddToRows, LobeInputs, LobeInputsVjp>;
 
 }  // namespace glint

@@ -11,15 +11,12 @@ namespace glint {
 // new reflection set is a fog of faint surfels that would take hundreds of hits a ray. The hit that
 // would take a ray below 0.02 is left out with all behind it: at most k_s times the transmittance
 // before it of a pixel's light. Pictures that someone looks at, or that are scored, have rays to
-// the end. And in training, 2x2 pixels that mirror little share a ray, and such a ray may end
-// earlier (SharedRays; off, docs/GLINT_NOTES.md says what it costs; as it does of larger blocks).
+// the end. And in training, 2x2 pixels that mirror little share a ray (SharedRays).
 struct MirrorCutoffs {
-  float transmittance = 0.02f, picture_transmittance = kMinTransmittance;
-  int hits = 64, picture_hits = 256;
+  float transmittance = 0.02f;
+  int hits = 64;
   float near = 0;
   float share_below = 0.2f;  // k_s
-  int share_block = 2;       // pixels across and down
-  float weight_below = 0;    // transmittance times k_s
   // One traced ray of several pixels gets the sum of their gradients, so that the norm which asks
   // for more surfels grows with the pixels that share. While the set grows, one step in so many
   // has a ray for each pixel, and density control looks at those steps alone; 0: at all.
@@ -30,25 +27,16 @@ struct MirrorCutoffs {
     v("mirror_transmittance", transmittance, "transmittance at which mirrored rays of training stop"
     );
     v("mirror_hits", hits, "most surfels that a mirrored ray of training meets");
-    v("mirror_picture_transmittance", picture_transmittance, "the same of pictures to look at");
-    v("mirror_picture_hits", picture_hits, "the same of pictures to look at");
     v("mirror_share_below",
       share_below,
       "k_s below which pixels of a block share a mirrored ray in training; 0: none do");
-    v("mirror_share_block", share_block, "pixels across and down that share a mirrored ray");
     v("mirror_observe_every",
       observe_every,
       "of a growing set, one step in so many shares no mirrored rays, and growth counts it alone; "
       "0: growth counts all steps, shared rays too");
-    v("mirror_weight_below",
-      weight_below,
-      "transmittance times k_s below which mirrored rays end in training; 0: all at "
-      "mirror_transmittance");
     v("mirror_near", near, "metres that a mirrored ray passes before it meets any");
   }
-  RaySharing sharing() const { return {.below = share_below, .block = share_block}; }
-  RayStops stops() const { return {.weight_below = weight_below, .latest = transmittance}; }
-  bool shares() const { return share_below > 0 || weight_below > 0; }
+  bool shares() const { return share_below > 0; }
   // Whether density control looks at this step, in which no ray is shared then.
   bool observes(int step) const {
     return !shares() || observe_every <= 0 || step % observe_every == 0;
@@ -56,9 +44,10 @@ struct MirrorCutoffs {
   // Of training, or of a picture for someone.
   TraceSettings settings(bool training) const {
     TraceSettings settings;
-    settings.min_transmittance = training ? transmittance : picture_transmittance;
-    settings.max_hits = training ? hits : picture_hits;
     settings.near = near;
+    if (!training) return settings;
+    settings.min_transmittance = transmittance;
+    settings.max_hits = hits;
     return settings;
   }
 };

@@ -16,8 +16,8 @@ void MirroredLayer::trace(
   observes_ = !step || mirror.observes(*step);
   const bool own = observes_ && mirror.observe_every > 0 && set.grows();
   chosen_ = step && mirror.shares() && !own;
-  const Rays& rays =
-      chosen_ ? shared_.choose(buffer, mirror.sharing(), mirror.stops(), *step) : buffer.reflected;
+  const RaySharing sharing{.below = mirror.share_below};
+  const Rays& rays = chosen_ ? shared_.choose(buffer, sharing, *step) : buffer.reflected;
   const Image& color = set.trace(rays, sh_degree, mirror.settings(step.has_value())).color;
   if (chosen_)
     shared_.spread(color, layer);

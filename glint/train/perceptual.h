@@ -37,13 +37,12 @@ class PerceptualLoss {
 struct PerceptualConfig {
   float lambda_lpips = 0.01f;
   int lpips_from = 45000;
-  bool lpips_unit_range = false;
+  bool lpips_unit_range = false;  // its network is fed [0, 1] instead of [-1, 1]
 
   template <class V>
   void visit(V&& v) {
     v("lambda_lpips", lambda_lpips, "weight of LPIPS");
     v("lpips_from", lpips_from, "first published iteration of LPIPS");
-    v("lpips_unit_range", lpips_unit_range, "its network is fed [0, 1] instead of [-1, 1]");
   }
   // Of Method::inputs().
   void add_inputs(std::vector<std::string>& inputs) const {

@@ -69,14 +69,6 @@ double sum_of(const std::vector<double>& rows) {
   return std::accumulate(rows.begin(), rows.end(), 0.0);
 }
 
-// Told, and left where kernels read it if they do.
-template <class Kernel>
-double sum_told(ImageSize size, const Kernel& kernel, Array<double>* sum) {
-  if (sum == nullptr) return sum_kernel(size, kernel);
-  sum_kernel_to(size, kernel, *sum);
-  return told(*sum);
-}
-
 }  // namespace
 
 float* PhotometricLoss::plane_row(FloatArray& planes, int plane, int y) {
@@ -177,11 +169,7 @@ void PhotometricLoss::gradient_rows(
 }
 
 PhotometricTerms PhotometricLoss::evaluate_on_gpu(
-    const Image& rendered,
-    const Image& target,
-    PhotometricWeights weights,
-    Image& gradient,
-    Array<double>* ssim_sum
+    const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
 ) {
   const std::size_t values = 3 * rendered.num_pixels();
   const PlaneStack planes{width_, height_};
@@ -195,8 +183,7 @@ PhotometricTerms PhotometricLoss::evaluate_on_gpu(
   run_kernel(
       values, 1, BlurMomentRows{rendered.on_device(), target.on_device(), window, planes, moments}
   );
-  const double ssim =
-      sum_told(rendered.size(), SsimAt{window, planes, moments, gradients}, ssim_sum);
+  const double ssim = sum_kernel(rendered.size(), SsimAt{window, planes, moments, gradients});
   run_kernel(kGradientPlanes * values, 1, BlurGradientColumns{window, planes, gradients, moments});
   const auto count = static_cast<double>(values);
   const float per_value = 1.0f / static_cast<float>(values);
@@ -214,11 +201,7 @@ PhotometricTerms PhotometricLoss::evaluate_on_gpu(
 }
 
 PhotometricTerms PhotometricLoss::evaluate(
-    const Image& rendered,
-    const Photo& photo,
-    PhotometricWeights weights,
-    Image& gradient,
-    Array<double>* ssim_sum
+    const Image& rendered, const Photo& photo, PhotometricWeights weights, Image& gradient
 ) {
   const Image& target = photo.rgb;
   const bool fits = rendered.size() == target.size() && rendered.size() == gradient.size() &&
@@ -234,7 +217,7 @@ PhotometricTerms PhotometricLoss::evaluate(
   );
   PhotometricTerms terms =
       counted_.evaluate(rendered, photo, gradient, [&](const Image& picture, Image& dL_dpicture) {
-        return evaluate_all(picture, target, weights, dL_dpicture, ssim_sum);
+        return evaluate_all(picture, target, weights, dL_dpicture);
       });
   if (!photo.all_count())
     terms.mse *= static_cast<double>(rendered.num_pixels()) /
@@ -243,15 +226,11 @@ PhotometricTerms PhotometricLoss::evaluate(
 }
 
 PhotometricTerms PhotometricLoss::evaluate_all(
-    const Image& rendered,
-    const Image& target,
-    PhotometricWeights weights,
-    Image& gradient,
-    Array<double>* ssim_sum
+    const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
 ) {
   width_ = rendered.width();
   height_ = rendered.height();
-  if (on_gpu()) return evaluate_on_gpu(rendered, target, weights, gradient, ssim_sum);
+  if (on_gpu()) return evaluate_on_gpu(rendered, target, weights, gradient);
   stride_ = (static_cast<std::size_t>(width_) + 7) / 8 * 8;
   moments_.resize(5 * height_ * stride_);
   moment_gradients_.resize(3 * height_ * stride_);
@@ -263,7 +242,6 @@ PhotometricTerms PhotometricLoss::evaluate_all(
   }
   const double count = 3.0 * static_cast<double>(rendered.num_pixels());
   const double ssim = sum_of(row_ssim_);
-  if (ssim_sum != nullptr) ssim_sum->assign(1, ssim);
   return {sum_of(row_l1_) / count, 1.0 - ssim / count, sum_of(row_mse_) / count};
 }
 

@@ -30,29 +30,16 @@ class PhotometricLoss {
  public:
   // rendered: [H][W][3], as the photo. Adds weight * dL/d(rendered) to `gradient` (same shape).
   // Where a pixel does not count it is right; means are over all pixels, but for that of the PSNR.
-  // ssim_sum: becomes the sum of SSIM over values [1], for kernels; null: nobody asks for it.
   PhotometricTerms evaluate(
-      const Image& rendered,
-      const Photo& photo,
-      PhotometricWeights weights,
-      Image& gradient,
-      Array<double>* ssim_sum = nullptr
+      const Image& rendered, const Photo& photo, PhotometricWeights weights, Image& gradient
   );
 
  private:
   PhotometricTerms evaluate_all(
-      const Image& rendered,
-      const Image& target,
-      PhotometricWeights weights,
-      Image& gradient,
-      Array<double>* ssim_sum
+      const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
   );
   PhotometricTerms evaluate_on_gpu(
-      const Image& rendered,
-      const Image& target,
-      PhotometricWeights weights,
-      Image& gradient,
-      Array<double>* ssim_sum
+      const Image& rendered, const Image& target, PhotometricWeights weights, Image& gradient
   );
   void blur_rows(const Image& rendered, const Image& target, int channel);
   void ssim_rows();

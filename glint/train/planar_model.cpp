@@ -4,34 +4,21 @@
 #include <algorithm>
 
 #include "glint/render/map_ops.h"
-#include "glint/scene/ply.h"
 #include "glint/train/initial_points.h"
 #include "glint/train/lobe_appearance.h"
 
 namespace glint {
 
-namespace {
-
-constexpr const char* kFile = "interface.ply";
-
-}  // namespace
-
 PlanarConfig::PlanarConfig() {
   densify.clone_scale = 0.001f;
   densify.sample_clones = true;
-  densify.abs_gradient = 8e-4f;
-  densify.abs_radius_px = 20;
-  densify.max_abs_splits = 0;
-  densify.min_opacity = 0.05f;
-  densify.min_observations = 2;
 }
 
 void PlanarConfig::scale_to(int iterations) {
   const auto scaled = [&](int published, int at_least = 1) {
     return scaled_step(published, iterations, at_least);
   };
-  for (int* window : {&sh_interval, &planes.from, &exposure.from, &trim_until})
-    *window = scaled(*window);
+  for (int* window : {&sh_interval, &planes.from, &trim_until}) *window = scaled(*window);
   trim_interval = scaled(trim_interval, 100);
   densify.scale(scaled);
   rates = rates.for_shorter_run(30000.0 / iterations);
@@ -48,7 +35,6 @@ std::vector<std::string> PlanarModel::set_up(
   windows_.scale_to(options.iterations);
   std::vector<std::string> warnings = planes_.set_up(windows_.planes, scene, options.seed, method);
   warn_without_points(scene, method, warnings);
-  photometric_ = ExposureLoss(windows_.exposure, scene.train.size());
   InitialSurfels initial;
   initial.opacity = windows_.initial_opacity;
   initial.seed = options.seed;
@@ -75,9 +61,8 @@ const View& PlanarModel::forward(int iteration, StepStats& stats) {
 
 void PlanarModel::add_losses(const Photo& photo, StepStats& stats) {
   const PhotometricWeights weights{1 - windows_.lambda_ssim, windows_.lambda_ssim};
-  const PhotometricTerms terms = photometric_.evaluate(
-      view_, stats.iteration, output_->features, photo, weights, gradient_.features
-  );
+  const PhotometricTerms terms =
+      photometric_.evaluate(output_->features, photo, weights, gradient_.features);
   stats.terms["photometric"] = terms.weighted(weights);
   stats.psnr = terms.psnr();
   planes_.add(view_, stats.iteration, set_, *output_, gradient_, stats);
@@ -121,15 +106,6 @@ void PlanarModel::rasterize(const Camera& camera, const RasterSettings& settings
   set_.pass().activated.options.color_offsets =
       lobes_ != nullptr ? &lobes_->forward(set_.cloud(), camera) : nullptr;
   output_ = &set_.forward(camera, sh_degree_, settings);
-}
-
-void PlanarModel::save(const std::string& folder) const {
-  write_surfel_ply(fs::path(folder) / kFile, set_.cloud());
-}
-
-void PlanarModel::load(const std::string& folder) {
-  set_.load(read_surfel_ply(fs::path(folder) / kFile));
-  sh_degree_ = 3;
 }
 
 }  // namespace glint

@@ -3,7 +3,7 @@
 // control with its trim. What methods that build on it differ in, they add between its calls.
 #pragma once
 
-#include "glint/train/exposure.h"
+#include "glint/train/photometric.h"
 #include "glint/train/planar_losses.h"
 #include "glint/train/trainer.h"
 
@@ -18,7 +18,6 @@ struct PlanarConfig {
   float initial_opacity = 0.1f;
   int trim_interval = 1000, trim_until = 15000;
   PlanarLossConfig planes;
-  ExposureConfig exposure;
   DensifyConfig densify;
   SurfelRates rates;
 
@@ -32,8 +31,17 @@ struct PlanarConfig {
     v("trim_interval", trim_interval, "steps between trims of what too few views see");
     v("trim_until", trim_until, "last step of trims, exclusive");
     planes.visit(v);
-    exposure.visit(v);
     densify.visit(v);
+    v("max_abs_splits",
+      densify.max_abs_splits,
+      "splits by absolute gradient a densification; 0: none");
+    v("abs_gradient", densify.abs_gradient, "mean absolute NDC gradient that splits large surfels");
+    v("abs_radius_px",
+      densify.abs_radius_px,
+      "radius that counts as large, pixels at the reference rows");
+    v("min_observations",
+      densify.min_observations,
+      "views that must see a surfel, where sets are trimmed");
     rates.visit(v);
   }
   // Windows of this run.
@@ -42,6 +50,8 @@ struct PlanarConfig {
 
 class PlanarModel {
  public:
+  explicit PlanarModel(TrainableSet& set) : set_(set) {}  // is borrowed
+
   // `published` with windows of 30,000 iterations, which are scaled to the run's. Returns warnings.
   std::vector<std::string> set_up(
       const PlanarConfig& published,
@@ -72,16 +82,10 @@ class PlanarModel {
   MapSet render(const Camera& camera);
   const RasterOutput& draw(const Camera& camera);
 
-  // The set as one file in the folder; what was loaded has all SH degrees.
-  void save(const std::string& folder) const;
-  void load(const std::string& folder);
-  TrainableSet& set() { return set_; }
-  const TrainableSet& set() const { return set_; }
+  void use_all_degrees() { sh_degree_ = 3; }  // of a set that was loaded
   template <class State>
   void visit_state(State& state) {
-    state("set", set_);
     state("views", views_);
-    state("exposure", photometric_);
   }
 
  private:
@@ -90,13 +94,13 @@ class PlanarModel {
 
   PlanarConfig windows_;
   const Scene* scene_ = nullptr;
-  TrainableSet set_;
+  TrainableSet& set_;
   LobeAppearance* lobes_ = nullptr;
   ViewSampler views_;
   std::size_t view_ = 0;  // of this step
   int sh_degree_ = 3;
   PlanarLosses planes_;
-  ExposureLoss photometric_;
+  PhotometricLoss photometric_;
   const RasterOutput* output_ = nullptr;
   RasterOutputGradient gradient_;
 };

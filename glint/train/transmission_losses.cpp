@@ -33,8 +33,6 @@ GeometryLossConfig direct_geometry(const TransmissionLossConfig& config) {
   geometry.lambda_consistency = config.lambda_direct_consistency;
   geometry.near_consistency = config.direct_near_consistency;
   geometry.cosine_consistency = config.direct_cosine_consistency;
-  geometry.lambda_smooth = config.lambda_direct_smooth;
-  geometry.smooth_from = config.direct_smooth_from;
   return geometry;
 }
 
@@ -110,16 +108,6 @@ std::vector<std::string> TransmissionLosses::set_up(
 void TransmissionLosses::use_perceptual(PerceptualLoss* loss, const PerceptualConfig& config) {
   perceptual_ = config_.direct_lpips ? loss : nullptr;
   perceptual_config_ = config;
-}
-
-float TransmissionLosses::add_opacity(int iteration, const Image& alpha, StepStats& stats) const {
-  const float weight = config_.lambda_opacity;
-  if (weight <= 0 || iteration < config_.opacity_from || iteration >= config_.opacity_until)
-    return 0;
-  const auto count = static_cast<double>(alpha.num_pixels());
-  const double mean = sum_kernel(alpha.size(), SumPixels{alpha.on_device()}) / count;
-  stats.terms["opacity"] = static_cast<double>(weight) * (1 - mean);
-  return -weight / static_cast<float>(alpha.num_pixels());
 }
 
 bool TransmissionLosses::has_cues(const View& view) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Losses that look at the transmission set from the camera on its own (not only behind the
 // interface), and at the transparency map t: guidance [Na26 Sec. 3.4], and what GLINT's release
-// adds (direct supervision by colour and on its normals, plausibility, a prior on t, opacity).
+// adds (direct supervision by colour and on its normals, plausibility, a prior on t).
 #pragma once
 
 #include <string>
@@ -22,18 +22,16 @@ struct TransmissionLossConfig {
   float lambda_transparency = 0.1f;
   float depth_threshold = 0.01f, low_albedo = 0.05f, transparent_weight = 1;
   float lambda_direct = 0, lambda_plausible = 0, lambda_transparency_prior = 0;
+  // First published iterations.
   int transparency_from = 7000, plausible_from = 5000, transparency_prior_from = 7000;
-  // The prior on t by masks, and from when to when it changes (masked_transparency.h).
+  // The prior on t by the labels of guidance, and from when to when it changes to one of surfels
+  // (masked_transparency.h).
   bool masked_transparency_prior = false;
   int transparency_prior_late_from = 21000, transparency_prior_late_until = 31000;
   // On the set seen from the camera on its own, as on the interface.
   bool direct_lpips = false;
-  float lambda_direct_consistency = 0, lambda_direct_smooth = 0;
-  int direct_smooth_from = 5000;
-  bool direct_near_consistency = false, direct_cosine_consistency = false;
-  // On the set behind the interface.
-  float lambda_opacity = 0;
-  int opacity_from = 7000, opacity_until = 31000;
+  float lambda_direct_consistency = 0;
+  bool direct_near_consistency = true, direct_cosine_consistency = false;
 
   template <class V>
   void visit(V&& v) {
@@ -43,30 +41,10 @@ struct TransmissionLossConfig {
     v("low_albedo", low_albedo, "gamma_a: albedo of glass lies below");
     v("transparent_weight", transparent_weight, "of labels that say glass, beside 1 (paper)");
     v("lambda_direct", lambda_direct, "photometric loss of the transmission set on its own");
+    v("lambda_direct_consistency", lambda_direct_consistency, "its normal consistency");
     v("lambda_plausible", lambda_plausible, "ties transmission to the interface where opaque");
     v("lambda_transparency_prior", lambda_transparency_prior, "entropy, mean, smoothness of t");
     v("transparency_from", transparency_from, "first published iteration of guidance");
-    v("plausible_from", plausible_from, "first published iteration of plausibility");
-    v("transparency_prior_from", transparency_prior_from, "first published iteration of that");
-    v("masked_transparency_prior",
-      masked_transparency_prior,
-      "that prior by the labels of guidance, and late in a run of surfels");
-    v("transparency_prior_late_from",
-      transparency_prior_late_from,
-      "published iteration from which the masked prior changes");
-    v("transparency_prior_late_until",
-      transparency_prior_late_until,
-      "published iteration at which it has changed");
-    v("direct_lpips", direct_lpips, "LPIPS of the transmission set on its own, too");
-    v("lambda_direct_consistency", lambda_direct_consistency, "its normal consistency");
-    v("lambda_direct_smooth", lambda_direct_smooth, "its edge-aware normal smoothness");
-    v("direct_smooth_from", direct_smooth_from, "first published iteration of that smoothness");
-    v("direct_near_consistency", direct_near_consistency, "its consistency weighs near pixels more"
-    );
-    v("direct_cosine_consistency", direct_cosine_consistency, "as cosine_consistency");
-    v("lambda_opacity", lambda_opacity, "draws the transmission set behind the interface opaque");
-    v("opacity_from", opacity_from, "first published iteration of that");
-    v("opacity_until", opacity_until, "last published iteration of that, exclusive");
   }
   // The priors that guidance looks at (Method::inputs).
   void add_inputs(std::vector<std::string>& inputs) const;
@@ -77,18 +55,13 @@ struct TransmissionLossConfig {
           &plausible_from,
           &transparency_prior_from,
           &transparency_prior_late_from,
-          &transparency_prior_late_until,
-          &direct_smooth_from,
-          &opacity_from,
-          &opacity_until})
+          &transparency_prior_late_until})
       *window = scaled(*window);
   }
   // Errors (kUsage): an unknown kind of guidance, a negative weight of labels. `method` opens them.
   void check(const std::string& method) const;
   // Whether a loss on the set's own picture is on.
-  bool has_direct() const {
-    return lambda_direct > 0 || lambda_direct_consistency > 0 || lambda_direct_smooth > 0;
-  }
+  bool has_direct() const { return lambda_direct > 0 || lambda_direct_consistency > 0; }
 };
 
 class TransmissionLosses {
@@ -101,9 +74,6 @@ class TransmissionLosses {
   // LPIPS of the interface's pictures, for those of the set on its own if the config wants it;
   // `loss` may be null, else it outlives this.
   void use_perceptual(PerceptualLoss* loss, const PerceptualConfig& config);
-  // Mean over pixels of 1 - alpha of the set behind the interface: adds the weighted loss to
-  // stats.terms and returns dL/d(alpha), the same at every pixel. 0: off, or not its time.
-  float add_opacity(int iteration, const Image& alpha, StepStats& stats) const;
   // Adds the gradient of the entropy of the surfels' t, the last stretch of the masked prior.
   void add_surfel_entropy(
       int iteration,

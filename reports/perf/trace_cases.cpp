@@ -103,17 +103,15 @@ struct TraceState {
   ActivatedSurfels activated;
   Tracer tracer;
   TraceOutputGradient dL_doutput;
-  TraceSettings settings;
 
-  TraceState(TraceScene traced, bool triangles) : scene(std::move(traced)) {
+  explicit TraceState(TraceScene traced) : scene(std::move(traced)) {
     activate_geometry(scene.cloud, activated);
     const Image& rays = scene.rays.origins;
     dL_doutput.color = Image(rays.width(), rays.height(), 3, 1e-4f);
-    settings.triangles = triangles;
     forward();  // for hits_per_ray() and backward()
   }
   TraceInput input() const { return trace_input(scene.cloud, activated, 3); }
-  void forward() { tracer.forward({input(), scene.rays, settings}); }
+  void forward() { tracer.forward({input(), scene.rays, {}}); }
   void backward() { tracer.backward(dL_doutput); }
   double hits() const { return static_cast<double>(tracer.num_hits()); }
   double hits_per_ray() const {
@@ -138,25 +136,21 @@ void add_cases(
   const std::string forward = case_name(name, s->hits_per_ray());
   const auto hits = [s] { return s->hits(); };
   cases.push_back({forward, "hits", hits, [s] { s->forward(); }, {}});
-  if (s->settings.triangles) return;
   cases.push_back({forward + " backward", "hits", hits, [s] { s->backward(); }, {}});
 }
 
 std::vector<PerfCase> trace_cases(const PerfOptions& options) {
   std::vector<PerfCase> cases;
-  const auto add = [&](const char* name, bool triangles, auto&& scene) {
-    if (may_be_wanted(options, name))
-      add_cases(name, std::make_shared<TraceState>(scene(), triangles), cases);
+  const auto add = [&](const char* name, auto&& scene) {
+    if (may_be_wanted(options, name)) add_cases(name, std::make_shared<TraceState>(scene()), cases);
   };
-  add("100k", false, [&] { return incoherent(options, options.overlap); });
+  add("100k", [&] { return incoherent(options, options.overlap); });
   // As many hits as in the published measurement of bare traversals.
-  add("100k", false, [&] { return incoherent(options, 1.75f); });
-  if (!on_gpu() && SurfelBvh::has_triangles())
-    add("triangles", true, [&] { return incoherent(options, options.overlap); });
+  add("100k", [&] { return incoherent(options, 1.75f); });
   // What mirrored rays meet early in GLINT's training: faint surfels about as large as their
   // distances; and late: fewer and so large that their boxes overlap everywhere.
-  add("fog", false, [] { return mirrored_fog({15, 5, 0.11f, 0.1f}); });
-  add("large surfels", false, [] { return mirrored_fog({12, 5, 0.2f, 0.3f}); });
+  add("fog", [] { return mirrored_fog({15, 5, 0.11f, 0.1f}); });
+  add("large surfels", [] { return mirrored_fog({12, 5, 0.2f, 0.3f}); });
   return cases;
 }
 

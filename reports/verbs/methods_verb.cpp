@@ -4,6 +4,7 @@
 #include "glint/core/nearest.h"
 #include "glint/core/rows.h"
 #include "glint/method.h"
+#include "glint/setting_guide.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {
@@ -66,20 +67,37 @@ Cell value_cell(const Json& value) {
 }
 
 // Defaults are those of the family's first, "override" what the variant sets instead.
-Rows fields_of(const MethodSpec& spec) {
-  const bool is_variant = !spec.overrides.empty();
+std::vector<Column> columns_of(const MethodSpec& spec) {
   std::vector<Column> columns{{"name", "field"}, {"type", "type"}, {"default", "default"}};
-  if (is_variant) columns.push_back({"override", spec.id});
-  columns.push_back({"meaning", "meaning"});
-  Rows rows(columns);
-  for (const ConfigField& field : spec.create(Json::object())->fields()) {
-    std::vector<Cell> cells{field.name, field.type(), value_cell(field.value)};
-    const auto set = spec.overrides.find(field.name);
-    if (is_variant)
-      cells.push_back(set == spec.overrides.end() ? Cell::absent() : value_cell(*set));
-    cells.emplace_back(field.meaning);
-    rows.add(cells);
-  }
+  if (!spec.overrides.empty()) columns.push_back({"override", spec.id});
+  for (const char* key : {"range", "from", "group", "meaning"})
+    columns.push_back({key == std::string_view("from") ? "value_from" : key, key});
+  return columns;
+}
+
+Cell words_or_absent(const std::string& words) { return words.empty() ? Cell::absent() : words; }
+
+std::vector<Cell> cells_of(const ListedSetting& setting, const MethodSpec& spec) {
+  const ConfigField& field = setting.field;
+  std::vector<Cell> cells{field.name, field.type(), value_cell(field.value)};
+  const auto set = spec.overrides.find(field.name);
+  if (!spec.overrides.empty())
+    cells.push_back(set == spec.overrides.end() ? Cell::absent() : value_cell(*set));
+  cells.push_back(words_or_absent(setting.range));
+  cells.push_back(words_or_absent(setting.value_from));
+  cells.push_back(
+      setting.group.empty() ? Cell::absent()
+                            : Cell(setting.group, setting.is_first ? "first" : setting.group)
+  );
+  cells.emplace_back(field.meaning);
+  cells.push_back(setting.group.empty() ? Cell::absent() : Cell(setting.is_first));
+  return cells;
+}
+
+Rows fields_of(const MethodSpec& spec) {
+  Rows rows(columns_of(spec), "first");
+  for (const ListedSetting& setting : listed_settings(base_of(spec.id)))
+    rows.add(cells_of(setting, spec));
   return rows;
 }
 

@@ -80,17 +80,17 @@ Costs train_silently(Method& method, const Scene& scene, int silent_from) {
   return costs;
 }
 
-std::string saved_after(const Trained& trained, const Scene& scene, int silent_from) {
-  const auto method = create_method(trained.id, trained.options);
+std::string saved_after(const std::string& id, const Scene& scene, int silent_from) {
+  const auto method = create_method(id);
   train_silently(*method, scene, silent_from);
   return saved_bytes(*method);
 }
 
 // The launches of a step.
-std::uint64_t check_steady(const Trained& trained) {
-  INFO(trained.name);
+std::uint64_t check_steady(const std::string& id) {
+  INFO(id);
   const Scene scene = two_views_of_room();
-  const auto method = create_method(trained.id, trained.options);
+  const auto method = create_method(id);
   const Costs costs = train_silently(*method, scene, kSilentFrom);
   CHECK(costs.steps == kEnd - kSteady);
   CHECK(costs.counters.uploads == 0);
@@ -106,25 +106,25 @@ std::uint64_t check_steady(const Trained& trained) {
 
 TEST_CASE("A steady step asks a GPU for nothing, whatever the method") {
   const OnHost on_host;
-  for (const Trained& trained : all_trained()) check_steady(trained);
+  for (const std::string& id : all_trained()) check_steady(id);
 }
 
 TEST_CASE("Nor does a steady step with LPIPS") {
   const OnHost on_host;
-  const std::uint64_t without = check_steady(Trained("envgs"));
+  const std::uint64_t without = check_steady("envgs");
   const LpipsWeightsHere weights;
-  CHECK(check_steady(Trained("envgs")) > without + 10);  // a network, there and back
-  for (const char* id : {"glint/release", "rt-splatting"}) check_steady(Trained(id));
+  CHECK(check_steady("envgs") > without + 10);  // a network, there and back
+  for (const char* id : {"glint/release", "rt-splatting"}) check_steady(id);
 }
 
 // For docs/gpu.md: test_baselines_gpu_steady_steps "[costs]".
 TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
   const OnHost on_host;
-  for (const Trained& trained : all_trained()) {
+  for (const std::string& id : all_trained()) {
     const Scene scene = two_views_of_room();
-    const auto method = create_method(trained.id, trained.options);
+    const auto method = create_method(id);
     const Costs costs = train_silently(*method, scene, kSilentFrom);
-    fmt::print("| {} ", trained.name);
+    fmt::print("| {} ", id);
     DeviceCounters::for_each(
         [&](const char*, std::uint64_t count) {
           fmt::print("| {} ", count / static_cast<std::uint64_t>(costs.steps));
@@ -139,10 +139,10 @@ TEST_CASE("A training of silent steps ends with the bytes of one that is told ev
   const OnHost on_host;
   const LpipsWeightsHere weights;  // for those that look at LPIPS
   const Scene scene = two_views_of_room();
-  for (const Trained& trained : all_trained()) {
-    INFO(trained.name);
-    const std::string told = saved_after(trained, scene, kEnd);
-    const std::string silent = saved_after(trained, scene, kSilentFrom);
+  for (const std::string& id : all_trained()) {
+    INFO(id);
+    const std::string told = saved_after(id, scene, kEnd);
+    const std::string silent = saved_after(id, scene, kSilentFrom);
     CHECK(take_void_steps().count == 0);
     CHECK((told == silent));
   }

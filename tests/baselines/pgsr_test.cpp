@@ -37,9 +37,8 @@ TEST_CASE("Without weights of planes only the photometric loss moves surfels") {
   CHECK(without != plain(Json::object()));
 }
 
-TEST_CASE("Splitting by absolute gradients and exposure are options that train") {
-  const auto method =
-      create_method("pgsr", {{"max_abs_splits", 1000}, {"exposure", true}, {"exposure_from", 0}});
+TEST_CASE("Splitting by absolute gradients is an option that trains") {
+  const auto method = create_method("pgsr", {{"max_abs_splits", 1000}});
   method->initialize(small_room(), {150, 0});
   double first = 0, last = 0;
   for (int i = 0; i < 150; ++i) {

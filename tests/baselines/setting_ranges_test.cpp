@@ -40,19 +40,17 @@ TEST_CASE("Values that a setting cannot have are named, with what is allowed") {
     const char* message;
   };
   const Case cases[] = {
-      {"glint", {{"mirror_share_block", 0}}, "glint: mirror_share_block is 0, expected at least 1"},
-      {"envgs", {{"mirror_share_block", -2}}, "envgs: mirror_share_block is -2, expected at least"},
+      {"envgs", {{"mirror_near", -2}}, "envgs: mirror_near is -2, expected at least 0"},
       {"glint", {{"reflection_cells", 0}}, "reflection_cells is 0, expected at least 1"},
       {"envgs/simple", {{"reflection_cells", -1}}, "envgs/simple: reflection_cells is -1"},
       {"2dgs", {{"random_points", -1}}, "random_points is -1, expected at least 4"},
       {"glint", {{"initial_transparency", 0}}, "is 0, expected above 0 and below 1"},
-      {"glint/plus", {{"initial_specular", 1.0}}, "is 1, expected above 0 and below 1"},
-      {"glint", {{"reflection_opacity", 1.5}}, "reflection_opacity is 1.5, expected above 0"},
+      {"glint/plus", {{"initial_transparency", 1.0}}, "is 1, expected above 0 and below 1"},
+      {"envgs", {{"initial_specular", 1.5}}, "initial_specular is 1.5, expected above 0"},
       {"pgsr", {{"initial_opacity", 0.0}}, "initial_opacity is 0, expected above 0 and below 1"},
       {"pgsr", {{"trim_interval", 0}}, "trim_interval is 0, expected at least 1"},
       {"ref-gs", {{"initial_albedo", 0.0}}, "expected above 0 and at most 1"},
       {"tsgs", {{"min_opacity", 1}}, "min_opacity is 1, expected at least 0 and below 1"},
-      {"glint", {{"transmission_min_opacity", 1}}, "transmission_min_opacity is 1, expected below"},
       {"2dgs",
        {{"rate_position_final", 0.0}},
        "rate_position_final is 0, expected above 0, or rate_position=0"},

@@ -202,35 +202,30 @@ TEST_CASE("Lobes alone bring the picture nearer to the photos") {
         "rate_scale",
         "rate_rotation"})
     config[rate] = 0;
-  for (const char* kind : {"full", "real"}) {
-    INFO(kind);
-    config["lobes"] = kind;
-    const auto with = trained(small_room(), 60, 60, config);
-    config["lobes"] = "off";
-    const auto without = trained(small_room(), 60, 2, config);
-    CHECK(mean_psnr(*with) > mean_psnr(*without) + 1);
-  }
+  const auto with = trained(small_room(), 60, 60, config);
+  config["lobes"] = "off";
+  const auto without = trained(small_room(), 60, 2, config);
+  CHECK(mean_psnr(*with) > mean_psnr(*without) + 1);
 }
 
-TEST_CASE("Both kinds of lobes come back from files, and so does a run that has none yet") {
-  for (const char* kind : {"full", "real"})
-    for (const int steps : {20, 40}) {
-      INFO(kind << ", " << steps << " steps");
-      const auto method = trained(small_room(), 40, steps, {{"lobes", kind}});
-      const TempFolder folder;
-      const auto loaded = saved_and_loaded(*method, folder.path());
-      CHECK(fs::exists(folder.path() / "lobes.safetensors") == (steps == 40));
-      // SH grow with the run, and what was loaded has all degrees.
-      if (steps == 40) CHECK(same_bytes(picture(*loaded), picture(*method)));
-      const TempFolder again;
-      CHECK(same_bytes(picture(*saved_and_loaded(*loaded, again.path())), picture(*loaded)));
-    }
+TEST_CASE("Lobes come back from files, and so does a run that has none yet") {
+  for (const int steps : {20, 40}) {
+    INFO(steps << " steps");
+    const auto method = trained(small_room(), 40, steps);
+    const TempFolder folder;
+    const auto loaded = saved_and_loaded(*method, folder.path());
+    CHECK(fs::exists(folder.path() / "lobes.safetensors") == (steps == 40));
+    // SH grow with the run, and what was loaded has all degrees.
+    if (steps == 40) CHECK(same_bytes(picture(*loaded), picture(*method)));
+    const TempFolder again;
+    CHECK(same_bytes(picture(*saved_and_loaded(*loaded, again.path())), picture(*loaded)));
+  }
 }
 
 TEST_CASE("Lobes that do not exist, and surfels that come or go under them, are refused") {
   CHECK_THROWS_WITH(
       create_method("tsgs", {{"lobes", "half"}}),
-      Catch::Contains("lobes cannot be 'half'; expected full, real or off")
+      Catch::Contains("lobes cannot be 'half'; expected real or off")
   );
   for (const char* window : {"densify_until", "trim_until"}) {
     CHECK_THROWS_WITH(
@@ -245,7 +240,7 @@ TEST_CASE("Lobes that do not exist, and surfels that come or go under them, are 
   write_file(folder.path() / "scene_unit.json", R"({"scene_unit": 1, "lobes": 3})");
   CHECK_THROWS_WITH(
       create_method("tsgs")->load(folder.path().string()),
-      Catch::Contains("lobes is 3, expected full, real or off")
+      Catch::Contains("lobes is 3, expected real or off")
   );
 }
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Every method, options of theirs that change what a step does, and what comes of a training.
+// Every method, and what comes of a training.
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "glint/core/files.h"
@@ -12,22 +11,9 @@
 
 namespace glint::test {
 
-// Options that change what a step does: exposure counts from the start, whatever SSIM is.
-inline const Json kExposure{
-    {"exposure", true}, {"exposure_from", 0}, {"exposure_max_ssim_loss", 3.0}};
-
-struct Trained {
-  std::string name, id;
-  Json options = Json::object();
-  Trained(std::string name, std::string id, Json options)
-      : name(std::move(name)), id(std::move(id)), options(std::move(options)) {}
-  explicit Trained(const std::string& id) : name(id), id(id) {}
-};
-inline std::vector<Trained> all_trained() {
-  std::vector<Trained> all;
-  for (const auto& [id, spec] : Registry<MethodSpec>::all()) all.emplace_back(id);
-  for (const char* id : {"pgsr", "tsgs"})
-    all.emplace_back(std::string(id) + ", exposure", id, kExposure);
+inline std::vector<std::string> all_trained() {
+  std::vector<std::string> all;
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) all.push_back(id);
   return all;
 }
 

@@ -110,7 +110,6 @@ ReferenceTraceInput reference_trace_input(const TraceInput& input, const Rays& r
   result.opacities = copy(input.opacities);
   result.sh_dc = copy(input.sh_dc);
   result.sh_rest = copy(input.sh_rest);
-  result.stops = copy(rays.stops.values());
   for (std::size_t i = 0; i < rays.origins.num_pixels(); ++i)
     for (const Image* image : {&rays.origins, &rays.directions})
       for (std::size_t k = 0; k < 3; ++k)
@@ -131,7 +130,6 @@ ReferenceRay reference_trace(
   }
   std::stable_sort(hits.begin(), hits.end(), [](const Hit& x, const Hit& y) { return x.t < y.t; });
   double transmittance = 1;
-  const double stop = input.stops.empty() ? 0.0 : input.stops[ray];
   const Vec3d unit = normalize(d);
   for (std::size_t k = 0; k < hits.size() && result.hits < settings.max_hits; ++k) {
     const Hit& hit = hits[k];
@@ -148,9 +146,6 @@ ReferenceRay reference_trace(
     result.alpha += weight;
     transmittance = next;
     ++result.hits;
-    if (stop > 0)
-      result.nearest_cutoff = std::min(result.nearest_cutoff, relative_distance(next, stop));
-    if (next < stop) break;
   }
   return result;
 }

@@ -17,7 +17,6 @@ struct ReferenceTraceInput {
   std::size_t count = 0;
   int sh_degree = 3;
   std::vector<double> means, scales, rotations, opacities, sh_dc, sh_rest, rays;
-  std::vector<double> stops;  // of the rays, or none
   std::size_t num_rays() const { return rays.size() / 6; }
 };
 ReferenceTraceInput reference_trace_input(const TraceInput& input, const Rays& rays);

@@ -2,8 +2,6 @@
 // Surfels with colours for tests of trace().
 #pragma once
 
-#include <algorithm>
-
 #include "glint/render/trace.h"
 #include "tests/support/random_scene.h"
 
@@ -33,12 +31,5 @@ struct TraceArrays {
     for (int i = 0; i < 45; ++i) sh_rest.push_back(0.2f * rng.uniform(-1, 1));
   }
 };
-
-// For each ray a transmittance below which it ends, from 0 (never) to 0.5.
-inline Image random_stops(ImageSize size, Rng& rng) {
-  Image stops(size.width, size.height, 1);
-  for (float& stop : stops.values()) stop = std::max(0.0f, rng.uniform(-0.1f, 0.5f));
-  return stops;
-}
 
 }  // namespace glint::test

@@ -33,15 +33,6 @@ TEST_CASE("The GPU's tracer on the host follows the cut-offs") {
   }
 }
 
-TEST_CASE("The GPU's tracer on the host ends each ray at its stop") {
-  Rng rng(11);
-  const TraceArrays arrays = random_arrays(400, rng);
-  Rays rays = random_rays(kParitySize, rng);
-  rays.stops = random_stops(kParitySize, rng);
-  check_as_on_cpu(arrays, rays, {});
-  check_as_on_cpu<2>(arrays, rays, {});
-}
-
 TEST_CASE("The GPU's tracer on the host does what the CPU's does in a room") {
   RoomScene room(5000);
   room.add_large(50);

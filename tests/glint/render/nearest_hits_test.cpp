@@ -78,21 +78,6 @@ TEST_CASE("searches one after another return every hit once, in the order of t a
     }
 }
 
-TEST_CASE("a hit offered twice, as by two triangles, is listed once") {
-  Rng rng(2);
-  const std::vector<FoundHit> hits = random_hits(30, 100000, 0.02f, rng);
-  const std::vector<FoundHit> expected = sorted(hits, 0, 0);
-  NearestHits nearest(0, 0, 0);
-  std::vector<FoundHit> found;
-  for (bool more = true; more;) {
-    nearest.start(1);
-    for (const FoundHit& hit : hits) nearest.add(hit), nearest.add(hit);
-    more = nearest.finish();
-    for (int i = 0; i < nearest.count(); ++i) found.push_back(nearest[i]);
-  }
-  CHECK(std::equal(found.begin(), found.end(), expected.begin(), expected.end(), same));
-}
-
 TEST_CASE("no hit is lost in front of the one that stops the ray, and few are kept behind it") {
   for (const float left : {1.0f, 0.01f}) {
     Rng rng(3);

@@ -46,7 +46,7 @@ TEST_CASE("Pixels that mirror little share the ray of one of 2x2, others keep th
   const GlassBuffer buffer = buffer_of(size);
   SharedRays shared;
   for (int step = 0; step < 20; ++step) {
-    const Rays& rays = shared.choose(buffer, kSharing, {}, step);
+    const Rays& rays = shared.choose(buffer, kSharing, step);
     int traced = 0;
     for (std::size_t i = 0; i < size.num_pixels(); ++i) {
       const bool weak = buffer.specularity.data()[i] < 0.2f && buffer.transparency.data()[i] < 0.5f;
@@ -62,27 +62,20 @@ TEST_CASE("Pixels that mirror little share the ray of one of 2x2, others keep th
 }
 
 TEST_CASE("Every pixel of a block is its leader in as many of the steps, whatever the view") {
-  const int block = GENERATE(2, 4), pixels = block * block;
-  const ImageSize size{block, block};
+  const ImageSize size{2, 2};
   GlassBuffer buffer = buffer_of(size);
   buffer.specularity.array().fill(0.1f);
   buffer.transparency.array().fill(0.0f);
   SharedRays shared;
   for (const int views : {1, 4, 56}) {  // steps between two of the same view
     std::vector<int> led(size.num_pixels());
-    for (int k = 0; k < 100 * pixels; ++k) {
-      const Rays& rays = shared.choose(buffer, {.below = 0.2f, .block = block}, {}, k * views);
+    for (int k = 0; k < 400; ++k) {
+      const Rays& rays = shared.choose(buffer, kSharing, k * views);
       for (std::size_t i = 0; i < led.size(); ++i) led[i] += has_ray(rays, i);
     }
-    CHECK(std::accumulate(led.begin(), led.end(), 0) == 100 * pixels);
+    CHECK(std::accumulate(led.begin(), led.end(), 0) == 400);
     for (const int count : led) CHECK(std::abs(count - 100) < 40);
   }
-}
-
-TEST_CASE("Blocks have a pixel at least") {
-  const GlassBuffer buffer = buffer_of({2, 2});
-  SharedRays shared;
-  CHECK_THROWS_AS(shared.choose(buffer, {.below = 0.2f, .block = 0}, {}, 0), Error);
 }
 
 TEST_CASE("No ray is shared across an edge, nor with a pixel that hit nothing, nor without asking"
@@ -93,7 +86,7 @@ TEST_CASE("No ray is shared across an edge, nor with a pixel that hit nothing, n
   buffer.transparency.array().fill(0.0f);
   SharedRays shared;
   const auto num_rays = [&](const RaySharing& sharing, int step) {
-    const Rays& rays = shared.choose(buffer, sharing, {}, step);
+    const Rays& rays = shared.choose(buffer, sharing, step);
     int count = 0;
     for (std::size_t i = 0; i < 4; ++i) count += has_ray(rays, i);
     return count;
@@ -109,36 +102,12 @@ TEST_CASE("No ray is shared across an edge, nor with a pixel that hit nothing, n
   }
 }
 
-TEST_CASE("A ray goes as far as the pixel needs it that mirrors most of those that take it") {
-  const RayStops stops{.weight_below = 0.02f, .earliest = 0.3f, .latest = 0.01f};
-  const ImageSize size = GENERATE(ImageSize{8, 4}, ImageSize{7, 5}, ImageSize{1, 1});
-  GlassBuffer buffer = buffer_of(size);
-  Rng rng(4);
-  for (float& k : buffer.specularity.values()) k = rng.uniform(0, 1) < 0.5f ? 1e-3f : rng.uniform();
-  SharedRays shared;
-  for (int step = 0; step < 8; ++step) {
-    const Rays& rays = shared.choose(buffer, kSharing, stops, step);
-    Image index(size.width, size.height, 3), ray_of;
-    for (std::size_t i = 0; i < size.num_pixels(); ++i) index.data()[3 * i] = static_cast<float>(i);
-    shared.spread(index, ray_of);
-    std::vector<float> needed(size.num_pixels(), stops.earliest);
-    for (std::size_t i = 0; i < size.num_pixels(); ++i) {
-      float& least = needed[static_cast<std::size_t>(ray_of.data()[3 * i])];
-      least = std::min(least, std::max(stops.latest, 0.02f / buffer.specularity.data()[i]));
-    }
-    for (std::size_t i = 0; i < size.num_pixels(); ++i)
-      if (has_ray(rays, i)) CHECK(rays.stops.data()[i] == Approx(needed[i]));
-  }
-  CHECK(shared.choose(buffer, kSharing, {}, 0).stops.empty());
-}
-
 TEST_CASE("Pixels show what their ray met, and its gradient is the sum of theirs") {
   const ImageSize size = GENERATE(ImageSize{8, 4}, ImageSize{7, 5}, ImageSize{1, 1});
-  const int block = GENERATE(1, 2, 3, 4);
   const GlassBuffer buffer = buffer_of(size);
   SharedRays shared;
   for (int step = 0; step < 8; ++step) {
-    const Rays& rays = shared.choose(buffer, {.below = 0.2f, .block = block}, {}, step);
+    const Rays& rays = shared.choose(buffer, kSharing, step);
     const Image traced = random_map(size, 3, -1, 1, 1), dL_dcolor = random_map(size, 3, -1, 1, 2);
     Image color, dL_dtraced;
     shared.spread(traced, color);
@@ -157,9 +126,8 @@ TEST_CASE("Sharing gives the same on every backend") {
     const GlassBuffer buffer = buffer_of(size);
     SharedRays shared;
     std::map<std::string, std::vector<float>> found;
-    const Rays& rays = shared.choose(buffer, kSharing, {.weight_below = 0.02f}, 3);
+    const Rays& rays = shared.choose(buffer, kSharing, 3);
     found["directions"] = read(rays.directions);
-    found["stops"] = read(rays.stops);
     Image color, dL_dtraced;
     shared.spread(random_map(size, 3, -1, 1, 1), color);
     shared.spread_vjp(random_map(size, 3, -1, 1, 2), dL_dtraced);

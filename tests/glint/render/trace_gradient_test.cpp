@@ -23,7 +23,7 @@ struct Case : TraceArrays {
   TraceOutputGradient dL_doutput;
 };
 
-Case random_case(std::uint64_t seed, bool stops = false) {
+Case random_case(std::uint64_t seed) {
   Rng rng(seed);
   Case c;
   for (int i = 0; i < 14; ++i) {
@@ -41,7 +41,6 @@ Case random_case(std::uint64_t seed, bool stops = false) {
   c.rays = {Image(8, 6, 3), Image(8, 6, 3)};
   for (float& value : c.rays.origins.values()) value = rng.uniform(-1, 1);
   for (float& value : c.rays.directions.values()) value = rng.uniform(-1, 1);
-  if (stops) c.rays.stops = random_stops({8, 6}, rng);
   const ReferenceTraceInput reference = reference_trace_input(c.view(), c.rays);
   c.dL_doutput = {Image(8, 6, 3), Image(8, 6, 1), Image(8, 6, 1), Image(8, 6, 3)};
   int clean = 0;
@@ -98,9 +97,9 @@ void check(
 
 }  // namespace
 
-TEST_CASE("every gradient of trace matches central differences, with and without stops of rays") {
-  for (const std::uint64_t seed : {1, 2, 3, 5, 6}) {
-    const Case c = random_case(seed, seed > 3);
+TEST_CASE("every gradient of trace matches central differences") {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Case c = random_case(seed);
     Tracer tracer;
     const TraceOutput out = tracer.forward({c.view(), c.rays, c.settings});
     const TraceGradient g = tracer.backward(c.dL_doutput);

@@ -91,17 +91,15 @@ double compare_with_reference(
 
 }  // namespace
 
-TEST_CASE("trace equals the brute-force tracer, with discs and with triangles") {
-  for (const bool triangles : {false, true})
-    for (const std::uint64_t seed : {1, 2, 3}) {
-      Rng rng(seed);
-      const TraceArrays arrays = random_arrays(400, rng);
-      TraceSettings settings;
-      settings.triangles = triangles;
-      settings.near = seed == 3 ? 0.3f : 0.0f;
-      INFO("seed " << seed << " triangles " << triangles);
-      CHECK(compare_with_reference(arrays, random_rays(40, 25, rng), settings, 2e-4) > 0.8);
-    }
+TEST_CASE("trace equals the brute-force tracer") {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Rng rng(seed);
+    const TraceArrays arrays = random_arrays(400, rng);
+    TraceSettings settings;
+    settings.near = seed == 3 ? 0.3f : 0.0f;
+    INFO("seed " << seed);
+    CHECK(compare_with_reference(arrays, random_rays(40, 25, rng), settings, 2e-4) > 0.8);
+  }
 }
 
 TEST_CASE("trace follows its cut-offs") {
@@ -117,65 +115,6 @@ TEST_CASE("trace follows its cut-offs") {
   CHECK(compare_with_reference(arrays, rays, settings, 2e-4) > 0.8);
 }
 
-TEST_CASE("rays with stops of their own equal the brute-force tracer, with discs and with triangles"
-) {
-  for (const bool triangles : {false, true}) {
-    Rng rng(20);
-    const TraceArrays arrays = random_arrays(300, rng);
-    Rays rays = random_rays(30, 20, rng);
-    rays.stops = random_stops({30, 20}, rng);
-    TraceSettings settings;
-    settings.triangles = triangles;
-    settings.min_transmittance = 0.02f;
-    CHECK(compare_with_reference(arrays, rays, settings, 2e-4) > 0.8);
-    settings.max_hits = 3;
-    CHECK(compare_with_reference(arrays, rays, settings, 2e-4) > 0.8);
-  }
-}
-
-TEST_CASE("a ray ends behind the hit that takes it below its stop, and not before") {
-  Rng rng(21);
-  TraceArrays arrays;
-  for (int i = 0; i < 5; ++i)  // transmittances 0.5, 0.25, 0.125, ...
-    arrays.add({0, 0, 1.0 + i}, {0.5, 0.5}, {1, 0, 0, 0}, 0.5, rng);
-  Rays rays = empty_rays(6, 1);
-  for (std::size_t i = 0; i < 6; ++i) set_ray(rays, i, {0, 0, 0}, {0, 0, 1});
-  rays.stops = Image(6, 1, 1);
-  const float stops[] = {0, 0.9f, 0.5f, 0.3f, 0.1f, 1e-3f};
-  std::copy_n(stops, 6, rays.stops.data());
-  Tracer tracer;
-  const TraceOutput& out = tracer.forward({arrays.view(), rays, {}});
-  const double transmittances[] = {1.0 / 32, 0.5, 0.25, 0.25, 1.0 / 16, 1.0 / 32};
-  for (int i = 0; i < 6; ++i)
-    CHECK(static_cast<double>(out.alpha.at(i, 0)) == Approx(1 - transmittances[i]).margin(1e-6));
-  CHECK(tracer.num_hits() == 5 + 1 + 2 + 2 + 4 + 5);
-}
-
-TEST_CASE(
-    "what a stop leaves out of a colour weighs less than the stop, and low stops change nothing"
-) {
-  Rng rng(22);
-  const TraceArrays arrays = random_arrays(600, rng);
-  Rays rays = random_rays(40, 25, rng);
-  Tracer tracer;
-  TraceSettings settings;
-  settings.min_transmittance = 0.02f;
-  const TraceOutput all = tracer.forward({arrays.view(), rays, settings});
-  const std::size_t all_hits = tracer.num_hits();
-  rays.stops = Image(40, 25, 1, 0.02f);
-  const TraceOutput low = tracer.forward({arrays.view(), rays, settings});
-  CHECK(same_bytes(low.color, all.color));
-  CHECK(tracer.num_hits() == all_hits);
-  rays.stops = random_stops({40, 25}, rng);
-  const TraceOutput& out = tracer.forward({arrays.view(), rays, settings});
-  CHECK(tracer.num_hits() < all_hits);
-  for (std::size_t i = 0; i < rays.stops.num_pixels(); ++i) {
-    const float left_out = all.alpha.data()[i] - out.alpha.data()[i];
-    CHECK(left_out >= 0);
-    CHECK(left_out <= rays.stops.data()[i]);
-  }
-}
-
 TEST_CASE("coincident surfels count once each, more of them than one traversal returns") {
   Rng rng(5);
   TraceArrays arrays;
@@ -183,16 +122,12 @@ TEST_CASE("coincident surfels count once each, more of them than one traversal r
   for (int i = 0; i < kClones; ++i) arrays.add({0, 0, 1}, {0.5, 0.5}, {1, 0, 0, 0}, 0.02, rng);
   Rays rays = empty_rays(1, 1);
   set_ray(rays, 0, {0, 0, 0}, {0, 0, 1});
-  for (const bool triangles : {false, true}) {
-    TraceSettings settings;
-    settings.triangles = triangles;
-    Tracer tracer;
-    const TraceOutput out = tracer.forward({arrays.view(), rays, settings});
-    CHECK(tracer.num_hits() == kClones);
-    CHECK(
-        static_cast<double>(out.alpha.data()[0]) == Approx(1 - std::pow(0.98, kClones)).margin(1e-5)
-    );
-  }
+  Tracer tracer;
+  const TraceOutput out = tracer.forward({arrays.view(), rays, {}});
+  CHECK(tracer.num_hits() == kClones);
+  CHECK(
+      static_cast<double>(out.alpha.data()[0]) == Approx(1 - std::pow(0.98, kClones)).margin(1e-5)
+  );
 }
 
 namespace {
@@ -376,13 +311,9 @@ TEST_CASE("surfels that are not finite or invisible reach no ray") {
   arrays.surfels.opacities[1] = 0;
   arrays.surfels.scales[4] = INFINITY;
   Tracer tracer;
-  TraceOutput out;
-  for (const bool triangles : {false, true}) {
-    TraceSettings settings;
-    settings.triangles = triangles;
-    out = tracer.forward({arrays.view(), random_rays(10, 10, rng), settings});
-    CHECK(tracer.num_hits() == 0);
-  }
+  const Rays rays = random_rays(10, 10, rng);
+  tracer.forward({arrays.view(), rays, {}});
+  CHECK(tracer.num_hits() == 0);
 }
 
 TEST_CASE("a surfel without extent has no gradient") {
@@ -404,8 +335,7 @@ TEST_CASE("a surfel without extent has no gradient") {
 TEST_CASE("forward and backward give the same bytes for any number of threads") {
   Rng rng(12);
   const TraceArrays arrays = random_arrays(500, rng);
-  Rays rays = random_rays(60, 40, rng);
-  rays.stops = random_stops({60, 40}, rng);
+  const Rays rays = random_rays(60, 40, rng);
   TraceOutputGradient g;
   g.color = Image(60, 40, 3, 1.0f);
   g.depth_sum = Image(60, 40, 1, 0.3f);
@@ -433,9 +363,6 @@ TEST_CASE("wrong sizes are usage errors") {
   Rays rays = empty_rays(2, 2);
   rays.directions = Image(2, 1, 3);
   CHECK_THROWS_WITH(tracer.forward({arrays.view(), rays, {}}), Catch::Contains("2x2"));
-  rays = empty_rays(2, 2);
-  rays.stops = Image(2, 1, 1);
-  CHECK_THROWS_WITH(tracer.forward({arrays.view(), rays, {}}), Catch::Contains("stops are 2x1x1"));
   arrays.sh_dc.pop_back();
   CHECK_THROWS_WITH(
       tracer.forward({arrays.view(), empty_rays(1, 1), {}}), Catch::Contains("5 surfels")

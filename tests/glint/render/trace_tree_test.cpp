@@ -73,7 +73,7 @@ TEST_CASE("our own tree finds the hits that all clusters have, in their order") 
        {std::pair{std::size_t{1}, 0.5f}, {7, 0.5f}, {65, 0.3f}, {700, 0.2f}, {5000, 0.05f}}) {
     const std::vector<TracedSurfel> surfels = random_surfels(count, size, rng);
     SurfelBvh bvh;
-    bvh.update(surfels, false, false);
+    bvh.update(surfels, false);
     std::size_t num_hits = 0, looked_at = 0, num_rays = 300;
     for (int i = 0; i < static_cast<int>(num_rays); ++i) {
       Vec3f origin = rng.uniform(0, 4) * cast<float>(random_direction(rng));
@@ -100,9 +100,9 @@ TEST_CASE("our own tree follows surfels that move, and none are no error") {
   Rng rng(22);
   std::vector<TracedSurfel> surfels = random_surfels(100, 0.4f, rng);
   SurfelBvh bvh;
-  bvh.update(surfels, false, false);
+  bvh.update(surfels, false);
   for (TracedSurfel& s : surfels) s.fields.mean.x += 10;
-  bvh.update(surfels, false, true);
+  bvh.update(surfels, true);
   const auto hits_of = [&](Vec3f origin) {
     return all_hits([&](NearestHits& hits) { bvh.nearest(origin, {0, 0, 1}, hits); }).size();
   };
@@ -112,15 +112,6 @@ TEST_CASE("our own tree follows surfels that move, and none are no error") {
   CHECK(there > 0);
   CHECK(gone == 0);
   surfels.clear();
-  bvh.update(surfels, false, true);
+  bvh.update(surfels, true);
   CHECK(hits_of({10, 0, -5}) == 0);
-}
-
-TEST_CASE("triangles are an error that names the full build") {
-  SurfelBvh bvh;
-  const std::vector<TracedSurfel> none;
-  CHECK_THAT(
-      error_of(ExitCode::kEnvironment, [&] { bvh.update(none, true, false); }),
-      Catch::Contains("need Embree")
-  );
 }

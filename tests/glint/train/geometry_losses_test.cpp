@@ -180,10 +180,11 @@ TEST_CASE("A loss is off at views that lack its prior, with a warning") {
 
 TEST_CASE("The control of a baseline has GLINT's priors and smoothness at the same share of its run"
 ) {
-  const Json overrides = prior_control(30000);
-  CHECK(overrides.at("lambda_depth") == PriorLosses::kLambdaDepth);
-  CHECK(overrides.at("lambda_normal") == PriorLosses::kLambdaNormal);
-  CHECK(overrides.at("gate_from") == 5000);
-  CHECK(overrides.at("lambda_smooth") == PriorLosses::kLambdaSmooth);
-  CHECK(overrides.at("smooth_from") == 2500);
+  GeometryLossConfig config;
+  config.use_priors(30000);
+  CHECK(config.lambda_depth == PriorLosses::kLambdaDepth);
+  CHECK(config.lambda_normal == PriorLosses::kLambdaNormal);
+  CHECK(config.gate_from == 5000);
+  CHECK(config.lambda_smooth == PriorLosses::kLambdaSmooth);
+  CHECK(config.smooth_from == 2500);
 }

@@ -16,32 +16,21 @@ using namespace glint::test;
 
 namespace {
 
-LobeAppearanceConfig small_config(bool reflection) {
-  LobeAppearanceConfig config;
-  config.lobe_feature = 5;
-  config.lobes_theta = 3;
-  config.lobes_phi = 4;
-  config.lobe_hidden = 6;
-  config.lobe_reflection = reflection;
-  return config;
-}
+constexpr LobeAppearanceConfig kSmall{.feature = 5, .theta = 3, .phi = 4, .hidden = 6, .rates = {}};
 
 constexpr std::size_t kSurfels = 9;
 
 struct Fixture {
   LobeAppearance appearance;
   FloatArray means = random_array(3 * kSurfels, 2);
-  FloatArray normals = random_array(3 * kSurfels, 3);
   Array<std::uint8_t> visible = {1, 0, 1, 1, 0, 0, 1, 1, 0};
   FloatArray g = random_array(3 * kSurfels, 4);
   Vec3f eye{0.2f, -3, 0.5f};
 
   explicit Fixture(const LobeAppearanceConfig& config) : appearance(config, kSurfels, 1) {
     appearance.features().values = random_array(appearance.features().size(), 5);
-    for (std::size_t i = 0; i < kSurfels; ++i)
-      put3(normals.data(), i, normalize(get3(normals.data(), i)));
   }
-  const FloatArray& forward() { return appearance.forward(means, normals, eye, visible); }
+  const FloatArray& forward() { return appearance.forward(means, eye, visible); }
 };
 
 Vector linear(const Vector& x, const Mlp& net, std::size_t layer, const Vector& p, bool relu) {
@@ -61,7 +50,7 @@ Vector linear(const Vector& x, const Mlp& net, std::size_t layer, const Vector& 
 // The text of the publication in double; `p` are features, then both networks' parameters.
 double plain_loss(Fixture& f, const Vector& p) {
   const LobeAppearanceConfig& c = f.appearance.config();
-  const auto width = static_cast<std::size_t>(c.lobe_feature);
+  const auto width = static_cast<std::size_t>(c.feature);
   const auto first = p.begin() + static_cast<std::ptrdiff_t>(f.appearance.features().size());
   const auto second =
       first + static_cast<std::ptrdiff_t>(f.appearance.to_lobes().parameters().size());
@@ -72,25 +61,22 @@ double plain_loss(Fixture& f, const Vector& p) {
     const Vector feature(p.begin() + i * width, p.begin() + (i + 1) * width);
     const Vector numbers = linear(feature, f.appearance.to_lobes(), 0, to_lobes, false);
     const Vec3d view = normalize(cast<double>(get3(f.means.data(), i) - f.eye));
-    const Vec3d n = cast<double>(get3(f.normals.data(), i));
-    const Vec3d r = c.lobe_reflection ? view - 2 * dot(view, n) * n : view;
     Vector inputs;
-    for (int t = 0; t < c.lobes_theta; ++t)
-      for (int q = 0; q < c.lobes_phi; ++q) {
-        const double theta = std::numbers::pi * t / (c.lobes_theta - 1);
-        const double phi = 2 * std::numbers::pi * q / (c.lobes_phi - 1);
+    for (int t = 0; t < c.theta; ++t)
+      for (int q = 0; q < c.phi; ++q) {
+        const double theta = std::numbers::pi * t / (c.theta - 1);
+        const double phi = 2 * std::numbers::pi * q / (c.phi - 1);
         const Vec3d axis{
             std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
         const Vec3d a{
             std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi), -std::sin(theta)};
         const Vec3d b = cross(axis, a);
-        const double* x = numbers.data() + 4 * (t * c.lobes_phi + q);
-        const double sharpness = std::log1p(std::exp(x[2] - 1)) * std::pow(dot(a, r), 2) +
-                                 std::log1p(std::exp(x[3] - 1)) * std::pow(dot(b, r), 2);
-        const double strength = std::max(dot(axis, r), 0.0) * std::exp(-sharpness);
+        const double* x = numbers.data() + 4 * (t * c.phi + q);
+        const double sharpness = std::log1p(std::exp(x[2] - 1)) * std::pow(dot(a, view), 2) +
+                                 std::log1p(std::exp(x[3] - 1)) * std::pow(dot(b, view), 2);
+        const double strength = std::max(dot(axis, view), 0.0) * std::exp(-sharpness);
         inputs.insert(inputs.end(), {x[0] * strength, x[1] * strength});
       }
-    if (c.lobe_reflection) inputs.push_back(std::abs(dot(n, view)));
     push(inputs, view);
     for (const double octave : {1.0, 2.0}) {
       for (int axis = 0; axis < 3; ++axis) inputs.push_back(std::sin(octave * view[axis]));
@@ -157,43 +143,33 @@ TEST_CASE("Frames are orthonormal and span the sphere's grid") {
 
 TEST_CASE("Sizes are the published ones") {
   const LobeAppearanceConfig config;
-  CHECK(config.input_width() == 80);
-  CHECK(LobeAppearance(config, 3, 0).to_lobes().widths() == std::vector<int>{24, 128});
-  CHECK(LobeAppearance(config, 3, 0).to_color().widths() == std::vector<int>{80, 128, 128, 3});
-  CHECK(LobeAppearanceConfig::real().input_width() == 2 * 8 + 3 + 12);
+  CHECK(config.input_width() == 2 * 8 + 3 + 12);
+  CHECK(LobeAppearance(config, 3, 0).to_lobes().widths() == std::vector<int>{12, 32});
+  CHECK(LobeAppearance(config, 3, 0).to_color().widths() == std::vector<int>{31, 32, 32, 3});
 }
 
 TEST_CASE("Offsets and gradients are those of the publication's text in double") {
-  for (const bool reflection : {true, false}) {
-    Fixture f(small_config(reflection));
-    const FloatArray offsets = f.forward();
-    const Vector p = all_parameters(f.appearance);
-    double loss = 0;
-    for (std::size_t i = 0; i < offsets.size(); ++i) {
-      loss += static_cast<double>(f.g[i]) * static_cast<double>(offsets[i]);
-      if (f.visible[i / 3] == 0) CHECK(offsets[i] == 0);
-    }
-    CHECK(loss == Approx(plain_loss(f, p)).epsilon(1e-5));
-    f.appearance.backward(f.g);
-    const Vector expected =
-        central_differences([&](const Vector& x) { return plain_loss(f, x); }, p, {1e-5, 1});
-    Vector actual(f.appearance.features().gradient.begin(), f.appearance.features().gradient.end());
-    for (const Mlp* net : {&f.appearance.to_lobes(), &f.appearance.to_color()})
-      actual.insert(
-          actual.end(), net->parameters().gradient.begin(), net->parameters().gradient.end()
-      );
-    const GradientError error = gradient_error<double>(actual, expected);
-    INFO("worst at " << error.worst_index);
-    REQUIRE(error.norm > 0);
-    CHECK(error.distance < 1e-5 * error.norm);
+  Fixture f(kSmall);
+  const FloatArray offsets = f.forward();
+  const Vector p = all_parameters(f.appearance);
+  double loss = 0;
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    loss += static_cast<double>(f.g[i]) * static_cast<double>(offsets[i]);
+    if (f.visible[i / 3] == 0) CHECK(offsets[i] == 0);
   }
-}
-
-TEST_CASE("A surfel's side does not matter to the mirrored direction") {
-  Fixture f(small_config(true));
-  const FloatArray front = f.forward();
-  for (float& n : f.normals) n = -n;
-  CHECK(f.forward() == front);
+  CHECK(loss == Approx(plain_loss(f, p)).epsilon(1e-5));
+  f.appearance.backward(f.g);
+  const Vector expected =
+      central_differences([&](const Vector& x) { return plain_loss(f, x); }, p, {1e-5, 1});
+  Vector actual(f.appearance.features().gradient.begin(), f.appearance.features().gradient.end());
+  for (const Mlp* net : {&f.appearance.to_lobes(), &f.appearance.to_color()})
+    actual.insert(
+        actual.end(), net->parameters().gradient.begin(), net->parameters().gradient.end()
+    );
+  const GradientError error = gradient_error<double>(actual, expected);
+  INFO("worst at " << error.worst_index);
+  REQUIRE(error.norm > 0);
+  CHECK(error.distance < 1e-5 * error.norm);
 }
 
 TEST_CASE("Appearance from lobes is the same for any number of threads and on a GPU") {
@@ -202,13 +178,10 @@ TEST_CASE("Appearance from lobes is the same for any number of threads and on a 
     LobeAppearance a({}, count, 3);
     a.features().values = random_array(a.features().size(), 1);
     const FloatArray means = random_array(3 * count, 2), g = random_array(3 * count, 4);
-    FloatArray normals = random_array(3 * count, 3);
-    for (std::size_t i = 0; i < count; ++i)
-      put3(normals.data(), i, normalize(get3(normals.data(), i)));
     Array<std::uint8_t> visible(count);
     for (std::size_t i = 0; i < count; ++i) visible[i] = i % 3 != 0;
     std::map<std::string, std::vector<float>> results;
-    results["offsets"] = read(a.forward(means, normals, {0, 0, -4}, visible));
+    results["offsets"] = read(a.forward(means, {0, 0, -4}, visible));
     a.backward(g);
     results["features"] = read(a.features().gradient);
     results["to_lobes"] = read(a.to_lobes().parameters().gradient);
@@ -278,7 +251,7 @@ TEST_CASE("Surfels that reach a pixel are among those in the pyramid, most other
 }
 
 TEST_CASE("A cloud and a camera give what their arrays give, there and back") {
-  Fixture f(small_config(true));
+  Fixture f(kSmall);
   SurfelCloud cloud;
   cloud.resize(kSurfels);
   cloud.means = f.means;
@@ -291,8 +264,7 @@ TEST_CASE("A cloud and a camera give what their arrays give, there and back") {
   f.appearance.backward(gradient, 4);
   const FloatArray dL_dfeatures = f.appearance.features().gradient;
 
-  Fixture plain(small_config(true));
-  world_normals(cloud, plain.normals);
+  Fixture plain(kSmall);
   mark_in_pyramid(cloud, camera, plain.visible);
   plain.eye = cast<float>(camera.center());
   CHECK(offsets == plain.forward());
@@ -304,7 +276,7 @@ TEST_CASE("A cloud and a camera give what their arrays give, there and back") {
 }
 
 TEST_CASE("Arrays of another number of surfels are refused") {
-  Fixture f(small_config(true));
+  Fixture f(kSmall);
   CHECK_THROWS_WITH(f.appearance.backward(f.g), Catch::Contains("the last forward() gave 0"));
   f.means.resize(6);
   CHECK_THROWS_WITH(f.forward(), Catch::Contains("made for 9 surfels, found 2 means"));

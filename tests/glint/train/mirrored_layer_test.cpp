@@ -48,34 +48,6 @@ GlassBuffer wall(Rng& rng) {
 
 }  // namespace
 
-TEST_CASE("A mirrored ray that ends early changes its pixel by less than mirror_weight_below") {
-  Rng rng(1);
-  TrainableSet set = fog(rng);
-  const GlassBuffer buffer = wall(rng);
-  MirrorCutoffs mirror;
-  mirror.share_below = 0;
-  mirror.picture_transmittance = mirror.transmittance;
-  mirror.picture_hits = mirror.hits;
-  MirroredLayer layer;
-  Image all, cut, picture;
-  layer.trace(buffer, set, 0, mirror, 3, all);
-  mirror.weight_below = 0.02f;
-  layer.trace(buffer, set, 0, mirror, 3, cut);
-  layer.trace(buffer, set, 0, mirror, {}, picture);
-  CHECK(same_bytes(all, picture));
-  int differ = 0;
-  float worst = 0;
-  for (std::size_t i = 0; i < all.values().size(); ++i) {
-    const float k_s = buffer.specularity.data()[i / 3], change = all.data()[i] - cut.data()[i];
-    CHECK(change >= 0);
-    differ += change > 0;
-    worst = std::max(worst, k_s * change);
-  }
-  CHECK(differ > static_cast<int>(all.values().size()) / 4);
-  CHECK(worst < mirror.weight_below);
-  CHECK(worst > 0.2f * mirror.weight_below);  // it is used
-}
-
 TEST_CASE("Pictures have mirrored rays to the end, where training stops before") {
   Rng rng(4);
   TrainableSet set = fog(rng);
@@ -91,20 +63,6 @@ TEST_CASE("Pictures have mirrored rays to the end, where training stops before")
   mirror.hits = 256;
   layer.trace(buffer, set, 0, mirror, 3, whole);
   CHECK(same_bytes(whole, picture));
-}
-
-TEST_CASE("Mirrored rays without mirror_weight_below, and with one that is too small, are the same"
-) {
-  Rng rng(2);
-  TrainableSet set = fog(rng);
-  const GlassBuffer buffer = wall(rng);
-  MirrorCutoffs mirror;
-  Image all, small;
-  MirroredLayer layer;
-  layer.trace(buffer, set, 0, mirror, 5, all);
-  mirror.weight_below = 1e-9f;
-  layer.trace(buffer, set, 0, mirror, 5, small);
-  CHECK(same_bytes(all, small));
 }
 
 namespace {

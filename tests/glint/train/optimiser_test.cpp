@@ -32,24 +32,6 @@ TEST_CASE("Adam follows its recurrence in double and clears the gradient") {
   }
 }
 
-TEST_CASE("Adam by what was seen: no gradient, no drift, and the moments wait") {
-  SurfelCloud cloud = cloud_of(2), gradient = cloud_of(2);
-  SurfelAdam adam;
-  SurfelRates rates;
-  rates.only_seen = true;
-  gradient.opacity_logits = {0.5f, 0.5f};
-  adam.step(cloud, gradient, rates, 1);
-  const float before = cloud.opacity_logits[0], m = adam.first().opacity_logits[0];
-  gradient.opacity_logits = {0, 0.5f};
-  adam.step(cloud, gradient, rates, 1);
-  CHECK(cloud.opacity_logits[0] == before);
-  CHECK(adam.first().opacity_logits[0] == m);
-  CHECK(cloud.opacity_logits[1] < before);
-  rates.only_seen = false;
-  adam.step(cloud, gradient, rates, 1);
-  CHECK(cloud.opacity_logits[0] < before);  // momentum
-}
-
 TEST_CASE("A log-linear rate ends where it should") {
   CHECK(log_linear_rate(1e-2f, 1e-4f, 0, 10) == Approx(1e-2));
   CHECK(log_linear_rate(1e-2f, 1e-4f, 5, 10) == Approx(1e-3));
