@@ -18,7 +18,7 @@
 namespace glint {
 namespace {
 
-constexpr std::string_view kMark = ".part";
+constexpr std::string_view kUnfinished = ".part", kAside = ".old";
 
 // Letters and digits of the machine's name, so that no dot of it ends a part of ours.
 std::string host_mark() {
@@ -34,10 +34,10 @@ struct Writer {
 };
 
 // Of ".NAME.PID-HOST.part" with or without an extension; nothing: not one of ours.
-std::optional<Writer> writer_of(const std::string& name) {
-  const std::size_t mark = name.rfind(kMark);
+std::optional<Writer> writer_of(const std::string& name, std::string_view with_mark = kUnfinished) {
+  const std::size_t mark = name.rfind(with_mark);
   if (!name.starts_with(".") || mark == std::string::npos) return std::nullopt;
-  const std::string rest = name.substr(mark + kMark.size());
+  const std::string rest = name.substr(mark + with_mark.size());
   if (!rest.empty() && !rest.starts_with(".")) return std::nullopt;
   const std::size_t dot = name.rfind('.', mark - 1);
   if (dot == std::string::npos || dot == 0) return std::nullopt;
@@ -82,19 +82,41 @@ void add_left_behind(Iterator it, std::vector<fs::path>& found) {
   }
 }
 
+constexpr std::size_t kLongest = 150;  // bytes of a name; file systems allow 255 in all
+
+std::string marked_name(
+    const fs::path& stem, std::string_view mark, const fs::path& extension = {}
+) {
+  static const std::string host = host_mark();
+  const std::string name = stem.string().substr(0, kLongest);
+  return fmt::format(".{}.{}-{}{}{}", name, ::getpid(), host, mark, extension.string());
+}
+
 }  // namespace
 
 fs::path unfinished_path(const fs::path& path) {
-  constexpr std::size_t kLongest = 150;  // bytes of the name; file systems allow 255 in all
-  static const std::string host = host_mark();
-  return path.parent_path() / fmt::format(
-                                  ".{}.{}-{}{}{}",
-                                  path.stem().string().substr(0, kLongest),
-                                  ::getpid(),
-                                  host,
-                                  kMark,
-                                  path.extension().string()
-                              );
+  return path.parent_path() / marked_name(path.stem(), kUnfinished, path.extension());
+}
+
+fs::path aside_path(const fs::path& folder) {
+  return folder.parent_path() / marked_name(folder.filename(), kAside);
+}
+
+std::vector<fs::path> list_aside(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code code;
+  const std::string start = fmt::format(".{}.", folder.filename().string().substr(0, kLongest));
+  const fs::path parent = folder.has_parent_path() ? folder.parent_path() : ".";
+  for (fs::directory_iterator it(parent, code), end; !code && it != end; it.increment(code)) {
+    const std::string name = it->path().filename();
+    const auto writer = writer_of(name, kAside);
+    // What follows has no dot but that of the mark: else it is of a folder with a longer name.
+    const bool is_its =
+        name.starts_with(start) && name.find('.', start.size()) == name.size() - kAside.size();
+    if (writer && is_its && has_ended(*writer, *it)) found.push_back(it->path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 std::vector<fs::path> list_left_behind(const fs::path& folder, bool recursive) {

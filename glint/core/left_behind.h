@@ -21,6 +21,12 @@ std::vector<fs::path> list_left_behind(const fs::path& folder, bool recursive = 
 // Removes them; what cannot be removed stays without a word.
 void remove_left_behind(const fs::path& folder, bool recursive = true);
 
+// ".NAME.PID-HOST.old" beside a folder: where the one that it replaces waits to be removed.
+fs::path aside_path(const fs::path& folder);
+
+// Those of `folder` whose process has ended.
+std::vector<fs::path> list_aside(const fs::path& folder);
+
 // A folder beside the one it will become, made anew; at its end, what was not moved out of it goes.
 // So does what ended processes left there. Errors (kEnvironment): cannot be created.
 class UnfinishedFolder {

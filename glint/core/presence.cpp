@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "glint/core/presence.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include "glint/core/error.h"
+
+namespace glint {
+namespace {
+
+bool is_link(const fs::path& path) {
+  std::error_code code;
+  return fs::is_symlink(fs::symlink_status(path, code));
+}
+
+[[noreturn]] void throw_unseen(const fs::path& path, const std::error_code& code) {
+  const bool denied = code == std::errc::permission_denied;
+  GLINT_CHECK(
+      !denied,
+      kEnvironment,
+      "{}: permission denied; let this user read it and enter its folder",
+      path.string()
+  );
+  GLINT_CHECK(
+      code != std::errc::too_many_symbolic_link_levels,
+      kBadReference,
+      "{}: is a link that leads to itself; remove it, or let it lead to the file",
+      path.string()
+  );
+  throw Error(
+      ExitCode::kBadReference,
+      fmt::format("{}: cannot be looked up ({})", path.string(), code.message())
+  );
+}
+
+// What a link leads to may be missing; the link is not.
+Presence absent(const fs::path& path) {
+  GLINT_CHECK(
+      !is_link(path),
+      kBadReference,
+      "{}: is a link that leads nowhere; remove it, or bring back what it leads to",
+      path.string()
+  );
+  return Presence::kAbsent;
+}
+
+const char* name_of(fs::file_type type) {
+  switch (type) {
+    case fs::file_type::fifo:
+      return "a pipe";
+    case fs::file_type::character:
+    case fs::file_type::block:
+      return "a device";
+    case fs::file_type::socket:
+      return "a socket";
+    default:
+      return "something else";
+  }
+}
+
+}  // namespace
+
+Presence presence_of(const fs::path& path) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  switch (status.type()) {
+    case fs::file_type::not_found:
+      return absent(path);
+    case fs::file_type::regular:
+      return Presence::kFile;
+    case fs::file_type::directory:
+      return Presence::kFolder;
+    case fs::file_type::none:
+      throw_unseen(path, code);
+    default:
+      break;
+  }
+  throw Error(
+      ExitCode::kBadReference,
+      fmt::format(
+          "{}: is {}, expected a file or a folder; copy what it holds into a file",
+          path.string(),
+          name_of(status.type())
+      )
+  );
+}
+
+bool is_there(const fs::path& path) { return presence_of(path) != Presence::kAbsent; }
+bool is_file(const fs::path& path) { return presence_of(path) == Presence::kFile; }
+bool is_folder(const fs::path& path) { return presence_of(path) == Presence::kFolder; }
+
+std::ifstream open_file(const fs::path& path) {
+  const Presence presence = presence_of(path);
+  GLINT_CHECK(presence != Presence::kAbsent, kBadReference, "{}: no such file", path.string());
+  GLINT_CHECK(
+      presence == Presence::kFile, kBadReference, "{}: is a folder, expected a file", path.string()
+  );
+  std::ifstream in(path, std::ios::binary);
+  const int why = errno;
+  GLINT_CHECK(
+      in.good() || (why != EACCES && why != EPERM),
+      kEnvironment,
+      "{}: permission denied; let this user read it",
+      path.string()
+  );
+  GLINT_CHECK(
+      in.good(), kBadReference, "{}: cannot be opened ({})", path.string(), std::strerror(why)
+  );
+  return in;
+}
+
+}  // namespace glint

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "glint/core/replace_folder.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "glint/core/error.h"
+#include "glint/core/left_behind.h"
+
+namespace glint {
+namespace {
+
+void check(const std::error_code& code, const fs::path& path) {
+  GLINT_CHECK(!code, kEnvironment, "{}: cannot be written ({})", path.string(), code.message());
+}
+
+bool holds_nothing(const fs::path& folder) {
+  std::error_code code;
+  return !fs::exists(fs::symlink_status(folder, code)) || fs::is_empty(folder, code);
+}
+
+bool stands(const fs::path& path) {
+  std::error_code code;
+  return fs::exists(fs::symlink_status(path, code));
+}
+
+// Two names change places in one step; false: this file system cannot.
+bool exchange(const fs::path& a, const fs::path& b) {
+  if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0) return true;
+  const int why = errno;
+  const bool cannot = why == EINVAL || why == ENOSYS || why == ENOTSUP;
+  GLINT_CHECK(cannot, kEnvironment, "{}: cannot be replaced ({})", b.string(), std::strerror(why));
+  return false;
+}
+
+void rename_to(const fs::path& from, const fs::path& to) {
+  std::error_code code;
+  fs::rename(from, to, code);
+  check(code, to);
+}
+
+// `made` under `folder`, what stood there under `aside`.
+void swap_in(const fs::path& made, const fs::path& folder, const fs::path& aside) {
+  rename_to(made, aside);  // not under a name that counts as unfinished: it will hold the old one
+  if (exchange(aside, folder)) return;
+  rename_to(aside, made);
+  rename_to(folder, aside);
+  rename_to(made, folder);
+}
+
+std::vector<std::string> foreign_names(
+    const fs::path& old, const fs::path& fresh, const OwnNames& own
+) {
+  const std::set<std::string> ours = own(old, fresh);
+  std::vector<std::string> names;
+  for (const std::string& name : leaves_below(old))
+    if (!ours.contains(name)) names.push_back(name);
+  return names;
+}
+
+// What has a name that is taken stays where it is.
+void move_over(const fs::path& from, const fs::path& to, const std::vector<std::string>& names) {
+  std::error_code code;
+  for (const std::string& name : names) {
+    if (stands(to / name)) continue;
+    fs::create_directories((to / name).parent_path(), code);
+    check(code, to / name);
+    rename_to(from / name, to / name);
+  }
+}
+
+// The files first and then the folders that are empty by then.
+void remove_names(const fs::path& folder, const std::set<std::string>& names) {
+  std::error_code code;
+  for (const std::string& name : names) {
+    fs::remove(folder / name, code);
+    fs::path parent = fs::path(name).parent_path();
+    while (!parent.empty() && fs::remove(folder / parent, code) && !code)
+      parent = parent.parent_path();
+  }
+}
+
+void finish(const fs::path& aside, const fs::path& folder, const OwnNames& own) {
+  const std::vector<std::string> foreign = foreign_names(aside, folder, own);
+  std::set<std::string> ours = leaves_below(aside);
+  for (const std::string& name : foreign) ours.erase(name);
+  move_over(aside, folder, foreign);
+  remove_names(aside, ours);
+  // Folders that held what has moved.
+  std::error_code code;
+  std::set<std::string> rest = leaves_below(aside);
+  for (const std::string& name : rest)
+    if (fs::is_directory(fs::symlink_status(aside / name, code))) remove_names(aside, {name});
+  fs::remove(aside, code);
+}
+
+// A file of ours that was there may be written anew; one of others may not.
+void check_names(
+    const fs::path& made, const fs::path& folder, const std::vector<std::string>& foreign
+) {
+  for (const std::string& name : foreign)
+    GLINT_CHECK(
+        !stands(made / name),
+        kUsage,
+        "{}: was put there by somebody else, and a new file needs its name; move it away",
+        (folder / name).string()
+    );
+}
+
+}  // namespace
+
+std::set<std::string> leaves_below(const fs::path& folder) {
+  std::set<std::string> names;
+  std::error_code code;
+  fs::recursive_directory_iterator it(folder, code);
+  for (; !code && it != fs::recursive_directory_iterator(); it.increment(code)) {
+    const bool is_folder = fs::is_directory(it->symlink_status(code));
+    if (!is_folder || fs::is_empty(it->path(), code))
+      names.insert(it->path().lexically_relative(folder).generic_string());
+    if (code) break;
+  }
+  GLINT_CHECK(
+      !code, kEnvironment, "{}: cannot be read whole ({})", folder.string(), code.message()
+  );
+  return names;
+}
+
+std::vector<std::string> replace_folder(
+    const fs::path& made, const fs::path& folder, const OwnNames& own
+) {
+  recover_folder(folder, own);
+  if (holds_nothing(folder)) {
+    rename_to(made, folder);
+    return {};
+  }
+  const std::vector<std::string> foreign = foreign_names(folder, made, own);
+  check_names(made, folder, foreign);
+  const fs::path aside = aside_path(folder);
+  swap_in(made, folder, aside);
+  finish(aside, folder, own);
+  return foreign;
+}
+
+void recover_folder(const fs::path& folder, const OwnNames& own) {
+  for (const fs::path& aside : list_aside(folder)) {
+    if (holds_nothing(folder))
+      rename_to(aside, folder);
+    else
+      finish(aside, folder, own);
+  }
+}
+
+}  // namespace glint
