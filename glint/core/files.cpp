@@ -14,6 +14,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 
@@ -56,10 +57,6 @@ const char* mend_of_write(int why) {
                 : "free some disk space or choose another --out";
 }
 
-bool lacks_permission(const std::error_code& code) {
-  return code == std::errc::permission_denied || code == std::errc::operation_not_permitted;
-}
-
 std::string read_whole(std::ifstream& in, std::size_t block) {
   std::string content;
   for (std::size_t size = 0; in.good(); content.resize(size)) {
@@ -83,38 +80,12 @@ void throw_out_of_memory(const fs::path& path) {
 }
 
 void check_exists(const fs::path& path, std::string_view what) {
-  std::error_code code;
-  if (fs::exists(path, code)) return;
-  GLINT_CHECK(
-      !lacks_permission(code),
-      kEnvironment,
-      "{}: permission denied; let this user read it and enter its folder",
-      path.string()
-  );
-  GLINT_CHECK(!code, kBadReference, "{}: cannot be looked up ({})", path.string(), code.message());
-  GLINT_CHECK(code, kBadReference, "{}: no such {}", path.string(), what);
+  GLINT_CHECK(is_there(path), kBadReference, "{}: no such {}", path.string(), what);
 }
 
 std::string read_file(const fs::path& path) {
-  check_exists(path);
+  std::ifstream in = open_file(path);
   std::error_code code;
-  GLINT_CHECK(
-      !fs::is_directory(path, code),
-      kBadReference,
-      "{}: is a folder, expected a file",
-      path.string()
-  );
-  std::ifstream in(path, std::ios::binary);
-  const int why = errno;
-  GLINT_CHECK(
-      in.good() || (why != EACCES && why != EPERM),
-      kEnvironment,
-      "{}: permission denied; let this user read it",
-      path.string()
-  );
-  GLINT_CHECK(
-      in.good(), kBadReference, "{}: cannot be opened ({})", path.string(), std::strerror(why)
-  );
   // The size it claims may be wrong; where it is right, one read ends the file.
   constexpr std::uintmax_t kSmallest = 1 << 16, kLargest = 1 << 26;
   const std::uintmax_t claimed = fs::file_size(path, code);
@@ -251,8 +222,8 @@ bool natural_less(std::string_view a, std::string_view b) {
 std::vector<fs::path> list_files(
     const fs::path& folder, const std::vector<std::string>& extensions
 ) {
+  GLINT_CHECK(is_folder(folder), kBadReference, "{}: not a folder", folder.string());
   std::error_code code;
-  GLINT_CHECK(fs::is_directory(folder, code), kBadReference, "{}: not a folder", folder.string());
   std::vector<fs::path> files;
   fs::directory_iterator it(folder, code);
   GLINT_CHECK(
@@ -267,7 +238,7 @@ std::vector<fs::path> list_files(
         extensions.empty() ||
         std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
     const bool hidden = entry.path().filename().string().starts_with('.');
-    if (entry.is_regular_file(code) && wanted && !hidden) files.push_back(entry.path());
+    if (wanted && !hidden && is_file(entry.path())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return natural_less(a.filename().string(), b.filename().string());

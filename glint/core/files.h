@@ -16,12 +16,12 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void throw_out_of_memory(const fs::path& path);  // while reading it
 
-// Errors: there is no such file or folder (kBadReference); it cannot be seen for want of a
-// permission (kEnvironment).
+// Errors: there is no such file or folder (kBadReference); it cannot be looked up: those of
+// presence_of() (presence.h).
 void check_exists(const fs::path& path, std::string_view what = "file");
 
-// The whole file. Errors (kBadReference): missing, unreadable, a folder; (kEnvironment): without
-// permission, larger than the memory.
+// The whole file. Errors: those of open_file() (presence.h); (kBadReference) reading fails;
+// (kEnvironment) it is larger than the memory.
 std::string read_file(const fs::path& path);
 
 // What `read` makes of a file; where memory runs out, the error names the file and its size.

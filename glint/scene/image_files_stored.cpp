@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "glint/scene/image_files_stored.h"
 
-#include <fstream>
 #include <string>
 #include <string_view>
 
 #include "glint/core/npy.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -14,7 +14,7 @@ constexpr std::size_t kBeginning = 10 + 65535;  // bytes: the longest header of 
 
 std::string beginning_of(const fs::path& path, std::size_t count = kBeginning) {
   std::string bytes(count, '\0');
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = open_file(path);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));
   return bytes;

@@ -74,6 +74,7 @@ void read_row(TIFF* file, const fs::path& path, const TiffLayout& layout, int y,
 }
 
 TiffFile open_tiff(const fs::path& path) {
+  check_exists(path);
   TIFFSetWarningHandler(nullptr);  // messages are ours
   TIFFSetErrorHandler(nullptr);
   TiffFile file(TIFFOpen(path.c_str(), "r"), TIFFClose);

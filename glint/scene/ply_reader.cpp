@@ -101,11 +101,7 @@ void parse_property(
       std::string(words.back()), parse_type(path, words[words.size() - 2]), is_list};
   if (is_list) property.count_type = parse_type(path, words[2]);
   if (!is_list) ++element.num_scalars;
-  const auto lists =
-      std::count_if(element.properties.begin(), element.properties.end(), [](const PlyProperty& p) {
-        return p.is_list;
-      });
-  if (is_list && lists > 0)
+  if (is_list && element.properties.size() > element.num_scalars)
     fail(path, fmt::format("element {}: more than one list; expected one", element.name));
   element.properties.push_back(std::move(property));
 }

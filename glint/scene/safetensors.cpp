@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cstring>
 #include <limits>
 
 #include "glint/core/config.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -177,22 +177,8 @@ SafetensorsFile::Entry SafetensorsFile::parse_entry(
       range[1]};
 }
 
-SafetensorsFile::SafetensorsFile(const fs::path& path) : path_(path) {
-  std::error_code code;
-  check_exists(path);
-  GLINT_CHECK(
-      fs::is_regular_file(path, code), kBadReference, "{}: not a regular file", path.string()
-  );
-  in_.open(path, std::ios::binary);
-  const std::size_t file_bytes = fs::file_size(path, code);
-  GLINT_CHECK(
-      in_.good() && !code,
-      kBadReference,
-      "{}: cannot be opened ({})",
-      path.string(),
-      std::strerror(errno)
-  );
-  read_header(file_bytes);
+SafetensorsFile::SafetensorsFile(const fs::path& path) : path_(path), in_(open_file(path)) {
+  read_header(fs::file_size(path));
   check_ranges();
 }
 

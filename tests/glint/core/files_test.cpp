@@ -86,6 +86,16 @@ TEST_CASE("a file where a folder is expected is an error that names it") {
   bad_reference([&] { list_files(folder / "missing"); });
 }
 
+TEST_CASE("a link that leads nowhere is not left out of a folder's files") {
+  const TempFolder folder;
+  write_file(folder / "0.png", "");
+  fs::create_symlink("gone.png", folder / "1.png");
+  CHECK_THAT(
+      error_of(ExitCode::kBadReference, [&] { list_files(folder.path(), {".png"}); }),
+      Catch::Matchers::Contains("1.png: is a link that leads nowhere")
+  );
+}
+
 TEST_CASE("an unreadable folder and an unreadable file are errors that name them") {
   if (::geteuid() == 0) {
     WARN("skipped: the superuser may read everything");
