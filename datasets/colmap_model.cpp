@@ -2,11 +2,13 @@
 #include "datasets/colmap_model.h"
 
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <sstream>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -137,14 +139,27 @@ PointCloud read_binary_points(const fs::path& path) {
   return points;
 }
 
-// Calls f(stream, line number) for every line that is no comment. Where `skip_empty` is not set,
-// empty lines count, too: the second line of an image may be empty.
+// "# Number of images: 10, mean observations per image: 3": the number.
+std::optional<std::uint64_t> stated_count(std::string_view comment) {
+  const std::size_t number = comment.find(": ");
+  if (!comment.starts_with("# Number of ") || number == std::string_view::npos) return {};
+  std::uint64_t count = 0;
+  const char* begin = comment.data() + number + 2;
+  return std::from_chars(begin, comment.data() + comment.size(), count).ec == std::errc{}
+             ? std::optional(count)
+             : std::nullopt;
+}
+
+// Calls f(stream, line number) for every line that is no comment; the count that a comment states.
+// Where `skip_empty` is not set, empty lines count, too: the second line of an image may be empty.
 template <class F>
-void for_each_line(const fs::path& path, bool skip_empty, F&& f) {
+std::optional<std::uint64_t> for_each_line(const fs::path& path, bool skip_empty, F&& f) {
+  std::optional<std::uint64_t> stated;
   std::istringstream file(read_file(path));
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.starts_with('#') && !stated) stated = stated_count(line);
     if (line.starts_with('#') || (skip_empty && line.empty())) continue;
     std::istringstream fields(line);
     f(fields, number);
@@ -156,11 +171,35 @@ void for_each_line(const fs::path& path, bool skip_empty, F&& f) {
         number
     );
   }
+  return stated;
+}
+
+// The rest of a line has to be groups of `width` values; 0: nothing.
+void require_groups(std::istringstream& fields, std::size_t width) {
+  if (fields.fail()) return;
+  std::size_t count = 0;
+  for (std::string word; fields >> word;) ++count;
+  fields.clear();
+  if (width == 0 ? count > 0 : count % width != 0) fields.setstate(std::ios::failbit);
+}
+
+void check_count(
+    const fs::path& path, std::optional<std::uint64_t> stated, std::size_t found, const char* what
+) {
+  GLINT_CHECK(
+      !stated || *stated == found,
+      kBadReference,
+      "{}: says that it has {} {}, holds {}; it is cut off or damaged",
+      path.string(),
+      stated.value_or(0),
+      what,
+      found
+  );
 }
 
 std::map<std::uint32_t, ColmapCamera> read_text_cameras(const fs::path& path) {
   std::map<std::uint32_t, ColmapCamera> cameras;
-  for_each_line(path, true, [&](std::istringstream& fields, std::size_t) {
+  const auto stated = for_each_line(path, true, [&](std::istringstream& fields, std::size_t) {
     std::uint32_t id = 0;
     std::string lens;
     ColmapCamera camera;
@@ -169,16 +208,19 @@ std::map<std::uint32_t, ColmapCamera> read_text_cameras(const fs::path& path) {
     camera.params.resize(kColmapLenses[camera.lens].num_params);
     fields >> camera.width >> camera.height;
     for (double& value : camera.params) fields >> value;
+    require_groups(fields, 0);
     cameras[id] = std::move(camera);
   });
+  check_count(path, stated, cameras.size(), "cameras");
   return cameras;
 }
 
 std::vector<ColmapImage> read_text_images(const fs::path& path) {
   std::vector<ColmapImage> images;
   bool is_second = false;  // line of an image: its observations
-  for_each_line(path, false, [&](std::istringstream& fields, std::size_t) {
+  const auto stated = for_each_line(path, false, [&](std::istringstream& fields, std::size_t) {
     if (!is_second && (fields >> std::ws).eof()) return fields.clear();
+    if (is_second) require_groups(fields, 3);  // x, y and the number of a point
     if (!is_second) {
       ColmapImage& image = images.emplace_back();
       Vec4<double>& q = image.rotation_cam_from_world;
@@ -188,35 +230,59 @@ std::vector<ColmapImage> read_text_images(const fs::path& path) {
     }
     is_second = !is_second;
   });
+  check_count(path, stated, images.size(), "images");
   return images;
 }
 
 PointCloud read_text_points(const fs::path& path) {
   PointCloud points;
-  for_each_line(path, true, [&](std::istringstream& fields, std::size_t) {
+  const auto stated = for_each_line(path, true, [&](std::istringstream& fields, std::size_t) {
     std::uint64_t id = 0;
     Vec3d position;
     Vec3f color;
-    fields >> id >> position.x >> position.y >> position.z >> color.x >> color.y >> color.z;
+    double error = 0;
+    fields >> id >> position.x >> position.y >> position.z >> color.x >> color.y >> color.z >>
+        error;
+    require_groups(fields, 2);  // of a track: the number of an image and of its point
     points.positions.push_back(cast<float>(position));
     points.colors.push_back((1 / 255.0f) * color);
   });
+  check_count(path, stated, points.positions.size(), "points");
   return points;
 }
 
 // The file of that name as .bin or .txt; empty: neither.
 fs::path binary_or_text(const fs::path& model, const std::string& name) {
-  std::error_code code;
   for (const char* extension : {".bin", ".txt"})
-    if (const fs::path path = model / (name + extension); fs::exists(path, code)) return path;
+    if (const fs::path path = model / (name + extension); is_there(path)) return path;
   return {};
+}
+
+double length_of(const Vec4<double>& q) {
+  return std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+}
+
+// Programs write unit quaternions, few digits or many: another length is a number that is damaged.
+void check_rotations(const std::vector<ColmapImage>& images, const fs::path& path) {
+  constexpr double kRounding = 5e-3;
+  for (const ColmapImage& image : images) {
+    const double length = length_of(image.rotation_cam_from_world);
+    GLINT_CHECK(
+        std::abs(length - 1) < kRounding,
+        kBadReference,
+        "{}: image {}: its quaternion has length {:.4g}, expected 1; a number of it is damaged",
+        path.string(),
+        image.name,
+        length
+    );
+  }
 }
 
 }  // namespace
 
 Mat3d rotation_of(const ColmapImage& image) {
   const Vec4<double>& q = image.rotation_cam_from_world;
-  const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  const double norm = length_of(q);
   return rotation_from_quaternion({q.w / norm, q.x / norm, q.y / norm, q.z / norm});
 }
 
@@ -229,9 +295,8 @@ fs::path find_colmap_model(const fs::path& folder) {
 }
 
 fs::path find_colmap_points(const fs::path& model) {
-  std::error_code code;
   for (const char* name : {"points3D.bin", "points3D.txt", "points3D.ply"})
-    if (const fs::path path = model / name; fs::exists(path, code))
+    if (const fs::path path = model / name; is_there(path))
       return path.extension() == ".bin" && read_file(path) == std::string(8, '\0') ? fs::path()
                                                                                    : path;
   return {};
@@ -246,9 +311,11 @@ ColmapModel read_colmap_model(const fs::path& model) {
       "{}: no COLMAP model; expected cameras.bin and images.bin, or .txt",
       model.string()
   );
-  return {
+  ColmapModel read{
       cameras.extension() == ".bin" ? read_binary_cameras(cameras) : read_text_cameras(cameras),
       images.extension() == ".bin" ? read_binary_images(images) : read_text_images(images)};
+  check_rotations(read.images, images);
+  return read;
 }
 
 PointCloud read_colmap_points(const fs::path& path) {

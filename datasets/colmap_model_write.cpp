@@ -18,8 +18,9 @@ void append_bytes(std::string& bytes, const T&... values) {
 struct ModelFile {
   std::string name, binary, text;
 
-  ModelFile(std::string file, const std::string& comment, std::uint64_t count)
-      : name(std::move(file)), text("# " + comment + "\n") {
+  ModelFile(std::string file, std::string_view what, std::string_view comment, std::uint64_t count)
+      : name(std::move(file)),
+        text(fmt::format("# {}\n# Number of {}: {}\n", comment, what, count)) {
     append_bytes(binary, count);
   }
   void store(const fs::path& model) const {
@@ -30,7 +31,10 @@ struct ModelFile {
 
 ModelFile cameras_file(const ColmapModel& data) {
   ModelFile file(
-      "cameras", "id, model, width, height, parameters; pixel centres at +0.5", data.cameras.size()
+      "cameras",
+      "cameras",
+      "id, model, width, height, parameters; pixel centres at +0.5",
+      data.cameras.size()
   );
   for (const auto& [id, camera] : data.cameras) {
     append_bytes(file.binary, id, std::int32_t{camera.lens}, camera.width, camera.height);
@@ -47,6 +51,7 @@ ModelFile cameras_file(const ColmapModel& data) {
 
 ModelFile images_file(const ColmapModel& data) {
   ModelFile file(
+      "images",
       "images",
       "id, qw, qx, qy, qz, tx, ty, tz (world to camera), camera, name; then an empty line: no "
       "observations",
@@ -68,7 +73,9 @@ ModelFile images_file(const ColmapModel& data) {
 
 ModelFile points_file(const PointCloud& points) {
   constexpr double kUnknownError = -1;
-  ModelFile file("points3D", "id, x, y, z, r, g, b, error, no track", points.positions.size());
+  ModelFile file(
+      "points3D", "points", "id, x, y, z, r, g, b, error, no track", points.positions.size()
+  );
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     const std::uint64_t id = i + 1;
     const Vec3d p = cast<double>(points.positions[i]);

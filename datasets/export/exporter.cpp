@@ -8,12 +8,20 @@
 #include "glint/core/config.h"
 #include "glint/core/error.h"
 #include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
+#include "glint/core/replace_folder.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {
 namespace {
 
 constexpr const char* kExportedBy = "glint-bench dataset export";
+constexpr const char* kDescription = "scene.json";
+constexpr const char* kFiles = "exported_files";  // there: names of all that an export wrote
+
+bool listed_in(const Json& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), Json(name)) != names.end();
+}
 
 const ExporterSpec& exporter_called(const std::string& id) {
   const auto& exporters = Registry<ExporterSpec>::all();
@@ -24,25 +32,37 @@ const ExporterSpec& exporter_called(const std::string& id) {
   throw Error(ExitCode::kUsage, fmt::format("--format {}: no such format. There are:{}", id, list));
 }
 
+Json description_of(const fs::path& folder) {
+  const fs::path file = folder / kDescription;
+  return is_file(file) ? parse_json(read_file(file)) : Json();
+}
+
 bool is_export(const fs::path& folder) {
-  std::error_code code;
-  const fs::path file = folder / "scene.json";
-  if (!fs::is_regular_file(file, code)) return false;
-  const Json json = parse_json(read_file(file));
+  const Json json = description_of(folder);
   return json.is_object() && json.value("exported_by", Json()) == kExportedBy;
+}
+
+// By its list; of exports that have none, all that lies where the new one has something.
+std::set<std::string> own_names(const fs::path& old, const fs::path& fresh) {
+  std::set<std::string> names = {kDescription};
+  const Json json = description_of(old);
+  const Json listed = json.is_object() ? json.value(kFiles, Json()) : Json();
+  const auto is_ours = [&](const std::string& name) {
+    return is_there(fresh / *fs::path(name).begin());
+  };
+  for (const std::string& name : leaves_below(old))
+    if (listed.is_array() ? listed_in(listed, name) : is_ours(name)) names.insert(name);
+  return names;
 }
 
 // Nothing but an earlier export is ever removed.
 void check_folder(const fs::path& folder, bool force) {
-  std::error_code code;
-  if (!fs::exists(folder, code)) return;
+  recover_folder(folder, own_names);
+  if (!is_there(folder)) return;
   GLINT_CHECK(
-      fs::is_directory(folder, code),
-      kUsage,
-      "{}: is a file; expected a folder or a new name",
-      folder.string()
+      is_folder(folder), kUsage, "{}: is a file; expected a folder or a new name", folder.string()
   );
-  if (fs::is_empty(folder, code)) return;
+  if (fs::is_empty(folder)) return;
   GLINT_CHECK(
       is_export(folder),
       kUsage,
@@ -86,14 +106,24 @@ void write_scene_json(
     for (const ExportView& view : input.views)
       if (view.is_test) json["test_views"].push_back(view.name);
   }
-  write_file(folder / "scene.json", json.dump(1) + "\n");
+  json[kFiles] = leaves_below(folder);
+  write_file(folder / kDescription, json.dump(1) + "\n");
 }
 
-void move_to(const fs::path& made, const fs::path& folder) {
-  std::error_code code;
-  fs::remove_all(folder, code);
-  if (!code) fs::rename(made, folder, code);
-  GLINT_CHECK(!code, kEnvironment, "{}: cannot be replaced ({})", folder.string(), code.message());
+void add_foreign_note(const std::vector<std::string>& foreign, ExportReport& report) {
+  if (foreign.empty()) return;
+  report.note(fmt::format(
+      "{} that {} no export stayed: {}{}",
+      foreign.size() == 1 ? "a file" : fmt::format("{} files", foreign.size()),
+      foreign.size() == 1 ? "is of" : "are of",
+      foreign.front(),
+      foreign.size() == 1 ? "" : ", ..."
+  ));
+}
+
+// Without a separator at its end: names beside it are made of its own.
+fs::path absolute_name(const fs::path& folder) {
+  return fs::absolute(folder / ".").lexically_normal().parent_path();
 }
 
 void add_scene_notes(const ExportInput& input, ExportReport& report) {
@@ -160,12 +190,12 @@ std::vector<ExportView> export_views(const Scene& scene, ExportSplit split) {
 
 void check_export(const fs::path& folder, const ExportOptions& options) {
   exporter_called(options.format);
-  check_folder(folder, options.force);
+  check_folder(absolute_name(folder), options.force);
 }
 
 ExportReport export_scene(const Scene& scene, const fs::path& to, const ExportOptions& options) {
   const ExporterSpec& exporter = exporter_called(options.format);
-  const fs::path folder = fs::absolute(to / ".").lexically_normal().parent_path();
+  const fs::path folder = absolute_name(to);
   check_folder(folder, options.force);
   ExportInput input{scene, export_views(scene, options.split)};
   GLINT_CHECK(!input.views.empty(), kUsage, "{}: no views in that split", scene.name);
@@ -176,7 +206,7 @@ ExportReport export_scene(const Scene& scene, const fs::path& to, const ExportOp
   if (!exporter.has_scene_maps) write_side_maps(input, unfinished.path(), report);
   write_scene_json(input, exporter, unfinished.path());
   add_scene_notes(input, report);
-  move_to(unfinished.path(), folder);
+  add_foreign_note(replace_folder(unfinished.path(), folder, own_names), report);
   return report;
 }
 

@@ -53,12 +53,12 @@ enum class ExportSplit { kAll, kTrain, kTest };
 struct ExportOptions {
   std::string format;  // id of an ExporterSpec
   ExportSplit split = ExportSplit::kAll;
-  bool force = false;  // an earlier export in the folder is replaced
+  bool force = false;  // an earlier export in the folder is replaced; what others put there stays
 };
 
-// Fills a folder beside `folder` and renames it. Errors (kUsage): no such format (all are listed);
-// no views in the split; a folder that is not empty, without `force` or when it is no export;
-// (kEnvironment): cannot be written.
+// Fills a folder beside `folder` and lets it take its place (replace_folder.h). Errors (kUsage): no
+// such format (all are listed); no views in the split; a folder that is not empty, without `force`
+// or when it is no export; (kEnvironment): cannot be written.
 ExportReport export_scene(const Scene& scene, const fs::path& folder, const ExportOptions& options);
 
 // export_scene()'s errors (kUsage) that can be told before a scene is loaded.

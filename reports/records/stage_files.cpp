@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "reports/records/stage_files.h"
 
-#include <algorithm>
+#include <sys/stat.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "glint/core/error.h"
 #include "glint/core/sha256.h"
 
 namespace glint {
@@ -75,7 +80,25 @@ bool has_same_bytes(const fs::path& folder, const StageFile& stage, const std::s
   return hash == stage.hashes.end() || sha256(read_file(folder / name)) == hash->second;
 }
 
-// Hashes of files, by name, size and time of change.
+// Other bytes have another state: sizes and times of writing come out of an archive as they were,
+// the file's number and the time of its last change of any kind do not. Errors (kBadReference): it
+// is gone.
+Json state_of(const fs::path& file) {
+  struct stat found {};
+  GLINT_CHECK(
+      ::stat(file.c_str(), &found) == 0,
+      kBadReference,
+      "{}: cannot be looked up ({})",
+      file.string(),
+      std::strerror(errno)
+  );
+  const auto nanoseconds = [](const timespec& time) {
+    return static_cast<std::int64_t>(time.tv_sec) * 1'000'000'000 + time.tv_nsec;
+  };
+  return {found.st_size, nanoseconds(found.st_mtim), nanoseconds(found.st_ctim), found.st_ino};
+}
+
+// Hashes of files, by name and state.
 class HashCache {
  public:
   HashCache(const fs::path& data, const fs::path& cache)
@@ -86,7 +109,7 @@ class HashCache {
   }
 
   std::string hash_of(const fs::path& file, const std::string& name) {
-    const Json state = {fs::file_size(file), fs::last_write_time(file).time_since_epoch().count()};
+    const Json state = state_of(file);
     const auto found = known_.find(name);
     const bool same = found != known_.end() && found->is_object() &&
                       found->value("state", Json()) == state &&

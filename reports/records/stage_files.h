@@ -68,7 +68,7 @@ std::vector<std::string> stage_differences(const Json& then, const Json& now);
 Json with_machine_of(Json now, const Json& then);
 
 // A folder's or file's content: hash over names and bytes of all files but hidden ones and keys/.
-// Hashes of single files are kept in `cache` by their size and time of change. Errors
+// Hashes of single files are kept in `cache` by their size, times and number. Errors
 // (kBadReference): a file cannot be read.
 std::string content_hash(const fs::path& data, const fs::path& cache);
 

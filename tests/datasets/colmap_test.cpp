@@ -141,6 +141,42 @@ TEST_CASE("cut-off and damaged COLMAP files are errors that name the file") {
     }
 }
 
+TEST_CASE("COLMAP text that ends early is an error, wherever it ends") {
+  for (const std::string& file : kFiles) {
+    const ColmapFolder folder;
+    folder.keep_only(".txt");
+    const fs::path path = folder.path() / "sparse/0" / (file + ".txt");
+    const std::string text = read_file(path);
+    // Behind the line that states a count, up to the last value.
+    const std::size_t begin = text.find('\n', text.find("# Number of"));
+    for (std::size_t length = begin; length < text.rfind(' '); ++length) {
+      write_file(path, text.substr(0, length));
+      INFO(file << " cut at " << length);
+      CHECK_THAT(folder.load_error(), Contains(file + ".txt"));
+    }
+  }
+}
+
+TEST_CASE("rows of points and observations that lack columns are errors, also without a count") {
+  const ColmapFolder folder;
+  folder.keep_only(".txt");
+  const auto error_of_points = [&](const char* row) {
+    write_file(folder / "sparse/0/points3D.txt", row);
+    return folder.load_error();
+  };
+  CHECK_THAT(error_of_points("1 0 0 0 9 9 9\n"), Contains("line 1: a value is missing"));
+  CHECK_THAT(error_of_points("1 0 0 0 9 9 9 0.5 3\n"), Contains("line 1: a value is missing"));
+  write_file(folder / "sparse/0/points3D.txt", "1 0 0 0 9 9 9 0.5 3 1\n");
+  CHECK(load_scene(folder.path(), {}).points.positions.size() == 1);
+}
+
+TEST_CASE("a rotation whose quaternion is not of unit length is an error that names the image") {
+  ColmapFolder folder;
+  folder.model.images[3].rotation_cam_from_world.w *= 0.5;
+  folder.store();
+  CHECK_THAT(folder.load_error(), Contains("0003.png: its quaternion has length"));
+}
+
 TEST_CASE("a model beside another format's files leaves the folder to that format") {
   const ColmapFolder folder;
   write_nerfstudio(folder.path(), folder.views);

@@ -363,15 +363,22 @@ TEST_CASE("masks of what counts go with every format; those that do not name the
 TEST_CASE("only an earlier export is replaced, and only with --force") {
   const Scene scene = room();
   Exported exported("colmap", scene);
-  write_file(exported.folder / "images/more.png", "stale");
+  write_file(exported.folder / "notes.txt", "mine");
+  fs::create_directories(exported.folder / "outputs");
   CHECK_THAT(
       error_of(ExitCode::kUsage, [&] { export_scene(scene, exported.folder, {"colmap"}); }),
       Contains("--force replaces it")
   );
   const ExportOptions force{"nerfstudio", ExportSplit::kAll, true};
-  export_scene(scene, exported.folder.string() + "/", force);
+  const ExportReport report = export_scene(scene, exported.folder.string() + "/", force);
   CHECK(find_loader(exported.folder).name == "nerfstudio");
-  CHECK_FALSE(fs::exists(exported.folder / "images/more.png"));
+  CHECK_FALSE(fs::exists(exported.folder / "sparse"));
+  CHECK(read_file(exported.folder / "notes.txt") == "mine");
+  CHECK(fs::exists(exported.folder / "outputs"));
+  CHECK(
+      fmt::format("{}", fmt::join(report.notes, "; "))
+          .find("2 files that are of no export stayed: notes.txt, ...") != std::string::npos
+  );
   write_file(exported.path() / "mine/thesis.txt", "x");
   CHECK_THAT(
       error_of(ExitCode::kUsage, [&] { export_scene(scene, exported.path() / "mine", force); }),

@@ -4,6 +4,7 @@
 // has to be given its place here.
 #include <catch2/catch.hpp>
 
+#include <fstream>
 #include <functional>
 #include <set>
 
@@ -281,6 +282,20 @@ TEST_CASE("of a folder its files count, not its name") {
   CHECK(hash("a") == hash("b"));
   fs::rename(data.path() / "b/intri.yml", data.path() / "b/extri.yml");
   CHECK(hash("a") != hash("b"));
+}
+
+TEST_CASE("another version of a folder is told where sizes and times of writing are the same") {
+  const test::TempFolder data;
+  const fs::path file = data.path() / "room/points.bin", hashes = data.path() / ".hashes";
+  write_file(file, "first");
+  const fs::file_time_type time = fs::last_write_time(file);
+  const std::string first = content_hash(data.path() / "room", hashes);
+  std::ofstream(file) << "other";  // the same file, as an archive unpacked over it
+  fs::last_write_time(file, time);
+  CHECK(content_hash(data.path() / "room", hashes) != first);
+  write_file(file, "first");  // a file in its place
+  fs::last_write_time(file, time);
+  CHECK(content_hash(data.path() / "room", hashes) == first);
 }
 
 TEST_CASE("a reason names what has changed, with both values") {
