@@ -6,15 +6,15 @@
 #include "datasets/dataset.h"
 #include "datasets/transforms_json.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
 
 LoaderMatch match(const fs::path& folder) {
-  std::error_code code;
   const fs::path file = folder / "transforms_train.json";
-  if (!fs::exists(file, code)) return {};
-  if (fs::exists(folder / "transforms.json", code))
+  if (!is_there(file)) return {};
+  if (is_there(folder / "transforms.json"))
     return {Sureness::kName, "transforms_train.json beside transforms.json"};
   if (!file_contains(file, "\"frames\"")) return {Sureness::kName, "transforms_train.json"};
   return {Sureness::kContents, "transforms_train.json with frames"};
@@ -22,8 +22,7 @@ LoaderMatch match(const fs::path& folder) {
 
 // Adds the views of one file; nothing where it is missing.
 std::string add_views(const fs::path& file, bool is_test, SceneIndex& index) {
-  std::error_code code;
-  if (is_test && !fs::exists(file, code)) return {};
+  if (is_test && !is_there(file)) return {};
   const std::size_t first = index.views.size();
   const Json json = parse_transforms(file);
   read_frames(json, file, index);
@@ -45,9 +44,7 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   if (test.empty()) index.split_rule = split_every(index.views, options.test_every);
   shorten_names(index.views);
   sort_naturally(index.views);
-  std::error_code code;
-  if (const fs::path points = folder / "points3d.ply"; fs::exists(points, code))
-    index.points = points;
+  if (const fs::path points = folder / "points3d.ply"; is_there(points)) index.points = points;
   index.spec_hash = hash_of_files(train + test, index.views);
   return index;
 }

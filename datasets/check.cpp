@@ -12,6 +12,7 @@
 #include "datasets/scene_index.h"
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
+#include "glint/core/presence.h"
 #include "glint/core/rng.h"
 
 namespace glint {
@@ -53,14 +54,19 @@ bool same_pose(const Camera& a, const Camera& b) {
   return length(a.translation_cam_from_world - b.translation_cam_from_world) < kSame;
 }
 
+// The same for the same bytes; empty: not there, or not to be read, which other checks tell.
+std::string content_mark(const fs::path& image) try {
+  const std::string bytes = read_file(image);
+  return fmt::format("{:x}:{}", hash_name(bytes), bytes.size());
+} catch (const Error&) {
+  return {};
+}
+
 // Test views that are train views under another name: same bytes, or same pose.
 void check_leaks(const SceneIndex& index, std::vector<Finding>& findings) {
   std::vector<std::string> contents(index.views.size());
   parallel_for(index.views.size(), 1, [&](std::size_t i) {
-    std::error_code code;
-    if (!fs::is_regular_file(index.views[i].image, code)) return;
-    const std::string bytes = read_file(index.views[i].image);
-    contents[i] = fmt::format("{:x}:{}", hash_name(bytes), bytes.size());
+    contents[i] = content_mark(index.views[i].image);
   });
   for (std::size_t i = 0; i < index.views.size(); ++i)
     for (std::size_t j = 0; j < index.views.size(); ++j) {
@@ -79,6 +85,27 @@ void check_leaks(const SceneIndex& index, std::vector<Finding>& findings) {
              fmt::format("the same pose as train view {}; remove one", train.name)}
         );
     }
+}
+
+// Depth needs two places. Matrices whose last row was not read put all cameras at the origin.
+void check_positions(const SceneIndex& index, std::vector<Finding>& findings) {
+  constexpr double kSamePlace = 1e-9;  // of the distance to the origin, or of a metre
+  if (index.views.size() < 2) return;
+  const Vec3d first = index.views.front().camera.center();
+  const double scale = std::max(1.0, length(first));
+  if (std::all_of(index.views.begin(), index.views.end(), [&](const ViewSource& view) {
+        return length(view.camera.center() - first) <= kSamePlace * scale;
+      }))
+    findings.push_back(
+        {"pose",
+         index.folder.string(),
+         fmt::format(
+             "all {} cameras stand in one point; nothing can be reconstructed from there: the "
+             "poses "
+             "are damaged, or of another form",
+             index.views.size()
+         )}
+    );
 }
 
 bool is_seen(Vec3d point, const std::vector<ViewSource>& views) {
@@ -145,6 +172,7 @@ std::vector<Finding> check_indexed(const SceneIndex& index) {
     std::move(of_view.begin(), of_view.end(), std::back_inserter(findings));
   check_recorded(index.folder, findings);
   check_leaks(index, findings);
+  check_positions(index, findings);
   check_points(index, findings);
   check_agreement(index, findings);
   return findings;

@@ -11,6 +11,7 @@
 #include "datasets/prior_maps.h"
 #include "datasets/undistort.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {
@@ -18,9 +19,9 @@ namespace {
 
 // ---------------------------------------------------------------- one view's files
 
-bool is_missing(const fs::path& path) {
-  std::error_code code;
-  return !fs::exists(path, code);
+// What cannot be looked up is not missing: reading it says why.
+bool is_missing(const fs::path& path) try { return !is_there(path); } catch (const Error&) {
+  return false;
 }
 
 // The image, or an empty one with a finding.

@@ -10,22 +10,22 @@
 #include "datasets/dataset.h"
 #include "datasets/scene_index.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
 
 LoaderMatch match(const fs::path& folder) {
-  std::error_code code;
   const fs::path model = find_colmap_model(folder);
   if (model.empty()) return {};
   const char* const pictures[] = {"images", "images_2", "images_4", "images_8"};
   if (std::none_of(std::begin(pictures), std::end(pictures), [&](const char* name) {
-        return fs::is_directory(folder / name, code);
+        return is_folder(folder / name);
       }))
     return {Sureness::kName, "a COLMAP model"};
   // Folders of other formats often keep the model that they were made from.
   for (const char* other : {"transforms.json", "transforms_train.json", "intri.yml"})
-    if (fs::exists(folder / other, code))
+    if (is_there(folder / other))
       return {Sureness::kName, fmt::format("a COLMAP model beside {}", other)};
   return {Sureness::kContents, "a COLMAP model and images"};
 }
@@ -106,8 +106,7 @@ std::set<std::string> read_names(const fs::path& path) {
 
 // Returns the rule in words.
 std::string split_views(const fs::path& list, int test_every, std::vector<ViewSource>& views) {
-  std::error_code code;
-  if (!fs::exists(list, code)) {
+  if (!is_there(list)) {
     sort_by_bytes(views);
     return split_every(views, test_every);
   }

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -71,8 +72,7 @@ std::vector<Candidate> surest_loaders(const fs::path& folder) {
 
 // A folder that may not be listed or entered looks as if nothing were in it.
 void check_may_enter(const fs::path& folder) {
-  std::error_code code;
-  const bool denied = fs::is_directory(folder, code) &&
+  const bool denied = is_folder(folder) &&
                       ::faccessat(AT_FDCWD, folder.c_str(), R_OK | X_OK, AT_EACCESS) != 0 &&
                       errno == EACCES;
   GLINT_CHECK(
@@ -113,8 +113,8 @@ std::string format_vector(Vec3f v) {
 const LoaderSpec& find_loader(const fs::path& folder, const std::string& id) {
   check_exists(folder, "folder or file");
   if (!id.empty()) return loader_called(id);
+  check_may_enter(folder);
   const std::vector<Candidate> surest = surest_loaders(folder);
-  if (surest.empty()) check_may_enter(folder);
   GLINT_CHECK(
       !surest.empty(),
       kBadReference,

@@ -7,14 +7,14 @@
 #include "datasets/dataset.h"
 #include "datasets/scene_index.h"
 #include "datasets/transforms_json.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
 
 LoaderMatch match(const fs::path& folder) {
-  std::error_code code;
-  if (!fs::exists(folder / "nerfstudio/transforms.json", code)) return {};
-  if (fs::exists(folder / "transforms.json", code))
+  if (!is_there(folder / "nerfstudio/transforms.json")) return {};
+  if (is_there(folder / "transforms.json"))
     return {Sureness::kName, "nerfstudio/transforms.json beside transforms.json"};
   if (!file_contains(folder / "nerfstudio/transforms.json", "\"frames\""))
     return {Sureness::kName, "nerfstudio/transforms.json"};

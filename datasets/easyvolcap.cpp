@@ -10,6 +10,7 @@
 #include "datasets/dataset.h"
 #include "datasets/opencv_yaml.h"
 #include "datasets/scene_index.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -17,9 +18,8 @@ namespace {
 const std::vector<std::string> kPictures{".png", ".jpg", ".jpeg"};
 
 LoaderMatch match(const fs::path& folder) {
-  std::error_code code;
-  if (!fs::exists(folder / "intri.yml", code)) return {};
-  const bool complete = fs::exists(folder / "extri.yml", code) && is_folder(folder / "images");
+  if (!is_there(folder / "intri.yml")) return {};
+  const bool complete = is_there(folder / "extri.yml") && is_folder(folder / "images");
   if (!complete || !file_contains(folder / "intri.yml", "K_"))
     return {Sureness::kName, "intri.yml"};
   return {Sureness::kContents, "intri.yml with cameras, extri.yml and images"};
@@ -110,8 +110,7 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   index.split_rule = split_every(index.views, options.test_every);
   sort_naturally(index.views);
   const fs::path points = folder / "sparse" / "0" / "points3D.ply";
-  std::error_code code;
-  if (fs::exists(points, code)) index.points = points;
+  if (is_there(points)) index.points = points;
   index.spec_hash = hash_of_files(read_file(intri) + read_file(extri), index.views);
   return index;
 }

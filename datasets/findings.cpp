@@ -17,6 +17,34 @@ double rotation_error(const Mat3d& r) {
   return error;
 }
 
+// Degrees that the longer side spans. Some datasets state no size: the middle is about half of it.
+double view_angle(const Camera& camera) {
+  constexpr double kDegrees = 180 / 3.141592653589793;
+  const double width = camera.width > 0 ? camera.width : 2 * camera.cx;
+  const double height = camera.height > 0 ? camera.height : 2 * camera.cy;
+  return 2 * kDegrees * std::atan(0.5 * std::max(width / camera.fx, height / camera.fy));
+}
+
+// No lens of a scene that is walked through; a lens that sees more is no pinhole.
+std::optional<Finding> view_angle_problem(const Camera& camera, const std::string& where) {
+  constexpr double kLeast = 1, kMost = 175;  // degrees
+  if (camera.width <= 0 && !(camera.cx > 0 && camera.cy > 0)) return std::nullopt;
+  const double angle = view_angle(camera);
+  if (angle >= kLeast && angle <= kMost) return std::nullopt;
+  return Finding{
+      "intrinsics",
+      where,
+      fmt::format(
+          "focal lengths {:g} and {:g} make a field of view of {:.3g} degrees; expected {} to {}: "
+          "are they pixels?",
+          camera.fx,
+          camera.fy,
+          angle,
+          kLeast,
+          kMost
+      )};
+}
+
 }  // namespace
 
 Finding make_finding(const std::string& check, const std::string& where, std::string message) {
@@ -59,6 +87,7 @@ std::optional<Finding> camera_problem(const Camera& camera, const std::string& w
         where,
         fmt::format("focal lengths {} and {}; expected positive ones", camera.fx, camera.fy)};
   }
+  if (auto problem = view_angle_problem(camera, where)) return problem;
   const double error = rotation_error(camera.rotation_cam_from_world);
   if (error <= 1e-3) return std::nullopt;
   return Finding{

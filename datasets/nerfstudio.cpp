@@ -5,6 +5,7 @@
 #include "datasets/dataset.h"
 #include "datasets/transforms_json.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -61,9 +62,8 @@ std::string split_views(
 }
 
 LoaderMatch match(const fs::path& folder) {
-  std::error_code code;
   const fs::path file = folder / "transforms.json";
-  if (!fs::exists(file, code)) return {};
+  if (!is_there(file)) return {};
   if (!file_contains(file, "\"frames\"")) return {Sureness::kName, "transforms.json"};
   return {Sureness::kContents, "transforms.json with frames"};
 }
@@ -80,8 +80,16 @@ SceneIndex index_nerfstudio(const fs::path& folder, const LoadOptions& options) 
   sort_naturally(index.views);
   index.split_rule = split_views(json, file.string(), options, index);
   shorten_names(index.views);
-  if (json.contains("ply_file_path") && json["ply_file_path"].is_string())
-    index.points = folder / json["ply_file_path"].get<std::string>();
+  if (const auto points = json.find("ply_file_path"); points != json.end()) {
+    GLINT_CHECK(
+        points->is_string(),
+        kBadReference,
+        "{}: ply_file_path is {}, expected a text",
+        file.string(),
+        points->dump()
+    );
+    index.points = folder / points->get<std::string>();
+  }
   index.spec_hash = hash_of_files(json.dump(), index.views);
   return index;
 }

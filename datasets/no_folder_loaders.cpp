@@ -2,13 +2,13 @@
 // In place of the loaders of folders (library folder_loaders), which need image libraries.
 #include "datasets/dataset.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
 
 LoaderMatch match(const fs::path& path) {
-  std::error_code code;
-  return {fs::is_directory(path, code) ? Sureness::kName : Sureness::kNone, "a folder"};
+  return {is_folder(path) ? Sureness::kName : Sureness::kNone, "a folder"};
 }
 
 [[noreturn]] Scene load(const fs::path& path, const LoadOptions&) {

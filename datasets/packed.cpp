@@ -4,13 +4,13 @@
 #include "datasets/packed_scene.h"
 #include "datasets/view_maps.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
 
 LoaderMatch match(const fs::path& path) {
-  std::error_code code;
-  if (!fs::is_regular_file(path, code)) return {};
+  if (!is_file(path)) return {};
   return {Sureness::kContents, "a file"};  // folders are all that others look for
 }
 

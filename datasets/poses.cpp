@@ -15,6 +15,7 @@
 #include "datasets/dataset.h"
 #include "datasets/scene_index.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -23,8 +24,7 @@ const std::vector<std::string> kPictures{".png", ".jpg", ".jpeg"};
 constexpr std::size_t kMostNumbers = 16;
 
 bool has_intrinsics(const fs::path& folder) {
-  std::error_code code;
-  return fs::exists(folder / "intrinsics.txt", code) || is_folder(folder / "intrinsics");
+  return is_there(folder / "intrinsics.txt") || is_folder(folder / "intrinsics");
 }
 
 LoaderMatch match(const fs::path& folder) {
@@ -71,9 +71,8 @@ std::array<double, 16> read_matrix(const fs::path& path) {
 }
 
 void read_intrinsics(const fs::path& folder, const std::string& stem, Camera& camera) {
-  std::error_code code;
   const fs::path own = folder / "intrinsics" / (stem + ".txt");
-  const auto k = read_matrix(fs::exists(own, code) ? own : folder / "intrinsics.txt");
+  const auto k = read_matrix(is_there(own) ? own : folder / "intrinsics.txt");
   camera.fx = k[0], camera.cx = k[2];
   camera.fy = k[5], camera.cy = k[6];
 }
@@ -82,6 +81,17 @@ void read_intrinsics(const fs::path& folder, const std::string& stem, Camera& ca
 bool read_pose(const fs::path& path, Camera& camera) {
   const auto m = read_matrix(path);
   if (!std::all_of(m.begin(), m.end(), [](double v) { return std::isfinite(v); })) return false;
+  GLINT_CHECK(
+      m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1,
+      kBadReference,
+      "{}: its last row is {} {} {} {}, expected 0 0 0 1: the camera's position belongs into the "
+      "last column (is it transposed?)",
+      path.string(),
+      m[12],
+      m[13],
+      m[14],
+      m[15]
+  );
   // R of the camera has the axes of the matrix as its rows.
   camera.rotation_cam_from_world = {{{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}}};
   camera.translation_cam_from_world = -(camera.rotation_cam_from_world * Vec3d{m[3], m[7], m[11]});
@@ -115,18 +125,15 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   std::string text;
   for (const fs::path& picture : list_files(folder / "images", kPictures)) {
     add_view(folder, picture, index);
-    std::error_code code;
     for (const char* part : {"poses", "intrinsics"})
-      if (const fs::path file = folder / part / (picture.stem().string() + ".txt");
-          fs::exists(file, code))
+      if (const fs::path file = folder / part / (picture.stem().string() + ".txt"); is_there(file))
         text += read_file(file);
   }
   sort_naturally(index.views);
   index.split_rule = split_every(index.views, options.test_every);
   shorten_names(index.views);
-  std::error_code code;
-  if (fs::exists(folder / "points.ply", code)) index.points = folder / "points.ply";
-  if (fs::exists(folder / "intrinsics.txt", code)) text += read_file(folder / "intrinsics.txt");
+  if (is_there(folder / "points.ply")) index.points = folder / "points.ply";
+  if (is_there(folder / "intrinsics.txt")) text += read_file(folder / "intrinsics.txt");
   index.spec_hash = hash_of_files(text, index.views);
   return index;
 }

@@ -9,6 +9,7 @@
 
 #include "datasets/prior_files.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -56,8 +57,7 @@ struct Clip {
 
 Clip read_clip(const fs::path& folder) {
   Clip clip{folder};
-  std::error_code code;
-  if (!fs::is_directory(folder, code)) return clip;
+  if (!is_folder(folder)) return clip;
   for (const fs::path& path : list_files(folder, kPictures)) {
     const auto file = parse_chunk_name(path.stem().string());
     if (!file) continue;

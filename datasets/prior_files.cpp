@@ -7,6 +7,7 @@
 #include <map>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -49,14 +50,12 @@ std::vector<std::string> names_of_view(const ViewSource& view) {
 
 // Empty: there is none.
 fs::path file_by_name(const fs::path& pass_folder, const ViewSource& view) {
-  std::error_code code;
   if (const fs::path frames = pass_folder / view.name;
-      why_no_folder_name(view.name).empty() && fs::is_directory(frames, code))
+      why_no_folder_name(view.name).empty() && is_folder(frames))
     if (const auto files = list_files(frames, kMapFiles); !files.empty()) return files.front();
   for (const std::string& name : names_of_view(view))
     for (const std::string& extension : kMapFiles)
-      if (const fs::path file = pass_folder / (name + extension); fs::is_regular_file(file, code))
-        return file;
+      if (const fs::path file = pass_folder / (name + extension); is_file(file)) return file;
   return {};
 }
 

@@ -7,6 +7,7 @@
 #include "glint/core/config.h"
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
+#include "glint/core/presence.h"
 #include "glint/core/rng.h"
 
 namespace glint {
@@ -15,8 +16,7 @@ namespace {
 enum class FileState { kSame, kMissing, kChanged };
 
 FileState state_of(const fs::path& file, const Json& hash) try {
-  std::error_code code;
-  if (!fs::is_regular_file(file, code)) return FileState::kMissing;
+  if (!is_file(file)) return FileState::kMissing;
   const bool same = hash == fmt::format("{:016x}", hash_name(read_file(file)));
   return same ? FileState::kSame : FileState::kChanged;
 } catch (const OutOfMemory&) {
@@ -27,8 +27,7 @@ FileState state_of(const fs::path& file, const Json& hash) try {
 
 Json recorded_hashes(const fs::path& folder) {
   const fs::path description = folder / "scene.json";
-  std::error_code code;
-  if (!fs::is_regular_file(description, code)) return Json::object();
+  if (!is_file(description)) return Json::object();
   const Json json = parse_json(read_file(description));
   const Json files = json.is_object() ? json.value("files", Json()) : Json();
   return files.is_object() ? files : Json::object();

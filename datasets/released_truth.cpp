@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/released_truth.h"
+#include "glint/core/presence.h"
 
 #include <fmt/format.h>
 
@@ -19,11 +20,6 @@ std::string number_in(const std::string& view) {
   if (digits.empty()) return {};
   const std::size_t zeros = std::min(digits.find_first_not_of('0'), digits.size() - 1);
   return fmt::format("{:0>4}", digits.substr(zeros));
-}
-
-bool is_file(const fs::path& path) {
-  std::error_code code;
-  return fs::is_regular_file(path, code);
 }
 
 // A file of that number; empty: it is not there.

@@ -17,6 +17,7 @@
 #include "datasets/dataset.h"
 #include "datasets/transforms_json.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -29,17 +30,15 @@ constexpr const char* kNoMasks =
     "count";
 
 LoaderMatch match(const fs::path& folder) {
-  std::error_code code;
-  if (fs::exists(folder / kCameras, code) && file_contains(folder / kCameras, "\"frames\""))
+  if (is_there(folder / kCameras) && file_contains(folder / kCameras, "\"frames\""))
     return {Sureness::kContents, kCameras};
-  if (fs::exists(folder / kFisheye, code)) return {Sureness::kName, kFisheye};
+  if (is_there(folder / kFisheye)) return {Sureness::kName, kFisheye};
   return {};
 }
 
 fs::path picture_folder(const fs::path& folder) {
-  std::error_code code;
   for (const char* name : {"dslr/resized_undistorted_images", "dslr/undistorted_images"})
-    if (fs::is_directory(folder / name, code)) return folder / name;
+    if (is_folder(folder / name)) return folder / name;
   throw Error(
       ExitCode::kBadReference,
       fmt::format(
@@ -104,8 +103,7 @@ Json all_frames(const Json& json, const fs::path& pictures) {
 // Test pictures of the benchmark's hidden scenes are not given out.
 void drop_hidden(const std::set<std::string>& test, SceneIndex& index) {
   const auto is_hidden = [&](const ViewSource& view) {
-    std::error_code code;
-    return test.contains(view.image.filename().string()) && !fs::exists(view.image, code);
+    return test.contains(view.image.filename().string()) && !is_there(view.image);
   };
   const std::size_t hidden = std::erase_if(index.views, is_hidden);
   if (hidden > 0)
@@ -118,10 +116,8 @@ void drop_hidden(const std::set<std::string>& test, SceneIndex& index) {
 
 // Poses by the pictures' names. Returns whether all were there.
 bool take_colmap_poses(const fs::path& folder, SceneIndex& index) {
-  std::error_code code;
   const fs::path files = folder / kModel;
-  if (!fs::exists(files / "images.txt", code) && !fs::exists(files / "images.bin", code))
-    return false;
+  if (!is_there(files / "images.txt") && !is_there(files / "images.bin")) return false;
   std::map<std::string, ColmapImage> images;
   for (ColmapImage& image : read_colmap_model(files).images)
     images.emplace(fs::path(image.name).filename().string(), std::move(image));

@@ -6,13 +6,13 @@
 #include <map>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/core/rng.h"
 
 namespace glint {
 
 bool file_contains(const fs::path& file, std::string_view part) {
-  std::error_code code;
-  if (!fs::is_regular_file(file, code)) return false;
+  if (!is_file(file)) return false;
   try {
     return read_file(file).find(part) != std::string::npos;
   } catch (const Error&) {
@@ -30,11 +30,10 @@ std::vector<fs::path> list_folders(const fs::path& folder) {
 }
 
 fs::path picture_or_copy(const fs::path& path) {
-  std::error_code code;
-  if (fs::is_regular_file(path, code)) return path;
+  if (is_file(path)) return path;
   for (const char* smaller : {"_2", "_4", "_8"}) {
     const fs::path copy = fs::path(path.parent_path().string() + smaller) / path.filename();
-    if (fs::is_regular_file(copy, code)) return copy;
+    if (is_file(copy)) return copy;
   }
   return path;
 }

@@ -11,6 +11,7 @@
 
 #include "datasets/dataset.h"
 #include "datasets/findings.h"
+#include "glint/core/presence.h"
 #include "glint/scene/camera.h"
 
 namespace glint {
@@ -58,12 +59,6 @@ inline constexpr std::size_t kFewestPoints = 4;
 // Does the file's text hold `part`? False when it cannot be read: a loader that matches a folder
 // leaves the message to load().
 bool file_contains(const fs::path& file, std::string_view part);
-
-// False, too, when it cannot be looked at.
-inline bool is_folder(const fs::path& path) {
-  std::error_code code;
-  return fs::is_directory(path, code);
-}
 
 // Folders in a folder, in the order of bytes; empty: it cannot be read.
 std::vector<fs::path> list_folders(const fs::path& folder);

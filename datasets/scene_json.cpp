@@ -7,19 +7,19 @@
 #include "glint/core/config.h"
 #include "glint/core/error.h"
 #include "glint/core/json_error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
 
 void find_side_maps(const fs::path& folder, ViewSource& view) {
   const auto find = [&](MapFiles& files, const MapRow& row, const fs::path& file) {
-    std::error_code code;
     if (!file.empty() && folder / file == view.counted) return;  // masks/ of what counts
-    if (file.empty() || !fs::is_directory((folder / file).parent_path(), code)) return;
+    if (file.empty() || !is_folder((folder / file).parent_path())) return;
     files[row] = folder / file;
     for (const char* extension : {".exr", ".npy"})
       if (const fs::path other = fs::path(folder / file).replace_extension(extension);
-          !fs::exists(folder / file, code) && fs::exists(other, code))
+          !is_there(folder / file) && is_there(other))
         files[row] = other;
   };
   for (const MapRow& row : maps()) {
@@ -30,9 +30,8 @@ void find_side_maps(const fs::path& folder, ViewSource& view) {
 
 // A mask that the format itself names comes first.
 void find_counted(const fs::path& folder, ViewSource& view) {
-  std::error_code code;
   if (const fs::path file = folder / counted_file(view.name);
-      view.counted.empty() && fs::exists(file, code))
+      view.counted.empty() && is_there(file))
     view.counted = file;
 }
 
@@ -41,8 +40,7 @@ void leave_out_priors(std::set<std::string> names, const std::string& where, Sce
   for (ViewSource& view : index.views) {
     if (names.erase(view.name) == 0) continue;
     view.priors.for_each([](const MapRow&, fs::path& file) {
-      std::error_code code;
-      if (!fs::exists(file, code)) file.clear();
+      if (!is_there(file)) file.clear();
     });
   }
   const std::string unknown = names.empty() ? "" : *names.begin();
@@ -101,8 +99,7 @@ void read_depth_scale(const Json& json, const std::string& where, SceneIndex& in
 
 void read_scene_json(const fs::path& folder, SceneIndex& index) {
   const fs::path path = folder / "scene.json";
-  std::error_code code;
-  if (!fs::exists(path, code)) return;
+  if (!is_there(path)) return;
   try {
     const std::string text = read_file(path);
     check_json_depth(text, path);

@@ -8,6 +8,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/json_error.h"
+#include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {
@@ -67,6 +68,16 @@ double focal_from_angle(const FrameReader& reader, const char* angle, int extent
   return radians > 0 && extent > 0 ? 0.5 * extent / std::tan(0.5 * radians) : 0;
 }
 
+// Pixels; 0: stated by neither key. One that is stated is above 0.
+double read_focal(const FrameReader& reader, const char* key, const char* angle, int extent) {
+  if (reader.find(key) == nullptr) return focal_from_angle(reader, angle, extent);
+  const double focal = reader.number(key, 0);
+  GLINT_CHECK(
+      focal > 0, kBadReference, "{}: {} is {}, expected pixels above 0", reader.where, key, focal
+  );
+  return focal;
+}
+
 // `image` gives the size when the file does not.
 void read_intrinsics(const FrameReader& reader, const fs::path& image, Camera& camera) {
   camera.width = read_extent(reader, "w");
@@ -76,8 +87,8 @@ void read_intrinsics(const FrameReader& reader, const fs::path& image, Camera& c
     camera.width = size.width;
     camera.height = size.height;
   }
-  camera.fx = reader.number("fl_x", focal_from_angle(reader, "camera_angle_x", camera.width));
-  camera.fy = reader.number("fl_y", focal_from_angle(reader, "camera_angle_y", camera.height));
+  camera.fx = read_focal(reader, "fl_x", "camera_angle_x", camera.width);
+  camera.fy = read_focal(reader, "fl_y", "camera_angle_y", camera.height);
   if (camera.fy == 0) camera.fy = camera.fx;
   if (camera.fx == 0) camera.fx = camera.fy;
   GLINT_CHECK(
@@ -128,8 +139,7 @@ void refuse_other_lenses(const FrameReader& reader) {
 std::vector<double> read_distortion(const FrameReader& reader) {
   refuse_other_lenses(reader);
   const Json* model = reader.find("camera_model");
-  const std::string name =
-      model != nullptr && model->is_string() ? model->get<std::string>() : "OPENCV";
+  const std::string name = model == nullptr ? "OPENCV" : reader.text("camera_model");
   const std::set<std::string> known{
       "OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL"};
   GLINT_CHECK(
@@ -149,23 +159,35 @@ std::vector<double> read_distortion(const FrameReader& reader) {
   return none ? std::vector<double>{} : distortion;
 }
 
+using Row = std::array<double, 4>;
+
+Row read_row(const Json& row, const std::string& expected) {
+  GLINT_CHECK(row.is_array() && row.size() == 4, kBadReference, "{}", expected);
+  Row values{};
+  for (std::size_t j = 0; j < 4; ++j) {
+    GLINT_CHECK(row[j].is_number(), kBadReference, "{}, found {}", expected, row[j].dump());
+    values[j] = row[j].get<double>();
+  }
+  return values;
+}
+
 // transform_matrix: 3 or 4 rows of 4 numbers, camera to world.
-std::array<std::array<double, 4>, 3> read_matrix(const FrameReader& reader) {
+std::array<Row, 3> read_matrix(const FrameReader& reader) {
   const Json* matrix = reader.find("transform_matrix");
   const std::string expected =
       fmt::format("{}: transform_matrix: expected 4 x 4 numbers", reader.where);
+  const std::size_t height = matrix != nullptr && matrix->is_array() ? matrix->size() : 0;
+  GLINT_CHECK(height == 3 || height == 4, kBadReference, "{}", expected);
+  std::array<Row, 3> values{};
+  for (std::size_t i = 0; i < 3; ++i) values[i] = read_row((*matrix)[i], expected);
   GLINT_CHECK(
-      matrix != nullptr && matrix->is_array() && matrix->size() >= 3, kBadReference, "{}", expected
+      height == 3 || read_row((*matrix)[3], expected) == Row({0, 0, 0, 1}),
+      kBadReference,
+      "{}: transform_matrix: its last row is {}, expected 0 0 0 1: the camera's position belongs "
+      "into the last column (is it transposed?)",
+      reader.where,
+      (*matrix)[3].dump()
   );
-  std::array<std::array<double, 4>, 3> values{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Json& row = (*matrix)[i];
-    GLINT_CHECK(row.is_array() && row.size() == 4, kBadReference, "{}", expected);
-    for (std::size_t j = 0; j < 4; ++j) {
-      GLINT_CHECK(row[j].is_number(), kBadReference, "{}, found {}", expected, row[j].dump());
-      values[i][j] = row[j].get<double>();
-    }
-  }
   return values;
 }
 
@@ -182,10 +204,8 @@ void read_pose(const FrameReader& reader, Camera& camera) {
 // copies are there (DL3DV).
 fs::path find_image(const fs::path& folder, const std::string& file_path) {
   const fs::path path = (folder / file_path).lexically_normal();
-  std::error_code code;
   for (const char* extension : {"", ".png", ".jpg", ".jpeg", ".JPG", ".PNG"})
-    if (const fs::path found = picture_or_copy(path.string() + extension);
-        fs::is_regular_file(found, code))
+    if (const fs::path found = picture_or_copy(path.string() + extension); is_file(found))
       return found;
   return path;
 }

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/core/sha256.h"
 #include "glint/scene/safetensors.h"
@@ -86,12 +87,11 @@ fs::path lpips_weights_place() {
 
 std::shared_ptr<const LpipsWeights> lpips_weights_at(const fs::path& place, std::string network) {
   if (place.empty()) return nullptr;
-  std::error_code code;
-  const bool folder = fs::is_directory(place, code);
+  const bool folder = is_folder(place);
   if (folder && network.empty()) network = "alex";
   fs::path file = folder ? place / fmt::format("lpips_{}_v0.1.safetensors", network) : place;
-  if (folder && !fs::exists(file, code)) file.replace_extension(".npz");  // says what to do
-  if (!fs::exists(file, code)) return nullptr;
+  if (folder && !is_there(file)) file.replace_extension(".npz");  // says what to do
+  if (!is_there(file)) return nullptr;
   try {
     auto weights = std::make_shared<const LpipsWeights>(load_lpips_weights(file));
     return network.empty() || weights->network == network ? weights : nullptr;

@@ -6,6 +6,7 @@
 #include "datasets/glassroom/validate_scene.h"
 #include "glint/core/error.h"
 #include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {
@@ -105,7 +106,7 @@ Json scene_json(const ExchangeScene& exchange) {
 void write(const ExchangeScene& exchange, const fs::path& folder) {
   std::error_code code;
   GLINT_CHECK(
-      !fs::exists(folder, code) || fs::is_empty(folder, code),
+      !is_there(folder) || fs::is_empty(folder, code),
       kUsage,
       "{}: is there already; remove it or choose another folder",
       folder.string()

@@ -9,6 +9,7 @@
 #include "datasets/glassroom/make_scene.h"
 #include "datasets/glassroom/write_scene.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 
 namespace glint {
@@ -27,7 +28,7 @@ std::string hash_of(const Json& hashes) { return fmt::format("{:016x}", hash_nam
 // Of the folders of models that the room's furniture names; the rest of 3D-FUTURE does not count.
 std::string models_hash(const ChosenRoom& chosen, const std::string& models) {
   if (models.empty()) return {};
-  GLINT_CHECK(fs::is_directory(models), kBadReference, "{}: no such folder of models", models);
+  GLINT_CHECK(is_folder(models), kBadReference, "{}: no such folder of models", models);
   std::set<std::string> jids;
   for (const HousePlacement& placement : chosen.room.furniture)
     jids.insert(chosen.house.furniture[placement.furniture].jid);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "glint/core/files.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 
@@ -25,22 +26,20 @@ struct FurnitureModel {
 
 // <models>/<jid>/raw_model.obj, .glb or .gltf, and texture.png; none: not there, no plain name.
 inline std::optional<FurnitureModel> find_model(const fs::path& models, const std::string& jid) {
-  std::error_code code;
   if (models.empty() || !is_plain_name(jid)) return std::nullopt;
   for (const char* name : {"raw_model.obj", "raw_model.glb", "raw_model.gltf"}) {
     const fs::path model = models / jid / name, texture = models / jid / "texture.png";
-    if (!fs::is_regular_file(model, code)) continue;
-    return FurnitureModel{model, fs::is_regular_file(texture, code) ? texture : fs::path()};
+    if (!is_file(model)) continue;
+    return FurnitureModel{model, is_file(texture) ? texture : fs::path()};
   }
   return std::nullopt;
 }
 
 // <textures>/<jid>/texture.png, of a material; none: not there, no plain name.
 inline std::optional<fs::path> find_picture(const fs::path& textures, const std::string& jid) {
-  std::error_code code;
   if (textures.empty() || !is_plain_name(jid)) return std::nullopt;
   const fs::path picture = textures / jid / "texture.png";
-  return fs::is_regular_file(picture, code) ? std::optional(picture) : std::nullopt;
+  return is_file(picture) ? std::optional(picture) : std::nullopt;
 }
 
 // Pictures in the folder itself: what their names begin with says for which kind of surface.

@@ -15,6 +15,7 @@
 #include "glint/core/error.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 
@@ -32,10 +33,9 @@ constexpr int kSheetColumns = 8, kSheetTileWidth = 240;
 bool was_a_scene(
     const SceneRecipe& recipe, const fs::path& folder, const std::string& description
 ) {
-  std::error_code code;
   return description.find(fmt::format("\"dataset\": \"{}\"", recipe.dataset)) !=
              std::string::npos ||
-         fs::exists(folder / "keys" / "data.json", code);
+         is_there(folder / "keys" / "data.json");
 }
 
 // The first file of a finished scene that is not there or not as it was written; empty: none.
@@ -51,9 +51,9 @@ std::string damaged_file(const fs::path& folder) {
 // folder with anything else in it is not touched.
 Json stored_description(const SceneRecipe& recipe, const fs::path& folder) {
   std::error_code code;
-  if (!fs::exists(folder, code) || fs::is_empty(folder, code)) return {};
+  if (!is_there(folder) || fs::is_empty(folder, code)) return {};
   const fs::path description = folder / "scene.json";
-  const std::string text = fs::exists(description, code) ? read_file(description) : "";
+  const std::string text = is_there(description) ? read_file(description) : "";
   const Json json = parse_json(text);
   if (!json.is_object() && was_a_scene(recipe, folder, text)) return {};
   GLINT_CHECK(
@@ -319,7 +319,7 @@ bool make_scene(const SceneRecipe& recipe, const fs::path& folder, bool again) {
     log::warn(fmt::format("{}: damaged; making the scene again", (folder / damaged).string()));
   if (is_same && damaged.empty()) {
     // Made before there was such a file: the scene is the same, so nothing is rendered again.
-    if (!fs::exists(folder / "gt" / kBehindMeshFile))
+    if (!is_there(folder / "gt" / kBehindMeshFile))
       write_meshes(recipe.build()->room.scene, folder);
     return false;
   }

@@ -7,6 +7,7 @@
 #include "datasets/glassroom/write_scene.h"
 #include "glint/core/config.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -58,7 +59,7 @@ void move_file(const fs::path& from, const fs::path& to) {
 
 void replace_scene(const fs::path& made, const fs::path& folder) {
   std::error_code code;
-  if (!fs::exists(folder, code) || fs::is_empty(folder, code)) {
+  if (!is_there(folder) || fs::is_empty(folder, code)) {
     fs::remove(folder, code);
     fs::rename(made, folder, code);
     return check(code, folder);

@@ -5,6 +5,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/files.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -45,9 +46,6 @@ std::unique_ptr<TsdfVolume> make_tsdf_volume(const TsdfVolumeOptions& options) {
   return std::unique_ptr<TsdfVolume>(maker(options));
 }
 
-bool has_tsdf_volume() {
-  std::error_code code;
-  return fs::exists(module_path(), code);
-}
+bool has_tsdf_volume() { return is_there(module_path()); }
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 #include "datasets/dataset.h"
 #include "glint/core/config.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -13,8 +14,7 @@ namespace {
 // What a run folder says about the size of its views; 0: nothing.
 double max_pixels_of(const fs::path& run) {
   const fs::path config = run / "config.json";
-  std::error_code code;
-  if (!fs::is_regular_file(config, code)) return 0;
+  if (!is_file(config)) return 0;
   const Json json = parse_json(read_file(config));
   const auto it = json.is_object() ? json.find("max_pixels") : json.end();
   return json.is_object() && it != json.end() && it->is_number() ? it->get<double>() : 0;
@@ -31,8 +31,7 @@ Scene load_views(const fs::path& dataset, bool all_views, const fs::path& predic
 }  // namespace
 
 bool is_dataset(const fs::path& path) {
-  std::error_code code;
-  if (fs::is_regular_file(path, code)) return path.extension() == ".safetensors";
+  if (is_file(path)) return path.extension() == ".safetensors";
   const auto& loaders = Registry<LoaderSpec>::all();
   return std::any_of(loaders.begin(), loaders.end(), [&](const auto& loader) {
     return loader.second.match(path).sureness == Sureness::kContents;

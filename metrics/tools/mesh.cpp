@@ -8,6 +8,7 @@
 #include "datasets/released_truth.h"
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "metrics/tools/mesh_output.h"
@@ -96,15 +97,14 @@ void check_output(const fs::path& path, const char* option, const char* extensio
 
 // A folder of images and cameras that the reference may have come from.
 fs::path dataset_of(const MeshToolOptions& options) {
-  if (!options.dataset.empty() || !fs::is_directory(options.reference)) return options.dataset;
+  if (!options.dataset.empty() || !is_folder(options.reference)) return options.dataset;
   return options.reference;
 }
 
 // How a run's meshes were scored, as its metrics.json says; nothing of what is no scored run.
 Json scored_protocol(const fs::path& run) {
   const fs::path file = run / "metrics.json";
-  std::error_code code;
-  if (!fs::is_regular_file(file, code)) return Json::object();
+  if (!is_file(file)) return Json::object();
   const Json scored = read_json_object(file, ExitCode::kBadPrediction);
   return scored.value(Json::json_pointer("/meshes/protocol"), Json::object());
 }
@@ -145,7 +145,7 @@ void complete(MeshToolOptions& options) {
 
 // Of a dataset folder its true mesh.
 fs::path reference_path(const fs::path& reference) {
-  return surface_path(fs::is_directory(reference) ? true_mesh(reference) : reference, kTrueMesh);
+  return surface_path(is_folder(reference) ? true_mesh(reference) : reference, kTrueMesh);
 }
 
 MeshReport load_surfaces(const MeshToolOptions& options) {

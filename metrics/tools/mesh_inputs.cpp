@@ -7,6 +7,7 @@
 
 #include "datasets/dataset.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/scene/ply.h"
 
 namespace glint {
@@ -85,9 +86,9 @@ SurfaceInput read_surface(const fs::path& path) {
 }
 
 fs::path surface_path(const fs::path& path, const fs::path& file_in_folder) {
-  const fs::path file = fs::is_directory(path) ? path / file_in_folder : path;
+  const fs::path file = is_folder(path) ? path / file_in_folder : path;
   GLINT_CHECK(
-      fs::exists(file),
+      is_there(file),
       kBadReference,
       "{}: no such file; expected a .ply, or a folder with {}",
       file.string(),

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -13,7 +14,7 @@ const std::vector<std::string> kExtensions = {
 
 fs::path enter_layout(const fs::path& folder, const FolderLayout& layout) {
   for (const std::string& name : layout.subfolders)
-    if (fs::is_directory(folder / name)) return folder / name;
+    if (is_folder(folder / name)) return folder / name;
   return folder;
 }
 
@@ -54,14 +55,11 @@ fs::path image_in(const fs::path& folder, const FolderLayout& layout, const std:
 
 // A path that is there is never a glob, whatever its name.
 bool is_glob(const fs::path& path) {
-  std::error_code code;
-  return path.filename().string().find_first_of("*?[") != std::string::npos &&
-         !fs::exists(path, code);
+  return path.filename().string().find_first_of("*?[") != std::string::npos && !is_there(path);
 }
 
 void check_exists(const fs::path& path, ExitCode exit_code, const char* what) {
-  std::error_code code;
-  if (!fs::exists(path, code))
+  if (!is_there(path))
     throw Error(exit_code, fmt::format("{}: no such file or folder ({})", path.string(), what));
 }
 
@@ -156,7 +154,7 @@ void add_packed_glass(const PairingOptions& options, Pairing& pairing) {
 void add_masks(const PairingOptions& options, Pairing& pairing) {
   const MaskFiles masks(options.mask, options.mask_layout);
   for (FilePair& pair : pairing.pairs) pair.mask = masks.of(pair.name);
-  if (fs::is_regular_file(options.glass) && is_dataset(options.glass))
+  if (is_file(options.glass) && is_dataset(options.glass))
     return add_packed_glass(options, pairing);
   const MaskFiles glass(options.glass, options.mask_layout);
   for (FilePair& pair : pairing.pairs) pair.glass = glass.of(pair.name);
@@ -204,13 +202,13 @@ Pairing pair_paths(const PairingOptions& options) {
   if (is_glob(options.prediction) || is_glob(options.reference)) return pair_by_name(options);
   check_exists(options.prediction, ExitCode::kBadPrediction, "prediction");
   check_exists(options.reference, ExitCode::kBadReference, "reference");
-  const bool folders = fs::is_directory(options.reference);
+  const bool folders = is_folder(options.reference);
   const bool packed = !folders && is_dataset(options.reference);
-  if (fs::is_directory(options.prediction) && !options.reference_map.empty() &&
+  if (is_folder(options.prediction) && !options.reference_map.empty() &&
       (packed || (!options.all_views && is_dataset(options.reference))))
     return pair_with_dataset(options);
   GLINT_CHECK(
-      fs::is_directory(options.prediction) == (folders || packed),
+      is_folder(options.prediction) == (folders || packed),
       kUsage,
       "{} and {}: one is a folder, the other a file; give two files or two folders",
       options.prediction.string(),
@@ -264,7 +262,7 @@ std::vector<NamedFile> list_inputs(
 MaskFiles::MaskFiles(const fs::path& mask, const FolderLayout& layout) : mask_(mask) {
   if (mask.empty()) return;
   check_exists(mask, ExitCode::kBadReference, "mask");
-  if (fs::is_directory(mask)) by_name_ = list_by_name(mask, layout, {});
+  if (is_folder(mask)) by_name_ = list_by_name(mask, layout, {});
 }
 
 fs::path MaskFiles::of(const std::string& name) const {

@@ -9,6 +9,7 @@
 
 #include "datasets/dataset.h"
 #include "glint/core/parallel.h"
+#include "glint/core/presence.h"
 #include "glint/core/printable.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
@@ -70,7 +71,7 @@ std::map<std::string, Camera> cameras_by_name(const Scene& scene) {
 
 fs::path picture_beside(const fs::path& depth) {
   for (const char* name : {"rgb.png", "rgb.exr"})
-    if (fs::exists(depth.parent_path() / name)) return depth.parent_path() / name;
+    if (is_there(depth.parent_path() / name)) return depth.parent_path() / name;
   return {};
 }
 
