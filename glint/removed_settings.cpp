@@ -81,7 +81,8 @@ bool is_same(const Json& a, const Json& b) {
 }  // namespace
 
 void drop_removed_settings(const std::string& method, const Json& offered, Json& config) {
-  for (const auto& setting : remaining_of(method).items()) {
+  const Json remaining = remaining_of(method);
+  for (const auto& setting : remaining.items()) {
     const auto found = config.find(setting.key());
     if (found == config.end() || offered.contains(setting.key())) continue;
     GLINT_CHECK(
