@@ -51,6 +51,12 @@ std::vector<std::string> quoted_includes(std::string_view code) {
   return includes;
 }
 
+bool has_registration(std::string_view code) {
+  for (const char* word : {"GLINT_REGISTER", " = register_methods<"})  // glint/surfel_method.h
+    if (code.find(word) != std::string_view::npos) return true;
+  return false;
+}
+
 }  // namespace
 
 SourceTree::SourceTree(const fs::path& root) {
@@ -67,8 +73,8 @@ void SourceTree::read(const fs::path& root, const fs::path& file) {
   source.code = code_of(read_file(file));
   source.includes = quoted_includes(source.code);
   const std::string name = file.lexically_relative(root).generic_string();
-  source.registers = is_unit(name) && !name.starts_with("reports/") &&
-                     source.code.find("GLINT_REGISTER") != std::string::npos;
+  source.registers =
+      is_unit(name) && !name.starts_with("reports/") && has_registration(source.code);
   sources_[name] = std::move(source);
 }
 
