@@ -28,7 +28,8 @@ class SmallTree {
     write("baselines/a.cpp", "#include \"glint/render/draw.h\"\nGLINT_REGISTER(a())");
     write(
         "baselines/b.cpp",
-        "#include \"glint/render/draw.h\"\n#include \"glint/train/loss.h\"\nbool r = register_methods<B>();"
+        "#include \"glint/render/draw.h\"\n#include \"glint/train/loss.h\"\nbool r = "
+        "register_methods<B>();"
     );
     write("reports/bench/run.cpp", "#include \"glint/train/loss.h\"\nint run;");
   }
