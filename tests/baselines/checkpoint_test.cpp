@@ -84,7 +84,7 @@ TEST_CASE("A checkpoint that is damaged or of another run says what is wrong") {
   TrainingProgress done;
   CHECK_THROWS_WITH(
       read_checkpoint(file, *other, done),
-      Catch::Contains("base.cloud.extra_names is not in its metadata")
+      Catch::Contains("bootstrap.rng.state is not in its metadata")
   );
   const std::string bytes = read_file(file);
   const auto with = [&](const std::string& from, const std::string& to) {
@@ -99,11 +99,13 @@ TEST_CASE("A checkpoint that is damaged or of another run says what is wrong") {
     read_checkpoint(file, *reader, done);
   };
   CHECK_THROWS_WITH(
-      with(R"("set.adam.steps":"0")", R"("set.adam.steps":"x")"),
-      Catch::Contains("set.adam.steps is 'x', which is no such number")
+      with(R"("interface.adam.steps":"0")", R"("interface.adam.steps":"x")"),
+      Catch::Contains("interface.adam.steps is 'x', which is no such number")
   );
   CHECK_THROWS_WITH(
-      with(R"("set.cloud.means":{"dtype":"F32")", R"("set.cloud.means":{"dtype":"U32")"),
-      Catch::Contains("set.cloud.means is U32")
+      with(
+          R"("interface.cloud.means":{"dtype":"F32")", R"("interface.cloud.means":{"dtype":"U32")"
+      ),
+      Catch::Contains("interface.cloud.means is U32")
   );
 }
