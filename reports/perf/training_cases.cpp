@@ -139,12 +139,7 @@ std::vector<PerfCase> training_cases(const PerfOptions& options) {
   for (const auto& [id, spec] : Registry<MethodSpec>::all())
     if (spec.overrides.empty()) add(id + " training step", id, Json::object());
   add("glint step, transmission traced", "glint", Json{{"transmission", "trace"}});
-  add("glint step, 4x4 share rays", "glint", Json{{"mirror_share_block", 4}});
-  add("glint step, rays end early", "glint", Json{{"mirror_weight_below", 0.004}});
   add("envgs step, rays shared", "envgs", Json{{"mirror_share_below", 0.2}});
-  add("envgs step, rays shared and end early",
-      "envgs",
-      Json{{"mirror_share_below", 0.2}, {"mirror_weight_below", 0.004}});
   return cases;
 }
 

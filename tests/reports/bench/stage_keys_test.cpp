@@ -213,7 +213,6 @@ TEST_CASE("every field of every method's config changes the training's key") {
 
 TEST_CASE("every field of a room counts, where it lies and what it is called do not") {
   const test::TempFolder data;
-  write_file(data.path() / "furniture/chair.gltf", "{}");
   write_file(data.path() / "priors/normal/0000.png", "{}");
   const std::map<std::string, std::pair<Json, bool>> places = {
       {"dataset", {"other", false}},
@@ -231,7 +230,6 @@ TEST_CASE("every field of a room counts, where it lies and what it is called do 
       {"views", {65, true}},
       {"spp", {129, true}},
       {"seed", {1, true}},
-      {"assets", {(data.path() / "furniture").string(), true}},
       {"room", {"room_2", true}},
       {"priors", {"poor", true}}};
   SceneSource base;
@@ -240,6 +238,7 @@ TEST_CASE("every field of a room counts, where it lies and what it is called do 
   const Json before = identify_source(base, data.path()).document;
   base.visit([&](const std::string& name, const auto&, const char*) {
     if (name == "folder") return;  // no room then: see below
+    if (name == "assets") return;  // of older profiles, empty
     INFO(name);
     REQUIRE(places.contains(name));
     const auto& [value, counts] = places.at(name);

@@ -111,6 +111,7 @@ TEST_CASE("every source of this project that results depend on is behind some ke
       "glint/core/file_lock.cpp",          // one process at a time
       "glint/core/interrupt.cpp",          // ends a run
       "glint/core/process.cpp",            // how programs start and end
+      "glint/core/rows.cpp",               // listings for people
       "glint/scene/camera_path.cpp",       // frames for people
       "glint/scene/camera_path_file.cpp",  // frames for people
       "datasets/check.cpp",                // finds fault with data
