@@ -28,7 +28,7 @@ new_bundle() {
     value() { sed -n "s/.*$1 \([^ ]*\).*/\1/p" <<<"$*"; }
     echo "ASKED $*" >&2
     case $1 in
-      run)
+      all)
         parcels=$(sed -n "s/.*--parcels \([^ ]*\).*/\1/p" <<<"$*") out=$(sed -n "s/.*--out \([^ ]*\).*/\1/p" <<<"$*")
         head -c "${BYTES:-1000}" /dev/zero >"$parcels/room_1+2dgs+0.parcel"
         sleep "${SLOW:-1}"
@@ -47,7 +47,7 @@ new_bundle
 run --seconds 60 --max-failures 3
 expect "all well: exit 0" [ $? = 0 ]
 expect "cells are asked for in their order, within the time" grep -qE \
-  'ASKED run --profile .*profile/small.toml --data scenes .*--device cuda --jobs 4 --order given --cells cells.txt --for 3[0-9]s --parcels .* --quiet --max-failures 3' "$OUT/log.txt"
+  'ASKED all --no-tables --profile .*profile/small.toml --data scenes .*--device cuda --jobs 4 --order given --cells cells.txt --for 3[0-9]s --parcels .* --quiet --max-failures 3' "$OUT/log.txt"
 expect "both parcels came home" came_home 1 room_1+2dgs+0.parcel
 expect "both parcels came home" came_home 1 room_1+glint+0.parcel
 expect "few files" [ "$(find "$OUT" -type f | wc -l)" = 3 ]
