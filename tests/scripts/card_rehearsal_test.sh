@@ -32,7 +32,7 @@ home=(--profile home/tiny.toml --out home_out --data data)
 "$bench" dataset pack data/glassroom/room_1-* bundle/scenes/room_1.safetensors --compact --without basecolor >/dev/null
 sed 's|^scenes = .*|scenes = [{scene = "room_1", dataset = "glassroom", folder = "room_1.safetensors"}]|
   /^\[defaults\]/,/^\[mesh\]/ { /^\[mesh\]/!d }' home/tiny.toml >bundle/profile/tiny.toml
-"$bench" plan --tasks --quiet "${home[@]}" | cut -f1 >bundle/cells.txt
+"$bench" status --tasks --quiet "${home[@]}" | cut -f1 >bundle/cells.txt
 ln -s "$bench" bundle/bin/glint-bench
 cp "$scripts/card_evidence.sh" bundle/
 : >bundle/environment.sh
