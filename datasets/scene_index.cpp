@@ -20,15 +20,6 @@ bool file_contains(const fs::path& file, std::string_view part) {
   }
 }
 
-std::vector<fs::path> list_folders(const fs::path& folder) {
-  std::vector<fs::path> folders;
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code))
-    if (entry.is_directory(code)) folders.push_back(entry.path());
-  std::sort(folders.begin(), folders.end());
-  return folders;
-}
-
 fs::path picture_or_copy(const fs::path& path) {
   if (is_file(path)) return path;
   for (const char* smaller : {"_2", "_4", "_8"}) {

@@ -60,9 +60,6 @@ inline constexpr std::size_t kFewestPoints = 4;
 // leaves the message to load().
 bool file_contains(const fs::path& file, std::string_view part);
 
-// Folders in a folder, in the order of bytes; empty: it cannot be read.
-std::vector<fs::path> list_folders(const fs::path& folder);
-
 // A picture, or its smaller copy where captures ship those alone, or beside it: of DIR_2/, DIR_4/
 // and DIR_8/ the largest that has it. `path` itself where none has.
 fs::path picture_or_copy(const fs::path& path);

@@ -19,10 +19,6 @@ constexpr const char* kExportedBy = "glint-bench dataset export";
 constexpr const char* kDescription = "scene.json";
 constexpr const char* kFiles = "exported_files";  // there: names of all that an export wrote
 
-bool listed_in(const Json& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), Json(name)) != names.end();
-}
-
 const ExporterSpec& exporter_called(const std::string& id) {
   const auto& exporters = Registry<ExporterSpec>::all();
   if (const auto found = exporters.find(id); found != exporters.end()) return found->second;
@@ -46,12 +42,14 @@ bool is_export(const fs::path& folder) {
 std::set<std::string> own_names(const fs::path& old, const fs::path& fresh) {
   std::set<std::string> names = {kDescription};
   const Json json = description_of(old);
-  const Json listed = json.is_object() ? json.value(kFiles, Json()) : Json();
-  const auto is_ours = [&](const std::string& name) {
-    return is_there(fresh / *fs::path(name).begin());
-  };
+  if (const Json listed = json.is_object() ? json.value(kFiles, Json()) : Json();
+      listed.is_array()) {
+    for (const Json& name : listed)
+      if (name.is_string()) names.insert(name.get<std::string>());
+    return names;
+  }
   for (const std::string& name : leaves_below(old))
-    if (listed.is_array() ? listed_in(listed, name) : is_ours(name)) names.insert(name);
+    if (is_there(fresh / *fs::path(name).begin())) names.insert(name);
   return names;
 }
 
@@ -121,11 +119,6 @@ void add_foreign_note(const std::vector<std::string>& foreign, ExportReport& rep
   ));
 }
 
-// Without a separator at its end: names beside it are made of its own.
-fs::path absolute_name(const fs::path& folder) {
-  return fs::absolute(folder / ".").lexically_normal().parent_path();
-}
-
 void add_scene_notes(const ExportInput& input, ExportReport& report) {
   const Scene& scene = input.scene;
   if (scene.simulated_priors)
@@ -190,12 +183,12 @@ std::vector<ExportView> export_views(const Scene& scene, ExportSplit split) {
 
 void check_export(const fs::path& folder, const ExportOptions& options) {
   exporter_called(options.format);
-  check_folder(absolute_name(folder), options.force);
+  check_folder(absolute_folder(folder), options.force);
 }
 
 ExportReport export_scene(const Scene& scene, const fs::path& to, const ExportOptions& options) {
   const ExporterSpec& exporter = exporter_called(options.format);
-  const fs::path folder = absolute_name(to);
+  const fs::path folder = absolute_folder(to);
   check_folder(folder, options.force);
   ExportInput input{scene, export_views(scene, options.split)};
   GLINT_CHECK(!input.views.empty(), kUsage, "{}: no views in that split", scene.name);

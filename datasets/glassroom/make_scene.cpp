@@ -305,6 +305,7 @@ Json pose_json(const Pose& pose) {
 }
 
 bool make_scene(const SceneRecipe& recipe, const fs::path& folder, bool again) {
+  recover_scene(folder);
   const Json stored = stored_description(recipe, folder);
   const bool is_other = stored.is_object() && stored["hash"] != recipe.hash;
   const bool is_same = stored.is_object() && !is_other && !again;

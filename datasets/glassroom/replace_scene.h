@@ -6,9 +6,11 @@
 
 namespace glint {
 
-// Moves `made` to `folder`. An older scene there goes file by file; what it holds beyond its own
-// files stays. `scene.json` comes last: stopped before it, the folder is a damaged scene, which is
-// made again. Errors: kEnvironment, a file cannot be moved.
+// `made` takes the place of `folder` (replace_folder.h): an older scene there goes, what others put
+// there stays. Errors: those of replace_folder().
 void replace_scene(const fs::path& made, const fs::path& folder);
+
+// Puts in order what a killed replace_scene() left. Errors: those of recover_folder().
+void recover_scene(const fs::path& folder);
 
 }  // namespace glint

@@ -94,6 +94,10 @@ std::string marked_name(
 
 }  // namespace
 
+fs::path absolute_folder(const fs::path& folder) {
+  return fs::absolute(folder / "").lexically_normal().parent_path();
+}
+
 fs::path unfinished_path(const fs::path& path) {
   return path.parent_path() / marked_name(path.stem(), kUnfinished, path.extension());
 }
@@ -106,8 +110,8 @@ std::vector<fs::path> list_aside(const fs::path& folder) {
   std::vector<fs::path> found;
   std::error_code code;
   const std::string start = fmt::format(".{}.", folder.filename().string().substr(0, kLongest));
-  const fs::path parent = folder.has_parent_path() ? folder.parent_path() : ".";
-  for (fs::directory_iterator it(parent, code), end; !code && it != end; it.increment(code)) {
+  for (fs::directory_iterator it(folder.parent_path(), code), end; !code && it != end;
+       it.increment(code)) {
     const std::string name = it->path().filename();
     const auto writer = writer_of(name, kAside);
     // What follows has no dot but that of the mark: else it is of a folder with a longer name.
@@ -137,8 +141,7 @@ void remove_left_behind(const fs::path& folder, bool recursive) {
 }
 
 UnfinishedFolder::UnfinishedFolder(const fs::path& final_path) {
-  const fs::path absolute = fs::absolute(final_path).lexically_normal();
-  const fs::path target = absolute.has_filename() ? absolute : absolute.parent_path();
+  const fs::path target = absolute_folder(final_path);
   path_ = unfinished_path(target);
   std::error_code code;
   remove_left_behind(target.parent_path(), false);

@@ -10,6 +10,9 @@
 
 namespace glint {
 
+// Absolute, without a separator at its end: names beside it are made of its own.
+fs::path absolute_folder(const fs::path& folder);
+
 // ".NAME.PID-HOST.part.EXT" beside `path`, for this process. The extension stays last: image
 // writers choose the format by it.
 fs::path unfinished_path(const fs::path& path);
@@ -24,7 +27,7 @@ void remove_left_behind(const fs::path& folder, bool recursive = true);
 // ".NAME.PID-HOST.old" beside a folder: where the one that it replaces waits to be removed.
 fs::path aside_path(const fs::path& folder);
 
-// Those of `folder` whose process has ended.
+// Those of `folder`, which is absolute, whose process has ended.
 std::vector<fs::path> list_aside(const fs::path& folder);
 
 // A folder beside the one it will become, made anew; at its end, what was not moved out of it goes.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "glint/core/presence.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -89,6 +90,21 @@ Presence presence_of(const fs::path& path) {
 bool is_there(const fs::path& path) { return presence_of(path) != Presence::kAbsent; }
 bool is_file(const fs::path& path) { return presence_of(path) == Presence::kFile; }
 bool is_folder(const fs::path& path) { return presence_of(path) == Presence::kFolder; }
+
+std::vector<fs::path> list_folders(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  if (!is_folder(folder)) return folders;
+  std::error_code code;
+  for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
+    const bool hidden = it->path().filename().string().starts_with('.');
+    if (!hidden && is_folder(it->path())) folders.push_back(it->path());
+  }
+  GLINT_CHECK(
+      !code, kBadReference, "{}: folder cannot be read ({})", folder.string(), code.message()
+  );
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
 
 std::ifstream open_file(const fs::path& path) {
   const Presence presence = presence_of(path);

@@ -21,6 +21,10 @@ bool is_there(const fs::path& path);
 bool is_file(const fs::path& path);
 bool is_folder(const fs::path& path);
 
+// Folders in a folder, also behind links, by their names; none where it is not there. Errors: those
+// of presence_of(), of what is in it, too; (kBadReference) it cannot be read.
+std::vector<fs::path> list_folders(const fs::path& folder);
+
 // To be read from its first byte. Errors: those of presence_of(); (kBadReference) it is missing or
 // a folder; (kEnvironment) without permission.
 std::ifstream open_file(const fs::path& path);

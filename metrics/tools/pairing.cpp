@@ -26,14 +26,6 @@ std::vector<fs::path> matching(std::vector<fs::path> files, const std::string& p
   return files;
 }
 
-std::vector<fs::path> list_folders(const fs::path& folder) {
-  std::vector<fs::path> folders;
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code))
-    if (entry.is_directory(code)) folders.push_back(entry.path());
-  return folders;
-}
-
 // The image of one view's folder; empty when it has none.
 fs::path image_in(const fs::path& folder, const FolderLayout& layout, const std::string& pattern) {
   const std::vector<fs::path> files = matching(list_files(folder, kExtensions), pattern);

@@ -11,8 +11,9 @@
 namespace glint {
 namespace {
 
-// Of values that other kernels computed: networks on another CPU, anything on a GPU.
-constexpr double kRounding = 1e-6;          // relative
+// Relative: values of networks on another CPU and of anything on a GPU, which other kernels
+// computed.
+constexpr double kRounding = 1e-6;
 constexpr std::string_view kOfView = ": ";  // between a view's name and an id
 
 // "psnr@glass" is psnr on a region; of meshes '@' belongs to the id.

@@ -70,8 +70,9 @@ Cell value_cell(const Json& value) {
 std::vector<Column> columns_of(const MethodSpec& spec) {
   std::vector<Column> columns{{"name", "field"}, {"type", "type"}, {"default", "default"}};
   if (!spec.overrides.empty()) columns.push_back({"override", spec.id});
-  for (const char* key : {"range", "from", "group", "meaning"})
-    columns.push_back({key == std::string_view("from") ? "value_from" : key, key});
+  const Column rest[] = {
+      {"range", "range"}, {"value_from", "from"}, {"group", "group"}, {"meaning", "meaning"}};
+  columns.insert(columns.end(), std::begin(rest), std::end(rest));
   return columns;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
 #include "reports/bench/stage_documents.h"
@@ -164,7 +165,7 @@ LoadedScene load_user_data(SceneSource& source, const fs::path& dataset) {
 }
 
 fs::path records_folder(const CommonOptions& common, const RunSpec& spec) {
-  const fs::path run = fs::absolute(spec.folder / "").lexically_normal().parent_path();
+  const fs::path run = absolute_folder(spec.folder);
   fs::path root = run;
   for ([[maybe_unused]] const fs::path& part : run_folder({}, spec.cell()))
     root = root.parent_path();

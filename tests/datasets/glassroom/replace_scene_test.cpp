@@ -63,12 +63,16 @@ TEST_CASE("Where nothing was, a scene is one rename") {
   CHECK_FALSE(fs::exists(scenes.made));
 }
 
-TEST_CASE("A file that cannot be moved is an error with its name") {
+TEST_CASE("A file of others where a folder has to be is an error with its name, and nothing changes"
+) {
   const TwoScenes scenes;
   write_file(scenes.folder / "gt", "a file where a folder has to be");
   CHECK_THROWS_WITH(
-      replace_scene(scenes.made, scenes.folder), Catch::Contains("gt/mesh.ply: cannot be written")
+      replace_scene(scenes.made, scenes.folder),
+      Catch::Contains("gt: was put there by somebody else")
   );
-  CHECK(scenes.in_folder("scene.json") == kOlder);  // a damaged scene, made again the next time
+  for (const char* file : {"intri.yml", "images/0001/a.png"})
+    CHECK(scenes.in_folder(file) == "older");
+  CHECK(scenes.in_folder("scene.json") == kOlder);
   CHECK(scenes.in_folder("notes.txt") == "older");
 }
