@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -72,29 +73,21 @@ void move_over(const fs::path& from, const fs::path& to, const std::vector<std::
   }
 }
 
-// The files first and then the folders that are empty by then.
-void remove_names(const fs::path& folder, const std::set<std::string>& names) {
+// A kill while the old one is removed may take its list of what is ours first, so it is removed under
+// a name that nobody reads again and remove_left_behind() clears.
+void remove_old(const fs::path& aside) {
+  const fs::path old = unfinished_path(aside);
+  rename_to(aside, old);
   std::error_code code;
-  for (const std::string& name : names) {
-    fs::remove(folder / name, code);
-    fs::path parent = fs::path(name).parent_path();
-    while (!parent.empty() && fs::remove(folder / parent, code) && !code)
-      parent = parent.parent_path();
-  }
+  fs::remove_all(old, code);
 }
 
+// What is not ours moves over and the rest goes; where something cannot move, nothing goes.
 void finish(const fs::path& aside, const fs::path& folder, const OwnNames& own) {
   const std::vector<std::string> foreign = foreign_names(aside, folder, own);
-  std::set<std::string> ours = leaves_below(aside);
-  for (const std::string& name : foreign) ours.erase(name);
   move_over(aside, folder, foreign);
-  remove_names(aside, ours);
-  // Folders that held what has moved.
-  std::error_code code;
-  std::set<std::string> rest = leaves_below(aside);
-  for (const std::string& name : rest)
-    if (fs::is_directory(fs::symlink_status(aside / name, code))) remove_names(aside, {name});
-  fs::remove(aside, code);
+  const auto is_left = [&](const std::string& name) { return stands(aside / name); };
+  if (std::none_of(foreign.begin(), foreign.end(), is_left)) remove_old(aside);
 }
 
 // A file of ours that was there may be written anew; one of others may not.

@@ -66,39 +66,38 @@ Cell value_cell(const Json& value) {
   return {value, value.is_string() ? value.get<std::string>() : value.dump()};
 }
 
-// Defaults are those of the family's first, "override" what the variant sets instead.
-std::vector<Column> columns_of(const MethodSpec& spec) {
+// Defaults are those of the family's first, "override" what the variant sets instead; whose values
+// and which group where the family has a guide.
+std::vector<Column> columns_of(const MethodSpec& spec, bool guided) {
   std::vector<Column> columns{{"name", "field"}, {"type", "type"}, {"default", "default"}};
   if (!spec.overrides.empty()) columns.push_back({"override", spec.id});
-  const Column rest[] = {
-      {"range", "range"}, {"value_from", "from"}, {"group", "group"}, {"meaning", "meaning"}};
-  columns.insert(columns.end(), std::begin(rest), std::end(rest));
+  columns.push_back({"range", "range"});
+  if (guided) columns.insert(columns.end(), {{"value_from", "from"}, {"group", "group"}});
+  columns.push_back({"meaning", "meaning"});
   return columns;
 }
 
-Cell words_or_absent(const std::string& words) { return words.empty() ? Cell::absent() : words; }
-
-std::vector<Cell> cells_of(const ListedSetting& setting, const MethodSpec& spec) {
+std::vector<Cell> cells_of(const ListedSetting& setting, const MethodSpec& spec, bool guided) {
   const ConfigField& field = setting.field;
   std::vector<Cell> cells{field.name, field.type(), value_cell(field.value)};
   const auto set = spec.overrides.find(field.name);
   if (!spec.overrides.empty())
     cells.push_back(set == spec.overrides.end() ? Cell::absent() : value_cell(*set));
-  cells.push_back(words_or_absent(setting.range));
-  cells.push_back(words_or_absent(setting.value_from));
-  cells.push_back(
-      setting.group.empty() ? Cell::absent()
-                            : Cell(setting.group, setting.is_first ? "first" : setting.group)
-  );
+  cells.push_back(setting.range.empty() ? Cell::absent() : setting.range);
+  if (guided) {
+    cells.emplace_back(setting.value_from);
+    cells.emplace_back(Json(setting.group), setting.is_first ? "first" : setting.group);
+  }
   cells.emplace_back(field.meaning);
-  cells.push_back(setting.group.empty() ? Cell::absent() : Cell(setting.is_first));
+  cells.push_back(guided ? Cell(setting.is_first) : Cell::absent());
   return cells;
 }
 
 Rows fields_of(const MethodSpec& spec) {
-  Rows rows(columns_of(spec), "first");
-  for (const ListedSetting& setting : listed_settings(base_of(spec.id)))
-    rows.add(cells_of(setting, spec));
+  const std::vector<ListedSetting> settings = listed_settings(base_of(spec.id));
+  const bool guided = !settings.empty() && !settings.front().group.empty();
+  Rows rows(columns_of(spec, guided), "first");
+  for (const ListedSetting& setting : settings) rows.add(cells_of(setting, spec, guided));
   return rows;
 }
 

@@ -124,6 +124,20 @@ TEST_CASE("what a killed replacement left aside comes back, or its foreign files
   CHECK(entries(place.path()) == 1);
 }
 
+TEST_CASE("a foreign file whose name is taken keeps all that stands aside") {
+  const TempFolder place;
+  const fs::path folder = place / "EX", aside = aside_of_ended(folder);
+  write_ours(aside, "old");
+  write_file(aside / "notes.txt", "mine");
+  write_ours(folder, "new");
+  write_file(folder / "notes.txt", "another's");
+  recover_folder(folder, listed);
+  CHECK(read_file(aside / "notes.txt") == "mine");
+  CHECK(is_whole(aside));
+  CHECK(read_file(folder / "notes.txt") == "another's");
+  CHECK(is_whole(folder));
+}
+
 TEST_CASE("what stood aside for a folder with a longer name is not ours") {
   const TempFolder place;
   write_ours(aside_of_ended(place / "EX.b"), "old");
