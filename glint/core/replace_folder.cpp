@@ -73,8 +73,8 @@ void move_over(const fs::path& from, const fs::path& to, const std::vector<std::
   }
 }
 
-// A kill while the old one is removed may take its list of what is ours first, so it is removed under
-// a name that nobody reads again and remove_left_behind() clears.
+// A kill while the old one is removed may take its list of what is ours first, so it is removed
+// under a name that nobody reads again and remove_left_behind() clears.
 void remove_old(const fs::path& aside) {
   const fs::path old = unfinished_path(aside);
   rename_to(aside, old);
