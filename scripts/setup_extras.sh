@@ -30,6 +30,6 @@ if [ ${#packages[@]} -gt 0 ]; then
   "${run[@]}" apt-get update -qq
   "${run[@]}" apt-get install -y -qq --no-install-recommends "${packages[@]}" >/dev/null
 fi
-cd tests/reports/page
+cd tests/reports/show/page
 [ node_modules/.package-lock.json -nt package-lock.json ] || npm ci --silent --no-audit --no-fund
 echo "setup_extras: done" >&2

@@ -34,18 +34,18 @@ std::vector<std::string> below_reports(const std::vector<std::string>& folders) 
 
 const std::vector<std::string>& folders_of_verbs() {
   static const std::vector<std::string> all = {
-      "records",
-      "tables",
-      "pictures",
-      "bench",
-      "parcels",
-      "executors",
-      "provenance",
-      "page",
-      "figures",
-      "import",
-      "perf",
-      "selftest",
+      "run/records",
+      "show/tables",
+      "show/pictures",
+      "run/bench",
+      "run/parcels",
+      "run/executors",
+      "run/provenance",
+      "show/page",
+      "show/figures",
+      "run/import",
+      "run/perf",
+      "run/selftest",
       "verbs"};
   return all;
 }
@@ -82,21 +82,21 @@ const std::vector<Layer>& layers() {
       {"baselines/", {"glint/", "metrics/"}},  // and a method's own kernels
       {"datasets/", {"glint/core/", "glint/scene/", "datasets/"}},
       {"datasets/glassroom/", {"glint/core/", "glint/scene/", "glint/drawing/", "datasets/"}},
-      {"reports/code/", {"glint/core/", "reports/code/"}},
+      {"reports/run/code/", {"glint/core/", "reports/run/code/"}},
       {"reports/glint_bench.cpp", {"glint/core/", "reports/verbs/"}},
-      {"reports/records/", below_reports({"records"})},
-      {"reports/tables/", below_reports({"records", "tables"})},
-      {"reports/pictures/", below_reports({"records", "pictures"})},
-      {"reports/bench/", below_reports({"records", "pictures", "bench"})},
-      {"reports/parcels/", below_reports({"records", "pictures", "bench", "parcels"})},
-      {"reports/executors/", below_reports({"records", "bench", "executors"})},
-      {"reports/provenance/", below_reports({"records", "pictures", "bench", "provenance"})},
-      {"reports/page/", below_reports({"records", "tables", "pictures", "page"})},
-      {"reports/figures/",
-       below_reports({"records", "tables", "pictures", "bench", "page", "perf", "figures"})},
-      {"reports/import/", below_reports({"records", "pictures", "bench", "import"})},
-      {"reports/perf/", below_reports({"records", "perf"})},
-      {"reports/selftest/", below_reports({"records", "bench", "import", "selftest"})},
+      {"reports/run/records/", below_reports({"run/records"})},
+      {"reports/show/tables/", below_reports({"run/records", "show/tables"})},
+      {"reports/show/pictures/", below_reports({"run/records", "show/pictures"})},
+      {"reports/run/bench/", below_reports({"run/records", "show/pictures", "run/bench"})},
+      {"reports/run/parcels/", below_reports({"run/records", "show/pictures", "run/bench", "run/parcels"})},
+      {"reports/run/executors/", below_reports({"run/records", "run/bench", "run/executors"})},
+      {"reports/run/provenance/", below_reports({"run/records", "show/pictures", "run/bench", "run/provenance"})},
+      {"reports/show/page/", below_reports({"run/records", "show/tables", "show/pictures", "show/page"})},
+      {"reports/show/figures/",
+       below_reports({"run/records", "show/tables", "show/pictures", "run/bench", "show/page", "run/perf", "show/figures"})},
+      {"reports/run/import/", below_reports({"run/records", "show/pictures", "run/bench", "run/import"})},
+      {"reports/run/perf/", below_reports({"run/records", "run/perf"})},
+      {"reports/run/selftest/", below_reports({"run/records", "run/bench", "run/import", "run/selftest"})},
       {"reports/verbs/", below_reports(folders_of_verbs())},
       {"tests/", {"glint/", "metrics/", "baselines/", "datasets/", "reports/", "tests/"}}};
   return all;
@@ -459,7 +459,7 @@ TEST_CASE(
       "metrics/fusion/tsdf_open3d.cpp",
       "metrics/mesh/",
       "metrics/tools/mesh",
-      "reports/figures/"};
+      "reports/show/figures/"};
   std::size_t heavy = 0;
   for (const SourceFile& file : source_files()) {
     if (starts_with_any(file.path, {"tests/"})) continue;
@@ -488,12 +488,12 @@ TEST_CASE("No source but one starts programs, and none by a shell") {
   CHECK(called_words("x = std::system(c); FILE* f = ::popen (c, m);").size() == 2);
   CHECK(called_words("std::system_error(e); system = 1; // system(x)\n\"popen(\"").empty());
   for (const SourceFile& file : source_files()) {
-    if (starts_with_any(file.path, {"tests/", "reports/bench/child_process.cpp"})) continue;
+    if (starts_with_any(file.path, {"tests/", "reports/run/bench/child_process.cpp"})) continue;
     INFO(file.path);
     CHECK(called_words(file.text) == std::vector<std::string>());
   }
   CHECK(
-      called_words(read_file("reports/bench/child_process.cpp")) ==
+      called_words(read_file("reports/run/bench/child_process.cpp")) ==
       std::vector<std::string>{"fork", "execvp"}
   );
 }
@@ -511,12 +511,12 @@ TEST_CASE("The check finds an include that points upwards") {
   CHECK(wrong("baselines/envgs.cpp", "#include \"baselines/2dgs.h\"\n") == 1);
   CHECK(wrong("baselines/envgs.cpp", "#include \"baselines/envgs_kernels.h\"\n") == 0);
   CHECK(wrong("baselines/envgs.cpp", "#include \"baselines/2dgs_kernels.h\"\n") == 1);
-  CHECK(wrong("reports/records/records.h", "#include \"reports/bench/plan.h\"\n") == 1);
-  CHECK(wrong("reports/tables/tables.h", "#include \"reports/pictures/strip.h\"\n") == 1);
-  CHECK(wrong("reports/bench/runner.h", "#include \"reports/page/page.h\"\n") == 1);
-  CHECK(wrong("reports/page/page.h", "#include \"reports/figures/chart.h\"\n") == 1);
-  CHECK(wrong("reports/figures/chart.h", "#include \"reports/verbs/verb.h\"\n") == 1);
-  CHECK(wrong("reports/verbs/verb.h", "#include \"reports/bench/plan.h\"\n") == 0);
+  CHECK(wrong("reports/run/records/records.h", "#include \"reports/run/bench/plan.h\"\n") == 1);
+  CHECK(wrong("reports/show/tables/tables.h", "#include \"reports/show/pictures/strip.h\"\n") == 1);
+  CHECK(wrong("reports/run/bench/runner.h", "#include \"reports/show/page/page.h\"\n") == 1);
+  CHECK(wrong("reports/show/page/page.h", "#include \"reports/show/figures/chart.h\"\n") == 1);
+  CHECK(wrong("reports/show/figures/chart.h", "#include \"reports/verbs/verb.h\"\n") == 1);
+  CHECK(wrong("reports/verbs/verb.h", "#include \"reports/run/bench/plan.h\"\n") == 0);
   CHECK(wrong("reports/loose.h", "#include \"glint/core/real.h\"\n") == 1);
   CHECK(wrong("unknown/file.h", "#include \"glint/core/real.h\"\n") == 1);
 }

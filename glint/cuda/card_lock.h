@@ -6,7 +6,7 @@
 namespace glint::gpu {
 
 // A setting of the environment of processes that share a card because their pool wants it so
-// (reports/executors): how many run at a time.
+// (reports/run/executors): how many run at a time.
 inline constexpr const char* kCardJobs = "GLINT_CARD_JOBS";
 
 // Takes a card for as long as the process lives; false: another process of ours has it. Those that

@@ -4,7 +4,7 @@
 
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
-#include "reports/figures/figures.h"
+#include "reports/show/figures/figures.h"
 #include "reports/verbs/report_verb.h"
 #include "reports/verbs/result_tables.h"
 #include "reports/verbs/run_options.h"

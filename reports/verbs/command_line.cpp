@@ -15,9 +15,9 @@
 #include "glint/core/process.h"
 #include "glint/core/progress.h"
 #include "metrics/tools/numeric_options.h"
-#include "reports/records/embedded.h"
-#include "reports/records/environment.h"
-#include "reports/records/revision.h"
+#include "reports/run/records/embedded.h"
+#include "reports/run/records/environment.h"
+#include "reports/run/records/revision.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

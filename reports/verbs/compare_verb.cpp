@@ -6,7 +6,7 @@
 #include "glint/core/nearest.h"
 #include "glint/core/progress.h"
 #include "metrics/tools/numeric_options.h"
-#include "reports/tables/compare.h"
+#include "reports/show/tables/compare.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

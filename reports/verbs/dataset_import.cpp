@@ -8,7 +8,7 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/nearest.h"
 #include "glint/core/progress.h"
-#include "reports/import/import_photos.h"
+#include "reports/run/import/import_photos.h"
 
 namespace glint {
 

@@ -3,7 +3,7 @@
 
 #include "datasets/scene_index.h"
 #include "glint/core/rows.h"
-#include "reports/records/manifest.h"
+#include "reports/run/records/manifest.h"
 #include "reports/verbs/print_findings.h"
 
 namespace glint {

@@ -4,8 +4,8 @@
 #include "glint/core/device.h"
 #include "glint/cuda/backend.h"
 #include "glint/cuda/require_gpu.h"
-#include "reports/executors/mps_server.h"
-#include "reports/records/environment.h"
+#include "reports/run/executors/mps_server.h"
+#include "reports/run/records/environment.h"
 
 namespace glint {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // What `doctor` says of the GPU, and `doctor --card` tells whoever lets cells share it
-// (reports/executors/card_share.h).
+// (reports/run/executors/card_share.h).
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "glint/core/config.h"
-#include "reports/provenance/checked.h"
+#include "reports/run/provenance/checked.h"
 
 namespace glint {
 

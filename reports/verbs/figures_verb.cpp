@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reports/figures/figures.h"
+#include "reports/show/figures/figures.h"
 #include "reports/verbs/report_verb.h"
 
 namespace glint {

@@ -7,7 +7,7 @@
 
 #include "glint/core/rows.h"
 #include "metrics/metric.h"
-#include "reports/tables/table_cells.h"
+#include "reports/show/tables/table_cells.h"
 
 namespace glint {
 

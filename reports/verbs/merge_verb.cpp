@@ -6,9 +6,9 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "glint/core/rows.h"
-#include "reports/parcels/complete_meshes.h"
-#include "reports/parcels/find_parcels.h"
-#include "reports/parcels/take_parcel.h"
+#include "reports/run/parcels/complete_meshes.h"
+#include "reports/run/parcels/find_parcels.h"
+#include "reports/run/parcels/take_parcel.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

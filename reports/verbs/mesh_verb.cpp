@@ -3,8 +3,8 @@
 
 #include "glint/core/interrupt.h"
 #include "metrics/tools/numeric_options.h"
-#include "reports/bench/mesh_stage.h"
-#include "reports/bench/voxel_choice.h"
+#include "reports/run/bench/mesh_stage.h"
+#include "reports/run/bench/voxel_choice.h"
 #include "reports/verbs/single_cell.h"
 
 namespace glint {

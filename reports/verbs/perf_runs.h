@@ -2,7 +2,7 @@
 // Frames a second of trained runs at given sizes, side by side: `perf --run`.
 #pragma once
 
-#include "reports/bench/stages.h"
+#include "reports/run/bench/stages.h"
 
 namespace glint {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "glint/core/interrupt.h"
 #include "metrics/tools/numeric_options.h"
-#include "reports/perf/perf.h"
-#include "reports/perf/scaling.h"
+#include "reports/run/perf/perf.h"
+#include "reports/run/perf/scaling.h"
 #include "reports/verbs/perf_runs.h"
 #include "reports/verbs/single_cell.h"
 

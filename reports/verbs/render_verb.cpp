@@ -6,9 +6,9 @@
 #include "glint/core/progress.h"
 #include "glint/scene/camera_path.h"
 #include "metrics/tools/numeric_options.h"
-#include "reports/bench/path_frames.h"
-#include "reports/bench/video.h"
-#include "reports/records/parcel_run.h"
+#include "reports/run/bench/path_frames.h"
+#include "reports/run/bench/video.h"
+#include "reports/run/records/parcel_run.h"
 #include "reports/verbs/single_cell.h"
 
 namespace glint {

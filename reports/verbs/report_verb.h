@@ -2,7 +2,7 @@
 // The page of a profile's folder, for `all` and `report`.
 #pragma once
 
-#include "reports/page/page.h"
+#include "reports/show/page/page.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
-#include "reports/tables/results_page.h"
+#include "reports/show/tables/results_page.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

@@ -10,12 +10,12 @@
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "metrics/tools/numeric_options.h"
-#include "reports/bench/child_process.h"
-#include "reports/executors/task_file.h"
-#include "reports/parcels/make_parcel.h"
-#include "reports/records/build_info.h"
-#include "reports/records/environment.h"
-#include "reports/records/manifest.h"
+#include "reports/run/bench/child_process.h"
+#include "reports/run/executors/task_file.h"
+#include "reports/run/parcels/make_parcel.h"
+#include "reports/run/records/build_info.h"
+#include "reports/run/records/environment.h"
+#include "reports/run/records/manifest.h"
 
 namespace glint {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/executors/executor.h"
+#include "reports/run/executors/executor.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

@@ -4,7 +4,7 @@
 
 #include "glint/core/progress.h"
 #include "glint/core/rows.h"
-#include "reports/selftest/conformance.h"
+#include "reports/run/selftest/conformance.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

@@ -6,11 +6,11 @@
 #include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
-#include "reports/bench/stage_documents.h"
-#include "reports/import/import_model.h"
-#include "reports/records/code_hashes.h"
-#include "reports/records/earlier_run.h"
-#include "reports/records/stage_files.h"
+#include "reports/run/bench/stage_documents.h"
+#include "reports/run/import/import_model.h"
+#include "reports/run/records/code_hashes.h"
+#include "reports/run/records/earlier_run.h"
+#include "reports/run/records/stage_files.h"
 
 namespace glint {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "glint/core/file_lock.h"
-#include "reports/bench/run_record.h"
+#include "reports/run/bench/run_record.h"
 #include "reports/verbs/verb.h"
 
 namespace glint {

@@ -6,10 +6,10 @@
 
 #include "glint/core/progress.h"
 #include "glint/core/rows.h"
-#include "reports/bench/cell_stages.h"
-#include "reports/executors/slurm_jobs.h"
-#include "reports/records/leftovers.h"
-#include "reports/records/run_folder.h"
+#include "reports/run/bench/cell_stages.h"
+#include "reports/run/executors/slurm_jobs.h"
+#include "reports/run/records/leftovers.h"
+#include "reports/run/records/run_folder.h"
 
 namespace glint {
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "glint/core/registry.h"
-#include "reports/bench/plan.h"
-#include "reports/records/profile_folder.h"
-#include "reports/records/scene_source.h"
-#include "reports/tables/table_writers.h"
+#include "reports/run/bench/plan.h"
+#include "reports/run/records/profile_folder.h"
+#include "reports/run/records/scene_source.h"
+#include "reports/show/tables/table_writers.h"
 
 namespace glint {
 

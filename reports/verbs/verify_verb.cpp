@@ -7,8 +7,8 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "glint/core/rows.h"
-#include "reports/provenance/verify_run.h"
-#include "reports/records/earlier_run.h"
+#include "reports/run/provenance/verify_run.h"
+#include "reports/run/records/earlier_run.h"
 #include "reports/verbs/single_cell.h"
 
 namespace glint {

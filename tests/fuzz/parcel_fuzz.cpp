@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What comes home from other machines: parcels, and the tar archives that they lie in.
-#include "reports/parcels/parcel_file.h"
-#include "reports/parcels/tar_file.h"
+#include "reports/run/parcels/parcel_file.h"
+#include "reports/run/parcels/tar_file.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace glint::fuzz {

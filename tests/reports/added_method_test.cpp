@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "glint/method.h"
-#include "reports/records/records.h"
-#include "reports/tables/tables.h"
+#include "reports/run/records/records.h"
+#include "reports/show/tables/tables.h"
 #include "tests/reports/run_words.h"
 
 using namespace glint;

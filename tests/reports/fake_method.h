@@ -14,8 +14,8 @@
 
 #include "glint/core/device_lost.h"
 #include "glint/method.h"
-#include "reports/bench/runner.h"
-#include "reports/records/scene_source.h"
+#include "reports/run/bench/runner.h"
+#include "reports/run/records/scene_source.h"
 
 namespace glint {
 

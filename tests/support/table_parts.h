@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "reports/tables/tables.h"
+#include "reports/show/tables/tables.h"
 
 namespace glint::test {
 

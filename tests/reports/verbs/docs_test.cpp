@@ -5,8 +5,8 @@
 #include <set>
 #include <sstream>
 
-#include "reports/records/failure_kinds.h"
-#include "reports/records/profile.h"
+#include "reports/run/records/failure_kinds.h"
+#include "reports/run/records/profile.h"
 #include "reports/verbs/verb.h"
 
 using namespace glint;

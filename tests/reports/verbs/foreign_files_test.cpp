@@ -6,7 +6,7 @@
 
 #include "glint/core/file_lock.h"
 #include "glint/scene/image_files.h"
-#include "reports/records/earlier_run.h"
+#include "reports/run/records/earlier_run.h"
 #include "tests/reports/run_words.h"
 #include "tests/support/small_room.h"
 

@@ -6,7 +6,7 @@
 #include "datasets/map_resize.h"
 #include "glint/core/config.h"
 #include "glint/scene/image_files.h"
-#include "reports/records/records.h"
+#include "reports/run/records/records.h"
 #include "tests/reports/run_words.h"
 #include "tests/support/box_room.h"
 #include "tests/support/temp_folder.h"

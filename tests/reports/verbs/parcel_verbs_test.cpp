@@ -6,10 +6,10 @@
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf_volume.h"
 #include "metrics/metric.h"
-#include "reports/parcels/parcel_file.h"
-#include "reports/parcels/take_parcel.h"
-#include "reports/records/parcel_run.h"
-#include "reports/records/stage_files.h"
+#include "reports/run/parcels/parcel_file.h"
+#include "reports/run/parcels/take_parcel.h"
+#include "reports/run/records/parcel_run.h"
+#include "reports/run/records/stage_files.h"
 #include "tests/reports/run_words.h"
 
 using namespace glint;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "glint/scene/image_files.h"
-#include "reports/records/records.h"
-#include "reports/records/run_folder.h"
-#include "reports/records/stage_files.h"
+#include "reports/run/records/records.h"
+#include "reports/run/records/run_folder.h"
+#include "reports/run/records/stage_files.h"
 #include "reports/verbs/command_line.h"
 #include "reports/verbs/headline_scores.h"
 #include "tests/support/small_room.h"

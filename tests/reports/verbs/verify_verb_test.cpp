@@ -5,7 +5,7 @@
 #include "glint/core/file_lock.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
-#include "reports/records/stage_files.h"
+#include "reports/run/records/stage_files.h"
 #include "tests/reports/run_words.h"
 #include "tests/support/small_room.h"
 

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "reports/show/tables/results_page.h"
+
+#include <algorithm>
+#include <set>
+
+#include "reports/show/tables/table_writers.h"
+
+namespace glint {
+namespace {
+
+using Texts = std::set<std::string>;
+
+template <class F>
+Texts collect(const std::vector<Record>& records, F&& text_of) {
+  Texts texts;
+  for (const Record& record : records)
+    if (const std::string text = text_of(record); !text.empty()) texts.insert(text);
+  return texts;
+}
+
+std::string environment_text(const Record& record, const char* key) {
+  const auto found = record.environment.find(key);
+  if (found == record.environment.end()) return {};
+  return found->is_string() ? found->get<std::string>() : found->dump();
+}
+
+// "trained by revision ..." of records that were scored by another one.
+Texts trained_by(const std::vector<Record>& records) {
+  Texts texts;
+  for (const Record& record : records)
+    for (const std::string& warning : record.warnings)
+      if (warning.starts_with("trained by revision ")) texts.insert(warning);
+  return texts;
+}
+
+// Of cells that ran side by side on a GPU.
+std::string shared_card_text(const std::vector<Record>& records) {
+  double most = 1;
+  for (const Record& record : records)
+    most = std::max(most, number_or(record.environment, "cells_on_card", 1));
+  return most > 1 ? fmt::format(", which up to {:.0f} cells shared: times are too long", most) : "";
+}
+
+std::string joined(const Texts& texts) { return fmt::format("{}", fmt::join(texts, ", ")); }
+
+std::string facts(const ResultsInfo& info, const std::vector<Record>& records) {
+  const auto environment = [&](const char* key) {
+    return joined(collect(records, [&](const Record& r) { return environment_text(r, key); }));
+  };
+  const Texts dates = collect(records, [](const Record& r) { return environment_text(r, "date"); });
+  std::string text = fmt::format("- Command: `{}`\n- Records: `{}`\n", info.command, info.records);
+  text += fmt::format(
+      "- Scenes: {}; test views of {} pixels\n",
+      joined(collect(records, [](const Record& r) { return r.dataset + "/" + r.cell.scene; })),
+      joined(collect(records, [](const Record& r) { return r.resolution; }))
+  );
+  text += fmt::format("- Scored by revision {}", environment("git_revision"));
+  if (const Texts trained = trained_by(records); !trained.empty())
+    text += fmt::format("; {}", joined(trained));
+  text += fmt::format(
+      "\n- {} to {} (UTC)\n",
+      dates.empty() ? "" : *dates.begin(),
+      dates.empty() ? "" : *dates.rbegin()
+  );
+  text += fmt::format(
+      "- Machine: {}, {} threads, device {}{}\n",
+      environment("cpu"),
+      environment("threads"),
+      environment("device"),
+      shared_card_text(records)
+  );
+  if (!info.remarks.empty()) text += fmt::format("- {}\n", info.remarks);
+  return text;
+}
+
+// Captions, scenes of means and published columns are those of our rooms.
+Table of_other_data(const Table& table) {
+  Table result = without_empty_columns(without_published(table));
+  std::erase_if(result.rows, [](const TableRow& row) {
+    return std::none_of(row.cells.begin(), row.cells.end(), [](const TableCell& cell) {
+      return cell.has_value();
+    });
+  });
+  result.caption.clear();
+  result.notes.clear();
+  return result;
+}
+
+std::vector<Record> shown_records(const ResultsInfo& info, std::vector<Record> records) {
+  const auto is_left_out = [&](const Record& record) {
+    return !info.cells.empty() &&
+           std::none_of(info.cells.begin(), info.cells.end(), [&](const std::string& glob) {
+             return glob_match(glob, record.cell.text());
+           });
+  };
+  std::erase_if(records, is_left_out);
+  return records;
+}
+
+}  // namespace
+
+std::vector<fs::path> results_parts(const fs::path& root) {
+  const fs::path folder = root / "docs/results/parts";
+  std::vector<fs::path> parts = list_files(folder, {".json"});
+  GLINT_CHECK(
+      !parts.empty(), kBadReference, "{}: no part of the results (*.json)", folder.string()
+  );
+  return parts;
+}
+
+ResultsInfo read_results_info(const fs::path& file) {
+  ResultsInfo info;
+  config_from_json(info, read_json_object(file), file.string());
+  return info;
+}
+
+std::string results_part(const ResultsInfo& info, std::vector<Record> records) {
+  records = shown_records(info, std::move(records));
+  std::string text = info.title.empty() ? "" : fmt::format("# {}\n\n", info.title);
+  text += facts(info, records);
+  const auto is_shown = [&](const std::string& id) {
+    return info.tables.empty() ||
+           std::find(info.tables.begin(), info.tables.end(), id) != info.tables.end();
+  };
+  for (const TableDefinition& definition : table_definitions()) {
+    if (!is_shown(definition.id)) continue;
+    Table table = build_table(definition, records);
+    if (info.other_data) table = of_other_data(table);
+    if (has_measurement(table)) text += fmt::format("\n{}", table_markdown(table));
+  }
+  return text;
+}
+
+std::string results_markdown(const fs::path& root) {
+  std::string text =
+      "# Results\n\n"
+      "Written by `glint-bench results` from the records named below; a test fails when the two "
+      "differ.\n\n";
+  for (const fs::path& file : results_parts(root)) {
+    const ResultsInfo info = read_results_info(file);
+    const auto records = read_records(root / info.records);
+    GLINT_CHECK(!records.empty(), kBadPrediction, "{}: no records", info.records);
+    text += (info.title.empty() ? "" : "\n") + results_part(info, records);
+  }
+  return text;
+}
+
+std::string readme_results(const ResultsInfo& info, std::vector<Record> records) {
+  records = shown_records(info, std::move(records));
+  const auto definitions = table_definitions();
+  const auto summary =
+      std::find_if(definitions.begin(), definitions.end(), [](const TableDefinition& definition) {
+        return definition.id == "summary";
+      });
+  const std::string table = table_markdown(build_table(*summary, records));
+  return fmt::format(  // without the table's heading
+      "{}\n{}- All tables: [docs/RESULTS.md](docs/RESULTS.md)\n",
+      table.substr(table.find('\n') + 1),
+      facts(info, records)
+  );
+}
+
+std::string with_results(const std::string& readme, const std::string& results) {
+  const std::size_t begin = readme.find(kResultsBegin), end = readme.find(kResultsEnd);
+  GLINT_CHECK(
+      begin != std::string::npos && end != std::string::npos && begin < end,
+      kBadReference,
+      "README: no lines '{}' and '{}' to write the results between",
+      kResultsBegin,
+      kResultsEnd
+  );
+  const std::size_t from = begin + std::string_view(kResultsBegin).size();
+  return fmt::format("{}\n{}{}", readme.substr(0, from), results, readme.substr(end));
+}
+
+}  // namespace glint
