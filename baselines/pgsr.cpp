@@ -2,7 +2,7 @@
 // PGSR [Chen24]: "PGSR: Planar-based Gaussian Splatting for Efficient and High-Fidelity Surface
 // Reconstruction", TVCG 2024. Depth is that of the plane which a pixel's composited normal and
 // distance describe, and planes are regularised by one view (Eq. 9) and by a view and a neighbour
-// (Eqs. 11-13). What it shares with methods built on it is in glint/train/planar_model.h.
+// (Eqs. 11-13). What it shares with methods built on it is in baselines/planar/planar_model.h.
 //
 // The same: losses, weights and their start, neighbours, the squared NCC, sampled clones, trim,
 // rates. Exposure, off as published, is left out. Defaults are the settings that its README gives
@@ -15,9 +15,9 @@
 // extent (scene_unit), where published captures span about two; one image size for training and
 // NCC; images are compared as stored; pruning by screen size is left out, as in 2DGS here; a step
 // trims, then densifies (there the other way round, so that trims see what is new).
+#include "baselines/planar/planar_model.h"
 #include "glint/render/map_ops.h"
 #include "glint/surfel_method.h"
-#include "glint/train/planar_model.h"
 
 namespace glint {
 

@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baselines/deferred/specular_field.h"
 #include "baselines/ref_gs_kernels.h"
 #include "glint/core/rng.h"
 #include "glint/render/map_ops.h"
@@ -30,7 +31,6 @@
 #include "glint/train/geometry_losses.h"
 #include "glint/train/initial_points.h"
 #include "glint/train/photometric.h"
-#include "glint/train/specular_field.h"
 #include "glint/train/trainer.h"
 
 namespace glint {

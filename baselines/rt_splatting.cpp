@@ -28,6 +28,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baselines/deferred/specular_field.h"
 #include "baselines/rt_splatting_kernels.h"
 #include "glint/core/rng.h"
 #include "glint/render/map_ops.h"
@@ -39,7 +40,6 @@
 #include "glint/train/initial_points.h"
 #include "glint/train/perceptual.h"
 #include "glint/train/photometric.h"
-#include "glint/train/specular_field.h"
 #include "glint/train/trainer.h"
 
 namespace glint {

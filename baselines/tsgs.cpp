@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // TSGS [Li25]: "TSGS: Improving Gaussian Splatting for Transparent Surface Reconstruction via
-// Normal and De-lighting Priors", ACM MM 2025. All of PGSR (glint/train/planar_model.h), and: a
-// normal prior; for the first half of the run the target is de-lighted where the glass mask says
+// Normal and De-lighting Priors", ACM MM 2025. All of PGSR (baselines/planar/planar_model.h), and:
+// a normal prior; for the first half of the run the target is de-lighted where the glass mask says
 // so; then opacities stay as they are and the photo is the target; from 60 % of the run on lobes
-// (glint/train/lobe_appearance.h, `lobes`) add to the colours; at views with a mask, depth on glass
-// is that of the first surface instead of the last one before half the light is gone.
+// (baselines/planar/lobe_appearance.h, `lobes`) add to the colours; at views with a mask, depth on
+// glass is that of the first surface instead of the last one before half the light is gone.
 //
 // Given: masks of the glass (prior folder diffrens/glass, else the dataset's truth), de-lighted
 // photos (diffrens/delight) and normals (diffrens/normal). At views without one of them its part is
@@ -23,6 +23,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "baselines/planar/lobe_appearance.h"
+#include "baselines/planar/planar_model.h"
 #include "baselines/tsgs_kernels.h"
 #include "glint/core/kernel.h"
 #include "glint/render/map_ops.h"
@@ -30,8 +32,6 @@
 #include "glint/train/check_fits.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/glass_masks.h"
-#include "glint/train/lobe_appearance.h"
-#include "glint/train/planar_model.h"
 #include "glint/train/share_kernels.h"
 
 namespace glint {

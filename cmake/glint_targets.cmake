@@ -4,7 +4,8 @@
 #   (glint/core/registry.h, service.h), so programs link all of them. UNITY: so many files are compiled as one.
 #   LIGHT: compiled at -O1, since nothing in it is waited for.
 # glint_add_program(name SRCS ... [NEEDS ...] [LINK ...]): a program in bin/.
-# glint_add_test(SRC file [LABELS ...] [LINK ...]): one test program per file, named by its path.
+# glint_test_program(name SRCS ... [LINK ...]) and glint_add_test(file program [LABELS ...]): tests of a folder in a
+#   program, each a test of CTest.
 option(GLINT_UNITY "compile several files as one where that is faster" ON)
 
 add_library(glint_warnings INTERFACE)
@@ -98,22 +99,44 @@ if(GLINT_SANITIZE)
   set(GLINT_TEST_TIMEOUT 9000)
 endif()
 
-# tests/a/b_test.cpp -> program test_a_b, CTest name a/b; LABELS default to "unit".
-function(glint_add_test)
-  cmake_parse_arguments(ARG "" "SRC" "LABELS;LINK" ${ARGN})
-  string(REGEX REPLACE "_test\\.cpp$" "" path ${ARG_SRC})
-  string(REPLACE "/" "_" target test_${path})
-  if(NOT ARG_LABELS)
-    set(ARG_LABELS unit)
+# A program of one or more tests/a/x_test.cpp, which are compiled as one.
+function(glint_test_program target)
+  cmake_parse_arguments(ARG "" "" "SRCS;LINK" ${ARGN})
+  set(source ${ARG_SRCS})
+  list(LENGTH ARG_SRCS count)
+  if(count GREATER 1)
+    set(source ${CMAKE_CURRENT_BINARY_DIR}/joined/${target}.cpp)
+    list(JOIN ARG_SRCS "," joined)
+    add_custom_command(
+      OUTPUT ${source}
+      COMMAND ${CMAKE_COMMAND} -DOUTPUT=${source} -DROOT=${CMAKE_SOURCE_DIR} -DTESTS=${joined} -P
+              ${CMAKE_SOURCE_DIR}/cmake/join_tests.cmake
+      DEPENDS ${ARG_SRCS} ${CMAKE_SOURCE_DIR}/cmake/join_tests.cmake
+      COMMENT "Joining tests of ${target}"
+    )
   endif()
-  add_executable(${target} ${ARG_SRC})
+  add_executable(${target} ${source})
   target_link_libraries(${target} PRIVATE ${ARG_LINK} glint_test_support glint_warnings)
   target_precompile_headers(${target} REUSE_FROM glint_headers_tests)
-  if(NOT path MATCHES "^(glint/(render|cuda|train)|support)")  # others wait for libraries, not for themselves
+  if(NOT target MATCHES "^test_(glint_(render|cuda|train)|support)")  # others wait for libraries, not for themselves
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
-  add_test(NAME ${path} COMMAND ${target} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+endfunction()
+
+# tests/a/b_test.cpp -> CTest name a/b: what `program` has of that file; LABELS default to "unit".
+function(glint_add_test test program)
+  cmake_parse_arguments(ARG "" "" "LABELS" ${ARGN})
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS unit)
+  endif()
+  string(REGEX REPLACE "_test\\.cpp$" "" path ${test})
+  get_filename_component(file ${test} NAME_WE)
+  add_test(
+    NAME ${path}
+    COMMAND ${program} --filenames-as-tags --warn NoTests "[#${file}]~[.]"
+    WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
+  )
   set_tests_properties(
     ${path}
     PROPERTIES LABELS "${ARG_LABELS}"

@@ -6,7 +6,7 @@
 
 #include "glint/core/config.h"
 #include "glint/core/image.h"
-#include "metrics/ssim_formula.h"
+#include "glint/render/ssim_formula.h"
 
 namespace glint {
 

@@ -6,8 +6,8 @@
 
 #include "glint/core/image.h"
 #include "glint/core/kernel.h"
+#include "glint/render/ssim_formula.h"
 #include "glint/train/pixel_losses.h"
-#include "metrics/ssim_formula.h"
 
 namespace glint {
 

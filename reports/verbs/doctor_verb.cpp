@@ -13,11 +13,11 @@
 #include "metrics/feature_net.h"
 #include "metrics/fusion/tsdf_volume.h"
 #include "metrics/lpips_weights.h"
-#include "reports/show/figures/figures.h"
 #include "reports/run/provenance/examine_machine.h"
 #include "reports/run/provenance/examine_profile.h"
 #include "reports/run/records/environment.h"
 #include "reports/run/records/revision.h"
+#include "reports/show/figures/figures.h"
 #include "reports/verbs/doctor_card.h"
 #include "reports/verbs/verb.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "glint/method.h"
-#include "metrics/ssim_formula.h"
+#include "glint/render/ssim_formula.h"
 #include "tests/support/same_bytes.h"
 #include "tests/support/small_room.h"
 #include "tests/support/threads.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What our own programs leave behind and read again: records, run folders, logs, profiles.
-#include "reports/show/pictures/training_curve.h"
 #include "reports/run/records/earlier_run.h"
 #include "reports/run/records/profile.h"
 #include "reports/run/records/records.h"
 #include "reports/run/records/run_folder.h"
 #include "reports/run/records/stage_files.h"
+#include "reports/show/pictures/training_curve.h"
 #include "reports/show/tables/table_writers.h"
 #include "tests/fuzz/fuzz_target.h"
 

@@ -8,11 +8,11 @@
 #include "datasets/packed_scene.h"
 #include "glint/scene/image_files.h"
 #include "reports/run/bench/evaluate.h"
-#include "reports/show/figures/map_figures.h"
 #include "reports/run/import/import_predictions.h"
+#include "reports/run/records/run_folder.h"
+#include "reports/show/figures/map_figures.h"
 #include "reports/show/page/probe_values.h"
 #include "reports/show/pictures/strip.h"
-#include "reports/run/records/run_folder.h"
 #include "tests/support/box_room.h"
 #include "tests/support/temp_folder.h"
 

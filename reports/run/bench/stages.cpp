@@ -8,8 +8,8 @@
 #include "reports/run/bench/mesh_eval.h"
 #include "reports/run/bench/run_stage.h"
 #include "reports/run/bench/stage_documents.h"
-#include "reports/show/pictures/strip.h"
 #include "reports/run/records/earlier_run.h"
+#include "reports/show/pictures/strip.h"
 
 namespace glint {
 

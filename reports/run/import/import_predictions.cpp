@@ -12,8 +12,8 @@
 #include "metrics/depth.h"
 #include "metrics/normal.h"
 #include "reports/run/import/map_values.h"
-#include "reports/show/pictures/strip.h"
 #include "reports/run/records/earlier_run.h"
+#include "reports/show/pictures/strip.h"
 
 namespace glint {
 namespace {

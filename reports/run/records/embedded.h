@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Files of reports/ that are compiled into the programs, by their path below reports/:
-// "paper/glint.json", "tables/table1_photometric.toml", "profiles/ci.toml", "show/page/dist/report.js".
+// "paper/glint.json", "tables/table1_photometric.toml", "profiles/ci.toml",
+// "show/page/dist/report.js".
 #pragma once
 
 #include <map>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Run folders that were made of a parcel (reports/run/parcels): scores, a few pictures and what is left
-// of the model are there; its colours and renders are not.
+// Run folders that were made of a parcel (reports/run/parcels): scores, a few pictures and what is
+// left of the model are there; its colours and renders are not.
 #pragma once
 
 #include <optional>

@@ -7,9 +7,9 @@
 
 #include "glint/drawing/chart.h"
 #include "metrics/mesh/mesh_protocol.h"
+#include "reports/run/records/run_folder.h"
 #include "reports/show/figures/figure_methods.h"
 #include "reports/show/pictures/training_curve.h"
-#include "reports/run/records/run_folder.h"
 #include "reports/show/tables/statistics.h"
 
 namespace glint {

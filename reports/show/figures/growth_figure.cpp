@@ -7,9 +7,9 @@
 #include <tuple>
 
 #include "glint/drawing/chart.h"
-#include "reports/show/pictures/growth_log.h"
 #include "reports/run/records/cell_filter.h"
 #include "reports/run/records/run_folder.h"
+#include "reports/show/pictures/growth_log.h"
 
 namespace glint {
 

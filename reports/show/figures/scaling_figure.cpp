@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "glint/drawing/chart.h"
-#include "reports/show/figures/figure_methods.h"
 #include "reports/run/perf/scaling.h"
+#include "reports/show/figures/figure_methods.h"
 
 namespace glint {
 

@@ -4,11 +4,11 @@
 #include "glint/core/file_lock.h"
 #include "glint/core/left_behind.h"
 #include "glint/core/progress.h"
+#include "reports/run/records/embedded.h"
+#include "reports/run/records/script_text.h"
 #include "reports/show/page/mesh_part.h"
 #include "reports/show/page/page_scenes.h"
 #include "reports/show/page/page_summary.h"
-#include "reports/run/records/embedded.h"
-#include "reports/run/records/script_text.h"
 
 namespace glint {
 

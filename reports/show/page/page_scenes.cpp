@@ -9,11 +9,11 @@
 #include "glint/core/parallel.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
+#include "reports/run/records/script_text.h"
 #include "reports/show/page/mesh_part.h"
 #include "reports/show/page/probe_values.h"
 #include "reports/show/pictures/layers.h"
 #include "reports/show/pictures/training_curve.h"
-#include "reports/run/records/script_text.h"
 
 namespace glint {
 

@@ -9,8 +9,8 @@
 #include "glint/drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
 #include "metrics/metric.h"
-#include "reports/show/pictures/layers.h"
 #include "reports/run/records/run_folder.h"
+#include "reports/show/pictures/layers.h"
 
 namespace glint {
 

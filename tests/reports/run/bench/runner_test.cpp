@@ -12,8 +12,8 @@
 #include "reports/run/bench/cell_stages.h"
 #include "reports/run/bench/stages.h"
 #include "reports/verbs/result_tables.h"
-#include "tests/reports/run/bench/one_cell.h"
 #include "tests/reports/fake_method.h"
+#include "tests/reports/run/bench/one_cell.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;

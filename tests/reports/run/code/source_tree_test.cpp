@@ -68,7 +68,9 @@ TEST_CASE("a file depends on what it includes and on what implements those heade
 
 TEST_CASE("of files that drive a computation only those that are named count") {
   const SmallTree sources;
-  CHECK(sources.read().closure({"reports/run/bench/run.cpp"}) == Files{"reports/run/bench/run.cpp"});
+  CHECK(
+      sources.read().closure({"reports/run/bench/run.cpp"}) == Files{"reports/run/bench/run.cpp"}
+  );
 }
 
 TEST_CASE("a change of code reaches who depends on it, a comment nobody") {

@@ -5,10 +5,10 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "reports/run/records/script_text.h"
 #include "reports/show/page/mesh_part.h"
 #include "reports/show/page/probe_values.h"
 #include "reports/show/pictures/training_curve.h"
-#include "reports/run/records/script_text.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;

@@ -3,9 +3,9 @@
 // gathered from the look-ups that touch it, in the order of their pixels: no atomics.
 #pragma once
 
+#include "baselines/deferred/spherical_map.h"
 #include "glint/core/kernel.h"
 #include "glint/core/sorted.h"
-#include "glint/render/spherical_map.h"
 
 namespace glint {
 

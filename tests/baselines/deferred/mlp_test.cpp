@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The network against a plain loop in double, whose gradient is taken by central differences.
-#include "glint/train/mlp.h"
+#include "baselines/deferred/mlp.h"
 
 #include "tests/support/check_vjp.h"
 #include "tests/support/gpu_backends.h"

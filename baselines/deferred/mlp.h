@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "baselines/deferred/trainable_array.h"
 #include "glint/scene/safetensors.h"
-#include "glint/train/trainable_array.h"
 
 namespace glint {
 

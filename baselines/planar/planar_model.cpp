@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "glint/train/planar_model.h"
+#include "baselines/planar/planar_model.h"
 
 #include <algorithm>
 
+#include "baselines/planar/lobe_appearance.h"
 #include "glint/render/map_ops.h"
 #include "glint/train/initial_points.h"
-#include "glint/train/lobe_appearance.h"
 
 namespace glint {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "glint/render/spherical_lookup.h"
+#include "baselines/deferred/spherical_lookup.h"
 
 #include <algorithm>
 

@@ -7,9 +7,9 @@
 
 #include <vector>
 
+#include "baselines/deferred/mlp.h"
+#include "baselines/planar/lobe_appearance_kernels.h"
 #include "glint/render/surfel_set.h"
-#include "glint/train/lobe_appearance_kernels.h"
-#include "glint/train/mlp.h"
 
 namespace glint {
 

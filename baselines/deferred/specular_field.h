@@ -6,11 +6,11 @@
 
 #include <filesystem>
 
+#include "baselines/deferred/mlp.h"
+#include "baselines/deferred/specular_field_kernels.h"
+#include "baselines/deferred/spherical_lookup.h"
 #include "glint/render/rasterize.h"
-#include "glint/render/spherical_lookup.h"
 #include "glint/scene/surfels.h"
-#include "glint/train/mlp.h"
-#include "glint/train/specular_field_kernels.h"
 
 namespace glint {
 

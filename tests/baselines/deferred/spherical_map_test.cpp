@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The map over directions: closed forms, a look-up by brute force, central differences in double.
-#include "glint/render/spherical_map.h"
+#include "baselines/deferred/spherical_map.h"
 
 #include <algorithm>
 #include <numbers>
 
-#include "glint/render/spherical_lookup.h"
+#include "baselines/deferred/spherical_lookup.h"
 #include "tests/support/check_vjp.h"
 #include "tests/support/gpu_backends.h"
 #include "tests/support/random_values.h"

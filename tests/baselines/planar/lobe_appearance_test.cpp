@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Appearance from lobes: its formulas by central differences, the whole against a plain loop in
 // double.
-#include "glint/train/lobe_appearance.h"
+#include "baselines/planar/lobe_appearance.h"
 
 #include <numbers>
 

@@ -5,8 +5,8 @@
 
 #include <span>
 
+#include "baselines/deferred/spherical_map_kernels.h"
 #include "glint/core/image.h"
-#include "glint/render/spherical_map_kernels.h"
 
 namespace glint {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "glint/train/specular_field.h"
+#include "baselines/deferred/specular_field.h"
 
 #include <fmt/format.h>
 

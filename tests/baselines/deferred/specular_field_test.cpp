@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Reflections from a map of directions: their formulas in double, the whole by central differences.
-#include "glint/train/specular_field.h"
+#include "baselines/deferred/specular_field.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "glint/train/lobe_appearance.h"
+#include "baselines/planar/lobe_appearance.h"
 
 #include <algorithm>
 #include <cmath>

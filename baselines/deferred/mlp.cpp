@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "glint/train/mlp.h"
+#include "baselines/deferred/mlp.h"
 
 #define EIGEN_DONT_PARALLELIZE  // rows are shared out among threads here
 
@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baselines/deferred/mlp_kernels.h"
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
 #include "glint/core/rng.h"
-#include "glint/train/mlp_kernels.h"
 
 namespace glint {
 

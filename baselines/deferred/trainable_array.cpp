@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "glint/train/trainable_array.h"
+#include "baselines/deferred/trainable_array.h"
 
 #include <algorithm>
 #include <cmath>
