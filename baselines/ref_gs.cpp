@@ -107,8 +107,6 @@ class RefGs final : public MethodOf<RefGsConfig> {
  public:
   explicit RefGs(RefGsConfig config) : MethodOf(std::move(config)) {
     sets_ = {{"interface", &set_}};
-    // Loaded ones are of the config's sizes, too.
-    field_ = SpecularField(config_.field, std::vector<float>(3, std::log(0.25f)), 0);
   }
 
   void initialize(const Scene& scene, const RunOptions& options) override {
@@ -124,7 +122,7 @@ class RefGs final : public MethodOf<RefGsConfig> {
     initial.extra = config_.channels(faster_);
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
     set_ = TrainableSet(points, initial, training_on(scene, windows_.rates, windows_.densify));
-    field_ = SpecularField(config_.field, std::vector<float>(3, std::log(0.25f)), options.seed);
+    field_ = new_field(options.seed);
     view_rng_ = Rng(options.seed, hash_name("views"));
     background_rng_ = Rng(options.seed, hash_name("backgrounds"));
   }
@@ -185,6 +183,7 @@ class RefGs final : public MethodOf<RefGsConfig> {
     SurfelCloud cloud = read_surfel_ply(file);
     set_activations(config_.channels(1), file.string(), cloud);
     set_.load(std::move(cloud));
+    field_ = new_field(0);  // of the config's sizes
     deferred_ = field_.load(folder, 2) == 1;
     sh_degree_ = 3;
   }
@@ -206,6 +205,9 @@ class RefGs final : public MethodOf<RefGsConfig> {
   std::vector<std::string> notes() const override { return config_.field.notes(); }
 
  private:
+  SpecularField new_field(std::uint64_t seed) const {
+    return SpecularField(config_.field, std::vector<float>(3, std::log(0.25f)), seed);
+  }
   DeferredPixels pixels() const {
     return {
         output_->features.channels(),

@@ -133,7 +133,6 @@ class RtSplatting final : public MethodOf<RtSplattingConfig> {
  public:
   explicit RtSplatting(RtSplattingConfig config) : MethodOf(std::move(config)) {
     sets_ = {{"interface", &set_}};
-    field_ = config_.new_field(0);
     volume_.activated.options = {.opacity_factor = 0, .color_only = true};
   }
 
@@ -223,6 +222,7 @@ class RtSplatting final : public MethodOf<RtSplattingConfig> {
     SurfelCloud cloud = read_surfel_ply(file);
     set_activations(config_.channels(1), file.string(), cloud);
     set_.load(std::move(cloud));
+    field_ = config_.new_field(0);  // of the config's sizes
     stage_ = static_cast<RtStage>(field_.load(folder, kRtStages));
     sh_degree_ = 3;
   }

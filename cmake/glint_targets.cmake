@@ -116,6 +116,8 @@ function(glint_test_program target)
     )
   endif()
   add_executable(${target} ${source})
+  # Types of a joined file may have members of its nameless namespace: no other file sees them.
+  target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   target_link_libraries(${target} PRIVATE ${ARG_LINK} glint_test_support glint_warnings)
   target_precompile_headers(${target} REUSE_FROM glint_headers_tests)
   if(NOT target MATCHES "^test_(glint_(render|cuda|train)|support)")  # others wait for libraries, not for themselves

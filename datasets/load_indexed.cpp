@@ -161,6 +161,23 @@ std::string alpha_note(const SceneIndex& index) {
   );
 }
 
+// Masks that may be in the channel that is not looked at: they leave nothing out; empty: none.
+std::string mask_alpha_note(const SceneIndex& index, const Scene& scene) {
+  const auto has_uncounted = [](const View& view) { return !view.counted.empty(); };
+  if (std::ranges::any_of(scene.train, has_uncounted) ||
+      std::ranges::any_of(scene.test, has_uncounted))
+    return {};
+  const auto count = std::ranges::count_if(index.views, [](const ViewSource& view) {
+    return !view.counted.empty() && has_alpha(view.counted);
+  });
+  if (count == 0) return {};
+  return fmt::format(
+      "{} masks are white throughout, so that every pixel counts, and have an alpha channel, which "
+      "is not looked at: if it holds the mask, write that as the picture itself",
+      count
+  );
+}
+
 // Views whose intrinsics look like those of another size; empty: none. A crop's may be so rightly.
 std::string off_center_note(const Scene& scene) {
   std::size_t count = 0, all = 0;
@@ -190,7 +207,11 @@ void note_data(const SceneIndex& index, const LoadOptions& options, Scene& scene
     ));
   for (const Finding& remark : index.remarks)
     notes.push_back(fmt::format("{}: {}", remark.where, remark.message));
-  for (std::string note : {alpha_note(index), counted_note(scene), off_center_note(scene)})
+  for (std::string note :
+       {alpha_note(index),
+        mask_alpha_note(index, scene),
+        counted_note(scene),
+        off_center_note(scene)})
     if (!note.empty()) notes.push_back(std::move(note));
   if (!options.with_priors || index.simulated_priors || index.prior_notes.empty()) return;
   notes.insert(notes.end(), index.prior_notes.begin(), index.prior_notes.end());

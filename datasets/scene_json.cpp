@@ -102,7 +102,7 @@ void read_scene_json(const fs::path& folder, SceneIndex& index) {
   if (!is_there(path)) return;
   try {
     const std::string text = read_file(path);
-    check_json_depth(text, path);
+    check_json_text(text, path);
     const Json json = Json::parse(text);
     index.name = json.value("name", index.name);
     const std::string why = why_no_folder_name(index.name);

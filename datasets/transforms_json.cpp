@@ -230,13 +230,22 @@ ViewSource make_view(const FrameReader& reader, const fs::path& folder) {
 Json parse_transforms(const fs::path& path) {
   try {
     const std::string text = read_file(path);
-    check_json_depth(text, path);
+    check_json_text(text, path);
     Json json = Json::parse(text);
     GLINT_CHECK(
         json.is_object() && json.contains("frames") && json["frames"].is_array(),
         kBadReference,
         "{}: frames: expected a list",
         path.string()
+    );
+    constexpr std::size_t kMostFrames = 100000;
+    GLINT_CHECK(
+        json["frames"].size() <= kMostFrames,
+        kBadReference,
+        "{}: {} frames, expected at most {}; it is damaged, or not what it is taken for",
+        path.string(),
+        json["frames"].size(),
+        kMostFrames
     );
     return json;
   } catch (const nlohmann::json::exception& error) {

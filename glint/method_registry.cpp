@@ -32,6 +32,7 @@ std::unique_ptr<Method> create_method(const std::string& id, const Json& config)
   const MethodSpec& spec = find_method(id);
   Json merged = spec.overrides;
   merged.update(config);
+  check_settings(id, merged);  // what is given, before anything is made of it
   auto method = spec.create(merged);
   check_settings(id, method->config());
   return method;

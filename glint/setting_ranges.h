@@ -22,7 +22,7 @@ struct ValueRange {
 struct SettingRange {
   const char* name;
   ValueRange range;
-  // A setting that, where it is 0, makes this one mean nothing; null: none.
+  // A setting that, where it is 0 or not there, makes this one mean nothing; null: none.
   const char* unless_zero = nullptr;
 };
 std::span<const SettingRange> setting_ranges();

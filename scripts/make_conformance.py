@@ -10,18 +10,17 @@ Run from the repository's root: scripts/make_conformance.py [--weights FILE]
 
 import argparse
 import json
-import struct
 from pathlib import Path
 
 import numpy as np
 import scipy
 import skimage
-from numpy.lib.stride_tricks import sliding_window_view
-from PIL import Image
 from scipy.ndimage import correlate1d, maximum_filter
 from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
-ROOT = Path("metrics/conformance")
+from conformance_files import ROOT, write_cameras, write_exr, write_npy, write_ply, write_png
+from conformance_lpips import alex_lpips, read_weights
+
 NUMPY = f"NumPy {np.__version__}"
 SKIMAGE = f"scikit-image {skimage.__version__}"
 SCIPY = f"SciPy {scipy.__version__}"
@@ -35,63 +34,6 @@ def add(name, arguments, value, expected, tolerance, source, convention):
         "id": name, "arguments": arguments, "value": value, "expected": float(expected),
         "tolerance": tolerance, "source": source, "convention": convention,
     })
-
-
-# --- files ---------------------------------------------------------------------------------------
-
-def write_npy(name, array):
-    path = ROOT / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    np.save(path, np.ascontiguousarray(array.astype(np.float32)))
-
-
-def write_png(name, array, mode=None):
-    path = ROOT / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(array, mode).save(path)
-
-
-def write_exr(name, array):
-    """OpenEXR 2: scan lines, no compression, 32-bit floats."""
-    planes = {"Z": array} if array.ndim == 2 else dict(zip("RGB", np.moveaxis(array, 2, 0)))
-    height, width = array.shape[:2]
-
-    def attribute(key, kind, data):
-        return key.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(data)) + data
-
-    channels = b"".join(
-        c.encode() + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for c in sorted(planes)
-    ) + b"\0"
-    box = struct.pack("<iiii", 0, 0, width - 1, height - 1)
-    header = struct.pack("<ii", 20000630, 2) + b"".join([
-        attribute("channels", "chlist", channels), attribute("compression", "compression", b"\0"),
-        attribute("dataWindow", "box2i", box), attribute("displayWindow", "box2i", box),
-        attribute("lineOrder", "lineOrder", b"\0"),
-        attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
-        attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)),
-        attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
-    ]) + b"\0"
-    line_bytes = 4 * width * len(planes)
-    lines, offsets = b"", b""
-    for y in range(height):
-        offsets += struct.pack("<Q", len(header) + 8 * height + len(lines))
-        row = b"".join(planes[c][y].astype("<f4").tobytes() for c in sorted(planes))
-        lines += struct.pack("<ii", y, line_bytes) + row
-    path = ROOT / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(header + offsets + lines)
-
-
-def write_ply(name, vertices, faces):
-    path = ROOT / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    header = (
-        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\n"
-        "property float x\nproperty float y\nproperty float z\n"
-        f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    rows = b"".join(struct.pack("<Biii", 3, *face) for face in faces)
-    path.write_bytes(header.encode() + np.asarray(vertices, "<f4").tobytes() + rows)
 
 
 # --- formulas on integers, which tests/metrics/golden_images.h repeats ---------------------------
@@ -256,8 +198,18 @@ def picture_pair(width=WIDTH, height=HEIGHT):
     return prediction, reference, as_rendered(prediction.astype(np.int64)), mask
 
 
-def image_vectors():
-    prediction, reference, rendered, mask = picture_pair()
+TIGHT = 1e-5  # inputs are float32
+
+
+def picture_run(tool, name, *more, reference="image/reference.png"):
+    return [tool, f"image/{name}", reference, *more]
+
+
+def picture_psnr(a, b):
+    return peak_signal_noise_ratio(b, a, data_range=1)
+
+
+def write_pictures(prediction, reference, rendered, mask):
     write_png("image/prediction.png", prediction)
     write_png("image/reference.png", reference)
     write_npy("image/rendered.npy", rendered)
@@ -269,17 +221,10 @@ def image_vectors():
     write_png("image/reference_grey.png", reference[:, :, 1])
     sixteen = (prediction[:, :, 1].astype(np.uint32) * 257).astype(np.uint16)
     write_png("image/prediction_16bit.png", sixteen)
-    p, r = prediction / 255.0, reference / 255.0
-    clamped = np.clip(rendered.astype(np.float64), 0, 1)
-    chosen = mask > 0
 
-    def psnr(a, b):
-        return peak_signal_noise_ratio(b, a, data_range=1)
 
-    def run(tool, name, *more, reference="image/reference.png"):
-        return [tool, f"image/{name}", reference, *more]
-
-    tight = 1e-5  # inputs are float32
+def psnr_vectors(p, r, clamped, chosen):
+    run, psnr, tight = picture_run, picture_psnr, TIGHT
     add("psnr/8bit", run("glint-psnr", "prediction.png"), "psnr-8bit", psnr(p, r), tight, SKIMAGE,
         "one MSE over all pixels and channels, peak 1")
     add("psnr/clamped", run("glint-psnr", "rendered.npy"), "psnr", psnr(clamped, r), tight, SKIMAGE,
@@ -300,6 +245,10 @@ def image_vectors():
     add("psnr/16bit", run("glint-psnr", "prediction_16bit.png",
                           reference="image/reference_grey.png"),
         "psnr-8bit", grey, tight, SKIMAGE, "16-bit integers are divided by 65535")
+
+
+def ssim_vectors(p, r, clamped, chosen):
+    run, tight = picture_run, TIGHT
     wang, _ = wang_map(p, r)
     padded = zero_padded_map(p, r)
     add("ssim/wang", run("glint-ssim", "prediction.png", "--variant", "wang"),
@@ -311,6 +260,10 @@ def image_vectors():
         "ssim-3dgs", padded[chosen].mean(), tight, SCIPY, "the map is averaged over the mask")
     add("ssim/clamped", run("glint-ssim", "rendered.npy"), "ssim-3dgs",
         zero_padded_map(clamped, r).mean(), tight, SCIPY, "predictions are clamped")
+
+
+def odd_size_vectors():
+    run, psnr, tight = picture_run, picture_psnr, TIGHT
     for width, height in [(37, 53), (11, 11)]:
         size = f"{width}x{height}"
         names = f"prediction_{size}.png", f"image/reference_{size}.png"
@@ -324,6 +277,16 @@ def image_vectors():
             "ssim-wang", wang_map(p, r)[0], tight, SKIMAGE, "any size, down to the window's")
         add(f"ssim/3dgs-{size}", run("glint-ssim", names[0], reference=names[1]), "ssim-3dgs",
             zero_padded_map(p, r).mean(), tight, SCIPY, "any size")
+
+
+def image_vectors():
+    prediction, reference, rendered, mask = picture_pair()
+    write_pictures(prediction, reference, rendered, mask)
+    p, r = prediction / 255.0, reference / 255.0
+    clamped = np.clip(rendered.astype(np.float64), 0, 1)
+    psnr_vectors(p, r, clamped, mask > 0)
+    ssim_vectors(p, r, clamped, mask > 0)
+    odd_size_vectors()
 
 
 # --- depth and normals ---------------------------------------------------------------------------
@@ -456,35 +419,6 @@ def mesh_vectors():
 
 # --- a scene with glass, for the metrics of both layers --------------------------------------------
 
-CAMERA = """%YAML:1.0
----
-names:
-   - "0000"
-   - "0001"
-"""
-
-
-def matrix(key, rows, cols, data):
-    numbers = ", ".join(f"{float(v):.17g}" for v in data)
-    return (f"{key}: !!opencv-matrix\n   rows: {rows}\n   cols: {cols}\n   dt: d\n"
-            f"   data: [ {numbers} ]\n")
-
-
-def write_cameras():
-    intri, extri = CAMERA, CAMERA
-    for name in ["0000", "0001"]:
-        intri += matrix(f"K_{name}", 3, 3, [40, 0, WIDTH / 2, 0, 40, HEIGHT / 2, 0, 0, 1])
-        intri += f"H_{name}: {HEIGHT}\nW_{name}: {WIDTH}\n" + matrix(f"D_{name}", 5, 1, [0] * 5)
-        shift = 0.1 * int(name)
-        extri += matrix(f"R_{name}", 3, 1, [0, 0, 0])
-        extri += matrix(f"Rot_{name}", 3, 3, [1, 0, 0, 0, 1, 0, 0, 0, 1])
-        extri += matrix(f"T_{name}", 3, 1, [shift, 0, 0])
-    folder = ROOT / "glass/scene"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "intri.yml").write_text(intri)
-    (folder / "extri.yml").write_text(extri)
-
-
 def bounded(salt, low, high, channels=1):
     x, y, c = grid(WIDTH, HEIGHT, channels)
     value = low + (high - low) * (hashed(x, y, c, salt) % 1001) / 1000.0
@@ -515,7 +449,7 @@ def glass_maps():
 
 
 def write_glass(truth, found):
-    write_cameras()
+    write_cameras("glass/scene", WIDTH, HEIGHT)
     for name in ["0000", "0001"]:
         rgb = np.rint(truth["rgb"] * 255).astype(np.uint8)
         write_png(f"glass/scene/images/{name}/000000.png", rgb)
@@ -539,31 +473,28 @@ def best_iou(maps, glass):
     return max(iou(m, t) for m in maps for t in [i / 20 for i in range(1, 20)])
 
 
-def glass_vectors():
-    truth, found = (dict((k, np.asarray(v)) for k, v in maps.items()) for maps in glass_maps())
-    write_glass(truth, found)
+def glass_vector(key, expected, source, convention, tolerance=1e-5):
     run = ["glint-bench", "eval", "--predictions", "glass", "--dataset", "glass/scene"]
-    d = {k: v.astype(np.float64) for k, v in found.items()}
-    t = {k: v.astype(np.float64) for k, v in truth.items() if k != "glass"}
-    glass = truth["glass"]
+    add(f"glass/{key}", run, key, expected, tolerance, source, convention)
+
+
+def region_psnr(a, b, m):
+    return -10 * np.log10(((a - b) ** 2).mean(axis=2)[m].mean())
+
+
+def region_vectors(d, t, glass, clipped):
+    vector = glass_vector
     rgb = np.clip(d["rgb"], 0, 1)
     rounded = np.rint(rgb.astype(np.float32) * np.float32(255)) / 255.0
     padded = zero_padded_map(rgb, t["rgb"])
     wang = wang_map(rgb, t["rgb"])[1].mean(axis=2)
     inside = np.zeros_like(glass)
     inside[5:HEIGHT - 5, 5:WIDTH - 5] = True
-    clipped = np.clip(d["transparency"], 0, 1)
-
-    def vector(key, expected, source, convention, tolerance=1e-5):
-        add(f"glass/{key}", run, key, expected, tolerance, source, convention)
-
-    def psnr(a, b, m):
-        return -10 * np.log10(((a - b) ** 2).mean(axis=2)[m].mean())
 
     for at, m in regions_of(glass).items():
         where = "whole picture" if not at else f"region {at[1:]} (border: within 3 px, Chebyshev)"
-        vector("psnr" + at, psnr(rgb, t["rgb"], m), NUMPY, where)
-        vector("psnr-8bit" + at, psnr(rounded, t["rgb"], m), NUMPY, where + ", rounded to 8 bits")
+        vector("psnr" + at, region_psnr(rgb, t["rgb"], m), NUMPY, where)
+        vector("psnr-8bit" + at, region_psnr(rounded, t["rgb"], m), NUMPY, where + ", rounded to 8 bits")
         vector("ssim-3dgs" + at, padded[m].mean(), SCIPY, where)
         vector("ssim-wang" + at, wang[m & inside].mean(), SKIMAGE, where)
         values = depth_values(d["depth"][m], t["depth"][m])
@@ -575,6 +506,10 @@ def glass_vectors():
         vector("depth-coverage-first-mode" + at, 100 * (d["first_mode"][m] > 0).mean(), NUMPY,
                where, 1e-9)
         vector("transparency-mae" + at, np.abs(clipped - glass)[m].mean(), NUMPY, where)
+
+
+def behind_vectors(d, t, glass):
+    vector = glass_vector
     behind = depth_values(d["behind_depth"][glass], t["behind_depth"][glass])
     vector("behind-absrel", behind["absrel"], NUMPY, "depth of what is behind glass, glass pixels")
     content = t["behind_depth"] - t["depth"] < 1.25
@@ -592,6 +527,10 @@ def glass_vectors():
                    "one rule for all methods, a hole counts as 0 metres")
         vector("behind-coverage" + suffix, 100 * (p > 0).mean(), NUMPY,
                "percent of glass pixels with a depth", 1e-9)
+
+
+def component_vectors(d, t, glass, clipped):
+    vector = glass_vector
     called = clipped >= 0.5
     vector("transparency-iou", (called & glass).sum() / (called | glass).sum(), NUMPY,
            "called glass at 0.5 or more", 1e-9)
@@ -600,45 +539,22 @@ def glass_vectors():
     total = t["transmitted"] + t["reflected"]
     for key, part in [("trans-psnr", "transmitted"), ("refl-psnr", "reflected")]:
         share = np.divide(t[part], total, out=np.zeros_like(total), where=total > 0)
-        vector(key, psnr(np.clip(d[part], 0, 1), t["rgb"] * share, glass), NUMPY,
+        vector(key, region_psnr(np.clip(d[part], 0, 1), t["rgb"] * share, glass), NUMPY,
                "displayed pixel times the component's share of the linear radiance, glass pixels")
 
 
+def glass_vectors():
+    truth, found = (dict((k, np.asarray(v)) for k, v in maps.items()) for maps in glass_maps())
+    write_glass(truth, found)
+    d = {k: v.astype(np.float64) for k, v in found.items()}
+    t = {k: v.astype(np.float64) for k, v in truth.items() if k != "glass"}
+    clipped = np.clip(d["transparency"], 0, 1)
+    region_vectors(d, t, truth["glass"], clipped)
+    behind_vectors(d, t, truth["glass"])
+    component_vectors(d, t, truth["glass"], clipped)
+
+
 # --- LPIPS -----------------------------------------------------------------------------------------
-
-def convolve(x, weight, bias, stride, padding):
-    x = np.pad(x, ((0, 0), (padding, padding), (padding, padding)))
-    windows = sliding_window_view(x, weight.shape[2:], axis=(1, 2))[:, ::stride, ::stride]
-    out = np.einsum("chwij,ocij->ohw", windows, weight, optimize=True)
-    return np.maximum(out + bias[:, None, None], 0)
-
-
-def pool(x):
-    return sliding_window_view(x, (3, 3), axis=(1, 2))[:, ::2, ::2].max(axis=(3, 4))
-
-
-def alex_taps(image, w):
-    shift, scale = np.array([-.030, -.088, -.188]), np.array([.458, .448, .450])
-    x = np.moveaxis((2 * image - 1 - shift) / scale, 2, 0)
-    taps = []
-    for layer, stride, padding, pooled in [(0, 4, 2, False), (3, 1, 2, True), (6, 1, 1, True),
-                                           (8, 1, 1, False), (10, 1, 1, False)]:
-        x = pool(x) if pooled else x
-        name = f"features.{layer}"
-        x = convolve(x, w[f"{name}.weight"], w[f"{name}.bias"], stride, padding)
-        taps.append(x)
-    return taps
-
-
-def alex_lpips(prediction, reference, weights):
-    total = 0
-    for i, (a, b) in enumerate(zip(alex_taps(prediction, weights), alex_taps(reference, weights))):
-        a = a / (np.sqrt((a * a).sum(axis=0)) + 1e-10)
-        b = b / (np.sqrt((b * b).sum(axis=0)) + 1e-10)
-        lin = weights[f"lin{i}.weight"].reshape(-1)
-        total += (lin[:, None, None] * (a - b) ** 2).sum(axis=0).mean()
-    return total
-
 
 def lpips_vectors(path):
     name = "lpips/alex"
@@ -646,13 +562,7 @@ def lpips_vectors(path):
         old = json.loads((ROOT / "vectors.json").read_text())["vectors"]
         vectors.extend(v for v in old if v["id"].startswith("lpips/"))
         return
-    data = path.read_bytes()
-    (length,) = struct.unpack_from("<Q", data)
-    header, weights = json.loads(data[8:8 + length]), {}
-    for key, tensor in header.items():
-        begin, end = tensor["data_offsets"]
-        values = np.frombuffer(data[8 + length + begin:8 + length + end], "<f4")
-        weights[key] = values.reshape(tensor["shape"]).astype(np.float64)
+    weights = read_weights(path)
     x, y, c = grid(96, 80, 3)
     reference = stored(np.clip(triangle_wave(3 * x + 2 * y + 30 * c), 0, 255))
     noise = hashed(x, y, c, 31) % 81 - 40

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cctype>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -25,104 +26,92 @@ struct Layer {
   std::string path;
   std::vector<std::string> may_include;
 };
-// What every folder of reports/ may include, and the named ones in it.
-std::vector<std::string> below_reports(const std::vector<std::string>& folders) {
-  std::vector<std::string> paths{"glint/", "metrics/", "baselines/", "datasets/"};
-  for (const std::string& folder : folders) paths.push_back("reports/" + folder + "/");
-  return paths;
-}
 
-const std::vector<std::string>& folders_of_verbs() {
-  static const std::vector<std::string> all = {
-      "run/records",
-      "show/tables",
-      "show/pictures",
-      "run/bench",
-      "run/parcels",
-      "run/executors",
-      "run/provenance",
-      "show/page",
-      "show/figures",
-      "run/import",
-      "run/perf",
-      "run/selftest",
-      "verbs"};
+// The libraries of reports/ and which of them each may include beside itself, all that lies below
+// reports/ besides.
+struct ReportsFolder {
+  const char *name, *may_include;
+};
+constexpr ReportsFolder kReports[] = {
+    {"run/records", ""},
+    {"show/tables", "run/records"},
+    {"show/pictures", "run/records"},
+    {"run/bench", "run/records show/pictures"},
+    {"run/parcels", "run/records show/pictures run/bench"},
+    {"run/executors", "run/records run/bench"},
+    {"run/provenance", "run/records show/pictures run/bench"},
+    {"run/import", "run/records show/pictures run/bench"},
+    {"run/perf", "run/records"},
+    {"run/selftest", "run/records run/bench run/import"},
+    {"show/page", "run/records show/tables show/pictures"},
+    {"show/figures", "run/records show/tables show/pictures run/bench show/page run/perf"},
+    {"verbs",
+     "run/records show/tables show/pictures run/bench run/parcels run/executors run/provenance "
+     "run/import run/perf run/selftest show/page show/figures"}};
+
+std::vector<Layer> layers_of_reports() {
+  std::vector<Layer> all;
+  for (const auto& [name, may_include] : kReports) {
+    Layer layer{
+        fmt::format("reports/{}/", name), {"glint/", "metrics/", "baselines/", "datasets/"}};
+    layer.may_include.push_back(layer.path);
+    std::istringstream words(may_include);
+    for (std::string word; words >> word;) layer.may_include.push_back("reports/" + word + "/");
+    all.push_back(std::move(layer));
+  }
   return all;
 }
 
 const std::vector<Layer>& layers() {
-  static const std::vector<Layer> all = {
-      {"glint/core/", {"glint/core/"}},
-      {"glint/scene/", {"glint/core/", "glint/scene/"}},
-      {"glint/render/", {"glint/core/", "glint/scene/", "glint/render/"}},
-      {"glint/cuda/",
-       {"glint/core/",
-        "glint/scene/",
-        "glint/render/",
-        "glint/train/",
-        "glint/cuda/",
-        "kernel_lists.h",  // made by the build: *_kernels.h of these folders and of baselines/
-        "glint/render/ssim_formula.h"}},
-      {"glint/method.h", {"glint/core/", "glint/scene/"}},  // what the trainer drives
-      {"glint/train/",
-       {"glint/core/",
-        "glint/scene/",
-        "glint/render/",
-        "glint/train/",
-        "glint/method.h",
-        "metrics/"}},
-      {"glint/", {"glint/", "metrics/"}},
-      {"glint/drawing/", {"glint/core/", "glint/scene/", "glint/drawing/"}},
-      {"metrics/",
-       {"glint/core/",
-        "glint/scene/maps.h",
-        "glint/scene/safetensors.h",
-        "glint/render/ssim_formula.h",
-        "metrics/"}},
-      {"metrics/mesh/", {"glint/core/", "glint/scene/camera.h", "metrics/"}},
-      {"metrics/fusion/",
-       {"glint/core/", "glint/scene/camera.h", "metrics/mesh/", "metrics/fusion/"}},
-      {"metrics/tools/",
-       {"glint/core/", "glint/scene/", "glint/drawing/", "metrics/", "datasets/"}},
-      {"baselines/",
-       {"glint/",
-        "metrics/",
-        "baselines/deferred/",
-        "baselines/planar/"}},  // and a method's own kernels
-      {"baselines/deferred/", {"glint/", "baselines/deferred/"}},
-      {"baselines/planar/", {"glint/", "baselines/deferred/", "baselines/planar/"}},
-      {"datasets/", {"glint/core/", "glint/scene/", "datasets/"}},
-      {"datasets/glassroom/", {"glint/core/", "glint/scene/", "glint/drawing/", "datasets/"}},
-      {"reports/run/code/", {"glint/core/", "reports/run/code/"}},
-      {"reports/glint_bench.cpp", {"glint/core/", "reports/verbs/"}},
-      {"reports/run/records/", below_reports({"run/records"})},
-      {"reports/show/tables/", below_reports({"run/records", "show/tables"})},
-      {"reports/show/pictures/", below_reports({"run/records", "show/pictures"})},
-      {"reports/run/bench/", below_reports({"run/records", "show/pictures", "run/bench"})},
-      {"reports/run/parcels/",
-       below_reports({"run/records", "show/pictures", "run/bench", "run/parcels"})},
-      {"reports/run/executors/", below_reports({"run/records", "run/bench", "run/executors"})},
-      {"reports/run/provenance/",
-       below_reports({"run/records", "show/pictures", "run/bench", "run/provenance"})},
-      {"reports/show/page/",
-       below_reports({"run/records", "show/tables", "show/pictures", "show/page"})},
-      {"reports/show/figures/",
-       below_reports(
-           {"run/records",
-            "show/tables",
-            "show/pictures",
-            "run/bench",
-            "show/page",
-            "run/perf",
-            "show/figures"}
-       )},
-      {"reports/run/import/",
-       below_reports({"run/records", "show/pictures", "run/bench", "run/import"})},
-      {"reports/run/perf/", below_reports({"run/records", "run/perf"})},
-      {"reports/run/selftest/",
-       below_reports({"run/records", "run/bench", "run/import", "run/selftest"})},
-      {"reports/verbs/", below_reports(folders_of_verbs())},
-      {"tests/", {"glint/", "metrics/", "baselines/", "datasets/", "reports/", "tests/"}}};
+  static const std::vector<Layer> all = [] {
+    std::vector<Layer> layers = {
+        {"glint/core/", {"glint/core/"}},
+        {"glint/scene/", {"glint/core/", "glint/scene/"}},
+        {"glint/render/", {"glint/core/", "glint/scene/", "glint/render/"}},
+        {"glint/cuda/",
+         {"glint/core/",
+          "glint/scene/",
+          "glint/render/",
+          "glint/train/",
+          "glint/cuda/",
+          "kernel_lists.h"}},  // made by the build: *_kernels.h of these folders, metrics/,
+                               // baselines/
+        {"glint/method.h", {"glint/core/", "glint/scene/"}},  // what the trainer drives
+        {"glint/train/",
+         {"glint/core/",
+          "glint/scene/",
+          "glint/render/",
+          "glint/train/",
+          "glint/method.h",
+          "metrics/"}},
+        {"glint/", {"glint/", "metrics/"}},
+        {"glint/drawing/", {"glint/core/", "glint/scene/", "glint/drawing/"}},
+        {"metrics/",
+         {"glint/core/",
+          "glint/scene/maps.h",
+          "glint/scene/safetensors.h",
+          "glint/render/ssim_formula.h",
+          "metrics/"}},
+        {"metrics/mesh/", {"glint/core/", "glint/scene/camera.h", "metrics/"}},
+        {"metrics/fusion/",
+         {"glint/core/", "glint/scene/camera.h", "metrics/mesh/", "metrics/fusion/"}},
+        {"metrics/tools/",
+         {"glint/core/", "glint/scene/", "glint/drawing/", "metrics/", "datasets/"}},
+        {"baselines/",
+         {"glint/",
+          "metrics/",
+          "baselines/deferred/",
+          "baselines/planar/"}},  // and a method's own kernels
+        {"baselines/deferred/", {"glint/", "baselines/deferred/"}},
+        {"baselines/planar/", {"glint/", "baselines/deferred/", "baselines/planar/"}},
+        {"datasets/", {"glint/core/", "glint/scene/", "datasets/"}},
+        {"datasets/glassroom/", {"glint/core/", "glint/scene/", "glint/drawing/", "datasets/"}},
+        {"reports/run/code/", {"glint/core/", "reports/run/code/"}},
+        {"reports/glint_bench.cpp", {"glint/core/", "reports/verbs/"}},
+        {"tests/", {"glint/", "metrics/", "baselines/", "datasets/", "reports/", "tests/"}}};
+    for (Layer& layer : layers_of_reports()) layers.push_back(std::move(layer));
+    return layers;
+  }();
   return all;
 }
 

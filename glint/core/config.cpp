@@ -2,52 +2,105 @@
 #include "glint/core/config.h"
 
 #include "glint/core/files.h"
+#include "glint/core/machine.h"
 
 namespace glint {
 
-bool is_nested_too_deeply(std::string_view json_text) {
-  int depth = 0;
+namespace {
+
+// What parsing a text would make, told from its brackets, colons and commas alone.
+struct JsonSize {
+  int depth = 0;                // of lists and objects inside each other
+  std::size_t most_fields = 0;  // of an object
+  std::size_t values = 0;
+};
+
+JsonSize size_of_json(std::string_view text) {
+  JsonSize size;
+  std::vector<std::size_t> fields;  // of what is open
   bool in_text = false;
-  for (std::size_t i = 0; i < json_text.size(); ++i) {
-    const char c = json_text[i];
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     if (in_text && c == '\\') {
       ++i;
     } else if (c == '"') {
       in_text = !in_text;
-    } else if (!in_text && (c == '[' || c == '{')) {
-      if (++depth > kDeepestJson) return true;
-    } else if (!in_text && (c == ']' || c == '}')) {
-      --depth;
+    } else if (in_text) {
+      continue;
+    } else if (c == '[' || c == '{') {
+      ++size.values;
+      fields.push_back(0);
+      size.depth = std::max(size.depth, static_cast<int>(fields.size()));
+      if (size.depth > kDeepestJson) return size;
+    } else if (c == ',') {
+      ++size.values;
+    } else if (c == ':' && !fields.empty()) {
+      size.most_fields = std::max(size.most_fields, ++fields.back());
+    } else if ((c == ']' || c == '}') && !fields.empty()) {
+      fields.pop_back();
     }
   }
-  return false;
+  return size;
 }
 
-void check_json_depth(std::string_view json_text, const std::filesystem::path& file) {
+// What stands against parsing it; empty: nothing.
+std::string json_problem(std::string_view text) {
+  // A field is looked for among those before it, which takes the square of their number.
+  constexpr std::size_t kMostFields = 65536;
+  constexpr double kBytesPerValue = 110;   // measured: a value, its name, its place in a list
+  constexpr std::size_t kSmall = 1 << 20;  // bytes of text that need not be asked about
+  const JsonSize size = size_of_json(text);
+  if (size.depth > kDeepestJson)
+    return fmt::format("lists and objects nested more than {} deep", kDeepestJson);
+  if (size.most_fields > kMostFields)
+    return fmt::format(
+        "an object of {} fields, expected at most {}", size.most_fields, kMostFields
+    );
+  if (text.size() < kSmall) return {};
+  const double needed = kBytesPerValue * static_cast<double>(size.values);
+  const auto available = static_cast<double>(available_memory_bytes());
+  if (needed < available) return {};
+  return fmt::format(
+      "{} values, which take {:.0f} MB of memory, {:.0f} MB are free",
+      size.values,
+      needed / 1e6,
+      available / 1e6
+  );
+}
+
+}  // namespace
+
+bool is_nested_too_deeply(std::string_view json_text) {
+  return size_of_json(json_text).depth > kDeepestJson;
+}
+
+void check_json_text(std::string_view json_text, const std::filesystem::path& file) {
+  const std::string problem = json_problem(json_text);
   GLINT_CHECK(
-      !is_nested_too_deeply(json_text),
+      problem.empty(),
       kBadReference,
-      "{}: lists and objects nested more than {} deep; it is damaged, write it again",
+      "{}: {}; it is damaged, or not what it is taken for",
       file.string(),
-      kDeepestJson
+      problem
   );
 }
 
 Json parse_json(std::string_view text) {
-  if (is_nested_too_deeply(text)) return Json(Json::value_t::discarded);
+  if (!json_problem(text).empty()) return Json(Json::value_t::discarded);
   return Json::parse(text, nullptr, false);
 }
 
 Json read_json_object(const std::filesystem::path& path, ExitCode code) {
   return with_exit_code(code, [&] {
-    Json json = parse_json(read_file(path));
+    const std::string text = read_file(path);
+    check_json_text(text, path);
+    Json json = parse_json(text);
     GLINT_CHECK(
         json.is_object(),
         kBadReference,
         "{}: {}; expected a JSON object",
         path.string(),
-        json.is_discarded() ? fmt::format("no JSON, or nested more than {} deep", kDeepestJson)
-                            : fmt::format("holds {}", json.type_name())
+        json.is_discarded() ? "no JSON" : fmt::format("holds {}", json.type_name())
     );
     return json;
   });

@@ -32,9 +32,11 @@ using Json = nlohmann::ordered_json;
 // they are copied or printed.
 inline constexpr int kDeepestJson = 100;
 bool is_nested_too_deeply(std::string_view json_text);
-// Errors (kBadReference): the file's text is nested too deeply.
-void check_json_depth(std::string_view json_text, const std::filesystem::path& file);
-// Discarded (is_discarded()) where it is no JSON, or nested too deeply.
+// Before it is parsed, which takes many times its size. Errors (kBadReference): the file's text is
+// nested too deeply, has an object of more fields than anything here has, or needs more memory than
+// there is.
+void check_json_text(std::string_view json_text, const std::filesystem::path& file);
+// Discarded (is_discarded()) where it is no JSON, or check_json_text() would not take it.
 Json parse_json(std::string_view text);
 
 // The file, which must hold a JSON object. Errors (`code`): read_file()'s, anything else in it.

@@ -7,6 +7,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/kernel.h"
+#include "glint/core/process.h"
 
 namespace glint {
 
@@ -53,7 +54,8 @@ void* allocate_on_host(std::size_t bytes) {
   const bool own = current == nullptr || current->allocate_host == nullptr;
   const std::size_t total = bytes + sizeof(BlockHeader);
   std::size_t room = total + kAlignment;
-  void* block = own ? ::operator new(room) : current->allocate_host(total);
+  void* block = own ? ::operator new(room, std::nothrow) : current->allocate_host(total);
+  if (block == nullptr) throw HostMemoryFull(bytes);
   void* start = block;
   if (own) std::align(kAlignment, total, start, room);
   return new (start) BlockHeader{own ? nullptr : current, block} + 1;

@@ -8,7 +8,9 @@
 
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <thread>
@@ -20,13 +22,28 @@
 namespace glint {
 namespace {
 
+constexpr std::string_view kForProcess = " for process ";
+
 std::string this_process() {
   std::array<char, 32> time{};
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
   ::gmtime_r(&now, &utc);
   std::strftime(time.data(), time.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return fmt::format("process {} on {} since {}", ::getpid(), host_name(), time.data());
+  const char* parent = std::getenv(kWorksFor);
+  const std::string whose = parent == nullptr ? "" : fmt::format("{}{}", kForProcess, parent);
+  return fmt::format("process {} on {} since {}{}", ::getpid(), host_name(), time.data(), whose);
+}
+
+// Of a worker of this machine whose parent has ended.
+bool is_orphan(const std::string& holder) {
+  const std::size_t at = holder.rfind(kForProcess);
+  if (at == std::string::npos || holder.find(fmt::format(" on {} since ", host_name())) > at)
+    return false;
+  int parent = 0;
+  const char* number = holder.data() + at + kForProcess.size();
+  const auto [end, error] = std::from_chars(number, holder.data() + holder.size(), parent);
+  return error == std::errc{} && parent > 0 && process_has_ended(parent);
 }
 
 std::string content_of(int descriptor) {
@@ -74,6 +91,15 @@ FileLock FileLock::wait_for(
     throw_if_interrupted();
     std::this_thread::sleep_for(kPause);
   }
+}
+
+std::variant<FileLock, std::string> FileLock::take_from_orphan(
+    const fs::path& file, const std::function<void(const std::string& holder)>& waiting
+) {
+  auto lock = take(file);
+  const auto* holder = std::get_if<std::string>(&lock);
+  if (holder == nullptr || !is_orphan(*holder)) return lock;
+  return wait_for(file, waiting);
 }
 
 fs::path FileLock::file_beside(const fs::path& folder) {

@@ -83,6 +83,16 @@ void check_exists(const fs::path& path, std::string_view what) {
   GLINT_CHECK(is_there(path), kBadReference, "{}: no such {}", path.string(), what);
 }
 
+void check_not_input(const fs::path& output, const fs::path& input) {
+  std::error_code code;
+  GLINT_CHECK(
+      output.empty() || input.empty() || !fs::equivalent(output, input, code),
+      kUsage,
+      "{}: is read, and would be written over; name another file to write",
+      output.string()
+  );
+}
+
 std::string read_file(const fs::path& path) {
   std::ifstream in = open_file(path);
   std::error_code code;

@@ -34,6 +34,9 @@ auto read_within_memory(const fs::path& path, F&& read) {
   }
 }
 
+// Errors (kUsage): `output` is the file `input`, which would be written over; empty paths are none.
+void check_not_input(const fs::path& output, const fs::path& input);
+
 // Calls `write(temporary)`, then renames to `path`; on any exception removes the temporary and
 // throws on. Creates the parent folder. Errors (kEnvironment): cannot create, write, or rename;
 // DiskFull where there was no room.

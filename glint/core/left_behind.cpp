@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "glint/core/left_behind.h"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <chrono>
-#include <fstream>
 #include <optional>
 
 #include "glint/core/error.h"
@@ -50,21 +47,9 @@ std::optional<Writer> writer_of(const std::string& name, std::string_view with_m
   return writer;
 }
 
-// What has ended and nobody has asked for yet still has its number.
-bool is_zombie(pid_t process) {
-  std::ifstream file(fmt::format("/proc/{}/stat", process));
-  std::string text;
-  std::getline(file, text);
-  const std::size_t name_end = text.rfind(')');  // "12 (a name) Z ..."
-  return name_end != std::string::npos && text.substr(name_end + 1).starts_with(" Z");
-}
-
-bool is_gone(pid_t process) {
-  return (::kill(process, 0) != 0 && errno == ESRCH) || is_zombie(process);
-}
-
 bool has_ended(const Writer& writer, const fs::directory_entry& entry) {
-  if (writer.host == host_mark()) return writer.process != ::getpid() && is_gone(writer.process);
+  if (writer.host == host_mark())
+    return writer.process != ::getpid() && process_has_ended(writer.process);
   std::error_code code;
   const auto age = fs::file_time_type::clock::now() - entry.last_write_time(code);
   return !code && age > std::chrono::hours(24);

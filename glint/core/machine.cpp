@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "glint/core/machine.h"
 
+#include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -79,6 +82,15 @@ std::uint64_t out_of_memory_kills() {
   std::uint64_t kills = 0;
   std::istringstream(proc_word("/proc/vmstat", "oom_kill")) >> kills;
   return kills;
+}
+
+bool process_has_ended(int process) {
+  if (::kill(process, 0) != 0 && errno == ESRCH) return true;
+  std::ifstream file(fmt::format("/proc/{}/stat", process));
+  std::string text;
+  std::getline(file, text);
+  const std::size_t name_end = text.rfind(')');  // "12 (a name) Z ..."
+  return name_end != std::string::npos && text.substr(name_end + 1).starts_with(" Z");
 }
 
 std::string host_name() {

@@ -31,6 +31,9 @@ std::uint64_t resident_memory_bytes();  // of this process, now
 std::uint64_t out_of_memory_kills();
 
 std::string host_name();
+// Whether no process of this machine has the number any more; one that nobody has waited for yet
+// has ended, too.
+bool process_has_ended(int process);
 
 // Highest resident memory of this process since the last reset, in megabytes (10^6 bytes).
 void reset_peak_memory();

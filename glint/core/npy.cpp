@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <optional>
 
 #include "glint/core/error.h"
 
@@ -29,18 +30,39 @@ std::string quoted(std::string_view text) {
   return std::string(text.substr(0, text.find_first_of("'\"")));
 }
 
-// "(540, 960, 3)" to numbers.
-std::vector<std::int64_t> parse_shape(std::string_view text) {
+std::string_view trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  return text.substr(0, text.find_last_not_of(' ') + 1);
+}
+
+// "(540, 960, 3)" or "(7,)" to numbers; nothing: it is no such tuple.
+std::optional<std::vector<std::int64_t>> parse_shape(std::string_view text) {
+  const std::size_t end = text.find(')');
+  if (!text.starts_with('(') || end == std::string_view::npos) return std::nullopt;
+  text = trimmed(text.substr(1, end - 1));
   std::vector<std::int64_t> shape;
-  text = text.substr(0, text.find(')'));
-  while (true) {
-    const std::size_t digit = text.find_first_of("0123456789");
-    if (digit == std::string_view::npos) return shape;
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const std::string_view word = trimmed(text.substr(0, comma));
     std::int64_t extent = 0;
-    const auto end = std::from_chars(text.data() + digit, text.data() + text.size(), extent);
-    shape.push_back(end.ec == std::errc{} ? extent : std::numeric_limits<std::int64_t>::max());
-    text.remove_prefix(static_cast<std::size_t>(end.ptr - text.data()));
+    const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), extent);
+    if (word.empty() || word[0] == '-' || last != word.data() + word.size()) return std::nullopt;
+    shape.push_back(error == std::errc{} ? extent : std::numeric_limits<std::int64_t>::max());
+    text = trimmed(text.substr(std::min(comma + 1, text.size())));
   }
+  return shape;
+}
+
+// "True" or "False", and nothing behind it but the next entry.
+std::optional<bool> parse_bool(std::string_view text) {
+  const std::string_view word = trimmed(text.substr(0, text.find_first_of(",}")));
+  if (word == "True") return true;
+  return word == "False" ? std::optional(false) : std::nullopt;
+}
+
+// Of an entry, for people: to its end, not to that of the header.
+std::string entry(std::string_view text) {
+  return std::string(trimmed(text.substr(0, std::min<std::size_t>(40, text.find("}")))));
 }
 
 }  // namespace
@@ -62,10 +84,28 @@ NpyHeader parse_npy_header(std::string_view file, std::string_view where) {
     length |= std::size_t{static_cast<unsigned char>(file[8 + i])} << (8 * i);
   check_complete(file.size() - 8 - length_bytes >= length, "it ends inside the header");
   const std::string_view dictionary = file.substr(8 + length_bytes, length);
+  const std::string_view shape_text = value_of(dictionary, "shape", where);
+  const auto shape = parse_shape(shape_text);
+  GLINT_CHECK(
+      shape,
+      kBadReference,
+      "{}: the NPY header's 'shape' is {}; expected whole numbers, such as (540, 960, 3)",
+      where,
+      entry(shape_text)
+  );
+  const std::string_view order_text = value_of(dictionary, "fortran_order", where);
+  const auto fortran_order = parse_bool(order_text);
+  GLINT_CHECK(
+      fortran_order,
+      kBadReference,
+      "{}: the NPY header's 'fortran_order' is {}; expected True or False",
+      where,
+      entry(order_text)
+  );
   return {
       quoted(value_of(dictionary, "descr", where)),
-      parse_shape(value_of(dictionary, "shape", where)),
-      value_of(dictionary, "fortran_order", where).starts_with("True"),
+      *shape,
+      *fortran_order,
       8 + length_bytes + length};
 }
 

@@ -60,11 +60,14 @@ const ValueType& find_type(const fs::path& path, const std::string& name) {
 
 detail::ClaimedSize image_size(const fs::path& path, const NpyHeader& header) {
   const std::vector<std::int64_t>& shape = header.shape;
-  const bool usable = shape.size() == 2 || (shape.size() == 3 && shape[2] >= 1 && shape[2] <= 4);
+  // Two channels are no picture's: grey with alpha, say, or flow.
+  const bool usable =
+      shape.size() == 2 || (shape.size() == 3 && shape[2] >= 1 && shape[2] <= 4 && shape[2] != 2);
   GLINT_CHECK(
       usable,
       kBadReference,
-      "{}: shape ({}); expected (height, width) or (height, width, channels) with 1 to 4 channels",
+      "{}: shape ({}); expected (height, width) or (height, width, channels) with 1, 3 or 4 "
+      "channels",
       path.string(),
       fmt::join(shape, ", ")
   );
@@ -92,7 +95,7 @@ Image detail::read_npy(const fs::path& path) {
   const ClaimedSize size = image_size(path, header);
   check_claimed_size(path, size, file.size());
   const auto stored = static_cast<std::size_t>(size.channels);
-  const std::size_t kept = stored < 3 ? 1 : 3;  // alpha is dropped
+  const std::size_t kept = std::min<std::size_t>(stored, 3);  // alpha is dropped
   Image image(static_cast<int>(size.width), static_cast<int>(size.height), static_cast<int>(kept));
   const std::size_t expected = image.num_pixels() * stored * type.bytes;
   if (file.size() - header.values_at != expected)

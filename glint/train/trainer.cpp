@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -299,7 +300,8 @@ class Training {
 
 int scaled_step(int published, int iterations, int at_least, int of) {
   const double scaled = static_cast<double>(published) * iterations / of;
-  return std::max(at_least, static_cast<int>(std::lround(scaled)));
+  const double most = std::numeric_limits<int>::max() / 2;  // sums of two fit
+  return std::max(at_least, static_cast<int>(std::lround(std::min(scaled, most))));
 }
 
 ViewSampler::ViewSampler(std::size_t num_views, std::uint64_t seed)

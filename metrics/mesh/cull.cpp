@@ -108,9 +108,29 @@ void check_length(double value, const char* name) {
   );
 }
 
+// Parts of all faces, n^2 each, have to be as many as one can hold: before they are made.
+void check_parts(const TriangleMesh& mesh, double max_edge_m) {
+  constexpr double kMostFaces = 1e8;
+  double faces = 0;
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const double n = num_parts(corners_of(mesh, i), max_edge_m);
+    faces += n * n;
+  }
+  GLINT_CHECK(
+      faces <= kMostFaces,
+      kUsage,
+      "culling: with max_edge_m (--max-edge) {} the mesh would have {:.2g} faces, expected at most "
+      "{:.0g}; use longer edges",
+      max_edge_m,
+      faces,
+      kMostFaces
+  );
+}
+
 }  // namespace
 
 TriangleMesh split_long_faces(const TriangleMesh& mesh, double max_edge_m) {
+  check_parts(mesh, max_edge_m);
   TriangleMesh split{mesh.vertices, {}, {}};
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     const Corners corners = corners_of(mesh, i);

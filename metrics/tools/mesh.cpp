@@ -7,6 +7,7 @@
 
 #include "datasets/released_truth.h"
 #include "glint/core/error.h"
+#include "glint/core/machine.h"
 #include "glint/core/parallel.h"
 #include "glint/core/presence.h"
 #include "glint/core/progress.h"
@@ -175,7 +176,22 @@ std::vector<double> curve_thresholds(double last) {
   return thresholds;
 }
 
+// Before anything is drawn: points, normals, distances and the trees over them.
+void check_samples(std::size_t num_samples) {
+  constexpr double kBytesPerSample = 600;
+  const double needed = kBytesPerSample * static_cast<double>(num_samples);
+  const auto available = static_cast<double>(available_memory_bytes());
+  if (needed > available)
+    throw OutOfMemory(fmt::format(
+        "--samples {} needs about {:.1f} GB, {:.1f} GB are free; use fewer",
+        num_samples,
+        needed / 1e9,
+        available / 1e9
+    ));
+}
+
 void score(MeshReport& report) {
+  check_samples(report.protocol.num_samples);
   const Surface &prediction = report.prediction.surface, &reference = report.reference.surface;
   log::info(fmt::format("measuring {} samples of either surface", report.protocol.num_samples));
   const SurfaceDistances distances = surface_distances(prediction, reference, report.protocol);
@@ -184,6 +200,12 @@ void score(MeshReport& report) {
   report.curve = f1_curve(
       distances, curve_thresholds(*std::max_element(thresholds.begin(), thresholds.end()))
   );
+}
+
+void check_outputs(const MeshReport& report, const MeshToolOptions& options) {
+  for (const fs::path* output : {&options.colored, &options.colored_reference, &options.curve})
+    for (const SurfaceInput* input : {&report.prediction, &report.reference})
+      check_not_input(*output, input->path);
 }
 
 void write_pictures(MeshReport& report, const MeshToolOptions& options) {
@@ -201,6 +223,7 @@ void run(MeshToolOptions& options, std::ostream& out) {
   set_quiet(options.quiet);
   if (options.threads > 0) set_num_threads(options.threads);
   MeshReport report = load_surfaces(options);
+  check_outputs(report, options);
   cull(report, options);
   score(report);
   write_pictures(report, options);

@@ -318,6 +318,7 @@ int run_program(
     return static_cast<int>(code);
   };
   ignore_file_size_signal();
+  fill_standard_streams();
   try {
     if (args.empty()) {
       err << app.help();
@@ -330,10 +331,8 @@ int run_program(
     if (app.exit(error, out, err) != 0) return static_cast<int>(ExitCode::kUsage);
   } catch (const Error& error) {
     return fail(error.what(), error.code());
-  } catch (const std::bad_alloc&) {
-    return fail(kOutOfMemory, ExitCode::kEnvironment);
   } catch (const std::exception& error) {
-    return fail(error.what(), ExitCode::kEnvironment);
+    return fail(out_of_memory_message(error).value_or(error.what()), ExitCode::kEnvironment);
   }
   out.flush();
   return out.good() ? static_cast<int>(ExitCode::kSuccess)
@@ -371,6 +370,12 @@ MaskImage load_mask(const fs::path& path, ImageSize size) {
       size.width,
       size.height
   );
+  if (has_alpha(path) && std::ranges::all_of(mask.values(), [](auto value) { return value != 0; }))
+    log::warn(fmt::format(
+        "{}: white throughout, so that every pixel counts, and has an alpha channel, which is not "
+        "looked at: if it holds the mask, write that as the picture itself",
+        path.string()
+    ));
   return mask;
 }
 

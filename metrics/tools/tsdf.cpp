@@ -146,6 +146,29 @@ void print_report(const TsdfArguments& a, const TsdfReport& report, std::ostream
   );
 }
 
+// A file of the dataset, such as its true mesh, is not what a mesh is written over.
+bool lies_in(const fs::path& file, const fs::path& folder) {
+  std::error_code code;
+  const fs::path inside =
+      fs::weakly_canonical(file, code).lexically_relative(fs::weakly_canonical(folder, code));
+  return !inside.empty() && *inside.begin() != "..";
+}
+
+void check_destination(const TsdfArguments& a, const std::vector<Source>& sources) {
+  const fs::path out = a.out;
+  GLINT_CHECK(out.extension() == ".ply", kUsage, "{}: a mesh is written as .ply", a.out);
+  for (const Source& source : sources)
+    for (const fs::path& input : {source.depth, source.rgb, source.mask})
+      check_not_input(out, input);
+  GLINT_CHECK(
+      !is_there(out) || !lies_in(out, a.dataset),
+      kUsage,
+      "{}: is a file of the dataset {}; name another file to write",
+      a.out,
+      a.dataset
+  );
+}
+
 void run(TsdfArguments& a, std::ostream& out) {
   set_quiet(a.quiet);
   if (a.threads > 0) set_num_threads(a.threads);
@@ -156,6 +179,7 @@ void run(TsdfArguments& a, std::ostream& out) {
   LoadOptions load;
   load.with_truth = load.with_priors = false;
   const std::vector<Source> sources = find_sources(a, load_scene(a.dataset, load));
+  check_destination(a, sources);
   TsdfReport report;
   const auto view = [&](std::size_t i) { return load_source(sources[i], a.ray); };
   write_mesh_ply(a.out, fuse_depth(view, sources.size(), a.options, &report));

@@ -228,6 +228,7 @@ void describe_out(CLI::App& verb, const std::string& meaning) {
 
 int run_command_line(int argc, const char* const* argv) {
   ignore_file_size_signal();
+  fill_standard_streams();
   CommandLine line;
   try {
     const int code = parse_and_run(line, argc, argv);
@@ -239,10 +240,9 @@ int run_command_line(int argc, const char* const* argv) {
   } catch (const Interrupted&) {
     log::warn("interrupted: what was begun is not complete");
     return interrupted_exit();
-  } catch (const std::bad_alloc&) {
-    return report_error(std::string(kOutOfMemory), ExitCode::kEnvironment);
   } catch (const std::exception& error) {
-    return report_error(error.what(), ExitCode::kEnvironment);
+    const std::string message = out_of_memory_message(error).value_or(error.what());
+    return report_error(message, ExitCode::kEnvironment);
   }
 }
 

@@ -176,11 +176,14 @@ void add_cell_run_options(CLI::App& verb, CellRunOptions& options) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
   const char* time_limit = "of a cell: 90s, 30m, 4h; its checkpoint stays";
-  verb.add_option("--time-limit", options.time_limit, time_limit);
+  const auto is_given = [](const std::string& text) {
+    return text.empty() ? "expected a time as 90s, 30m, 4h or 2d" : "";
+  };
+  verb.add_option("--time-limit", options.time_limit, time_limit)->check(is_given);
   const char* time_for_all =
       "of all cells: none begins that would not end in it, those that run then stop with "
       "checkpoints";
-  verb.add_option("--for", options.time_for_all, time_for_all);
+  verb.add_option("--for", options.time_for_all, time_for_all)->check(is_given);
   const char* failures = "no cell begins after so many have failed; 0: any number";
   verb.add_option("--max-failures", options.max_failures, failures)->check(at_least_zero());
   const char* parcels =

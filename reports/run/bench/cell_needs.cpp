@@ -2,6 +2,7 @@
 #include "reports/run/bench/cell_needs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "glint/core/error.h"
@@ -42,6 +43,33 @@ double training_bytes(const MemoryUser& user, const SceneSize& scene) {
   const double seen = std::max(scene.points, pixels / kPixelsPerSurfel);
   const double surfels = std::min(double(user.max_surfels), seen);
   return kBytesPerPixel * pixels + kSets * kBytesPerSurfel * surfels;
+}
+
+// What a setting asks for by its number.
+struct Asked {
+  const char* setting;
+  double bytes;
+};
+
+// A value, its gradient and its two moments.
+constexpr double kBytesPerTrained = 4 * sizeof(float);
+// Of a value of a network's layer at a pixel: itself and its gradient, in two layers and their
+// sums.
+constexpr double kBytesPerHidden = 8 * sizeof(float);
+
+// The setting that asks for most. Settings that a method does not have ask for nothing.
+Asked asked_by_settings(const Json& config, const SceneSize& scene) {
+  const auto value = [&](const char* name) { return number_or(config, name, 0); };
+  const double pixels = scene.view_pixels, rows = value("map_height");
+  const double cells = std::pow(value("reflection_cells"), 3);
+  const double grid = std::min(cells, value("reflection_points_per_pixel") * pixels);
+  const Asked all[] = {
+      {"random_points", scene.points > 0 ? 0 : kBytesPerSurfel * value("random_points")},
+      {"reflection_cells", kBytesPerSurfel * grid},
+      {"map_height", kBytesPerTrained * 2 * rows * rows * value("map_channels")},
+      {"hidden",
+       value("hidden") * (kBytesPerHidden * pixels + kBytesPerTrained * value("hidden"))}};
+  return *std::ranges::max_element(all, {}, &Asked::bytes);
 }
 
 std::string gib(double bytes) { return fmt::format("{:.2f} GiB", bytes / (1 << 30)); }
@@ -88,7 +116,12 @@ double bytes_of_run(const fs::path& run) {
 MemoryUser memory_user(const std::string& method, const Json& config, const Profile& profile) {
   const Json resolved = create_method(method, config)->config();
   const auto max_surfels = resolved.value("max_surfels", std::numeric_limits<std::size_t>::max());
-  return {method, max_surfels, profile.mesh_protocol().num_samples, profile.tsdf_options().voxel};
+  return {
+      method,
+      max_surfels,
+      profile.mesh_protocol().num_samples,
+      profile.tsdf_options().voxel,
+      resolved};
 }
 
 SceneSize size_of(const Scene& scene) {
@@ -125,7 +158,9 @@ double bytes_taken(const Record& record) {
   return std::max(trained, record.process_memory_mb) * 1e6;
 }
 
-Estimate estimate_memory(
+namespace {
+
+Estimate estimate_by_stages(
     const MemoryUser& user, const SceneSize& scene, const std::vector<Record>& records
 ) {
   double most = 0;
@@ -143,6 +178,18 @@ Estimate estimate_memory(
   return largest;
 }
 
+}  // namespace
+
+Estimate estimate_memory(
+    const MemoryUser& user, const SceneSize& scene, const std::vector<Record>& records
+) {
+  const Estimate stages = estimate_by_stages(user, scene, records);
+  const Asked asked = asked_by_settings(user.config, scene);
+  if (asked.bytes <= stages.bytes) return stages;
+  const std::string by = fmt::format("{} = {}", asked.setting, user.config[asked.setting].dump());
+  return {asked.bytes + kProgramBytes + scene.image_bytes, by};
+}
+
 double estimate_device_bytes(const MemoryUser& user, const SceneSize& scene) {
   return training_bytes(user, scene) + scene.image_bytes;
 }
@@ -156,8 +203,9 @@ double device_bytes_of_process(double bytes_in_use) {
 void check_fits(const Estimate& estimate, std::uint64_t available) {
   if (estimate.bytes <= static_cast<double>(available)) return;
   throw OutOfMemory(fmt::format(
-      "needs about {} (by {}), {} are free; fewer --jobs, a smaller max_pixels of the scene or "
-      "max_surfels of the method",
+      "needs about {} (by {}), {} are free; lower that setting where it is one; else fewer --jobs, "
+      "a "
+      "smaller max_pixels of the scene or max_surfels of the method",
       gib(estimate.bytes),
       estimate.from,
       gib(static_cast<double>(available))

@@ -22,6 +22,7 @@ struct MemoryUser {
   std::size_t max_surfels = 0;   // of a set
   std::size_t mesh_samples = 0;  // points on each mesh that is scored
   double voxel = 0;              // metres, of the fusion of meshes; 0: the views choose it
+  Json config;                   // the method's settings: some ask for memory by their number
 };
 // Of a method with these overrides (PlanCell) in a profile.
 MemoryUser memory_user(const std::string& method, const Json& config, const Profile& profile);
@@ -39,7 +40,8 @@ SceneSize size_of(const SceneSource& room);
 
 // By what cells of this method took at this size of images, where `records` has some; else by the
 // images of the scene, and the largest of: the surfels that it begins with, or will have; the
-// fusion of its meshes in a room; the scores of the meshes.
+// fusion of its meshes in a room; the scores of the meshes. A setting that asks for more by its
+// number than all of these take is what it goes by.
 Estimate estimate_memory(
     const MemoryUser& user, const SceneSize& scene, const std::vector<Record>& records
 );

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "glint/core/error.h"
+#include "glint/core/file_lock.h"
 
 namespace glint {
 namespace {
@@ -127,7 +128,9 @@ ProcessEnd end_of(int status) {
 }  // namespace
 
 ChildProcess::ChildProcess(const Words& words, const Words& settings) {
-  const std::vector<std::string> environment = environment_with(settings);
+  Words with_parent = settings;
+  with_parent.push_back(fmt::format("{}={}", kWorksFor, ::getpid()));
+  const std::vector<std::string> environment = environment_with(with_parent);
   Words shown = words;
   if (words.at(0) == kThisProgram) shown[0] = program_invocation_short_name;
   const auto word_pointers = pointers_to(shown), environment_pointers = pointers_to(environment);

@@ -10,7 +10,7 @@ namespace {
 
 // For a misspelt scene or method of --only.
 std::string hint_for(const Profile& profile, const CellFilter& filter) {
-  std::vector<std::string> known = profile.methods;
+  std::vector<std::string> known = named_methods(profile.methods);
   for (const SceneSource& source : profile.sources()) known.push_back(source.scene);
   for (const std::string& pattern : filter.only)
     if (const std::string nearest = nearest_word(pattern, known); !nearest.empty())
@@ -46,7 +46,8 @@ bool fits_any(
 void check_left_out(
     const Profile& profile, const CellFilter& filter, std::vector<std::string> methods
 ) {
-  methods.insert(methods.end(), profile.methods.begin(), profile.methods.end());
+  const std::vector<std::string> named = named_methods(profile.methods);
+  methods.insert(methods.end(), named.begin(), named.end());
   const auto sources = profile.sources();
   const auto check = [&](const std::vector<std::string>& patterns, const std::string& where) {
     for (const std::string& pattern : patterns)

@@ -58,7 +58,10 @@ class Runner {
       return true;
     }
     if (!options_.announced) log::info(place + cell.cell.text());
-    const auto lock = FileLock::take(FileLock::file_beside(run_folder(options_.out, cell.cell)));
+    const auto lock = FileLock::take_from_orphan(
+        FileLock::file_beside(run_folder(options_.out, cell.cell)),
+        [](const std::string& holder) { log::info("  waiting until an orphan ends: " + holder); }
+    );
     if (const auto* holder = std::get_if<std::string>(&lock)) {
       log::info("  left to " + *holder);
       return false;

@@ -85,9 +85,22 @@ std::vector<Record> chosen_records(const std::vector<Record>& records, const Cel
   return chosen;
 }
 
+std::vector<std::string> named_methods(const std::vector<std::string>& names) {
+  std::vector<std::string> methods;
+  for (const std::string& name : names) {
+    const bool is_glob = name.find_first_of("*?[") != std::string::npos;
+    const auto found = is_glob ? matching_ids(registered_methods(), name) : std::vector{name};
+    GLINT_CHECK(!found.empty(), kUsage, "methods: {} fits no method", name);
+    for (const std::string& id : found)
+      if (std::ranges::find(methods, id) == methods.end()) methods.push_back(id);
+  }
+  return methods;
+}
+
 std::vector<std::string> planned_methods(
-    const std::vector<std::string>& of_profile, const std::vector<std::string>& globs
+    const std::vector<std::string>& names, const std::vector<std::string>& globs
 ) {
+  const std::vector<std::string> of_profile = named_methods(names);
   if (globs.empty()) return of_profile;
   std::vector<std::string> methods;
   for (const std::string& glob : globs) {

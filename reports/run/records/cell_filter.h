@@ -28,10 +28,15 @@ bool filter_accepts(const CellFilter& filter, const CellKey& cell);
 // or no record is left; both say what there is.
 std::vector<Record> chosen_records(const std::vector<Record>& records, const CellFilter& filter);
 
-// What `all` runs of a profile with these methods: of each glob the profile's that match; where
-// none does, the program's. Without globs the profile's. Errors (kUsage): a glob fits no method.
+// The methods of a profile: ids, and of a glob ("glint/no-*") all of this program that it fits.
+// Errors (kUsage): a glob fits none.
+std::vector<std::string> named_methods(const std::vector<std::string>& names);
+
+// What `all` runs of a profile with these methods (named_methods): of each glob the profile's that
+// match; where none does, the program's. Without globs the profile's. Errors (kUsage): a glob fits
+// no method.
 std::vector<std::string> planned_methods(
-    const std::vector<std::string>& of_profile, const std::vector<std::string>& globs
+    const std::vector<std::string>& names, const std::vector<std::string>& globs
 );
 
 }  // namespace glint

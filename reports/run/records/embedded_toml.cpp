@@ -33,6 +33,16 @@ bool has_long_key(std::string_view text) {
 }  // namespace
 
 Json json_from_toml(std::string_view text, std::string_view where) {
+  // A key is looked for among those before it, which takes the square of their number.
+  constexpr std::size_t kMostBytes = 1 << 19;
+  GLINT_CHECK(
+      text.size() <= kMostBytes,
+      kUsage,
+      "{}: {} bytes, expected at most {}; it is no file of settings",
+      where,
+      text.size(),
+      kMostBytes
+  );
   GLINT_CHECK(!has_long_key(text), kUsage, "{}: a key of more than 100 parts", where);
   try {
     std::ostringstream json;

@@ -2,8 +2,8 @@
 #include "reports/run/records/failure_kinds.h"
 
 #include <algorithm>
-#include <new>
 
+#include "glint/core/process.h"
 #include "glint/train/checkpoint.h"
 #include "reports/run/records/run_folder.h"
 
@@ -38,7 +38,7 @@ const FailureKind& failure_kind_of(std::string_view id) {
 }
 
 std::string_view failure_kind(const std::exception& error, std::string_view stage) {
-  if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const OutOfMemory*>(&error))
+  if (out_of_memory_message(error) || dynamic_cast<const OutOfMemory*>(&error))
     return failure::kOutOfMemory;
   if (dynamic_cast<const DiskFull*>(&error)) return failure::kDiskFull;
   if (dynamic_cast<const MissingWeights*>(&error)) return failure::kMissingWeights;

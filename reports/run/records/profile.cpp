@@ -95,20 +95,22 @@ void check_numbers(const Profile& profile, const std::string& where) {
   check_least(where, "test_psnr_every", profile.test_psnr_every, 0);
   check_least(where, "timing_frames", profile.timing_frames, 1);
   check_least(where, "timing_warmup", profile.timing_warmup, 0);
+  check_least(where, "gpus", profile.gpus, 0);
 }
 
 // What no room can be made with, and pictures cannot be shrunk to.
 void check_sizes(const SceneSource& source, const std::string& where) {
-  constexpr int kMostSide = 65535;  // pixels, as of image files
+  constexpr int kLeastSide = 8, kMostSide = 8192;  // pixels, as of rooms that are made
   constexpr double kLeastRatio = 0.001;
   for (const auto& [field, pixels] : {std::pair{"width", source.width}, {"height", source.height}})
     GLINT_CHECK(
-        pixels >= 1 && pixels <= kMostSide,
+        pixels >= kLeastSide && pixels <= kMostSide,
         kUsage,
-        "{}: {} is {}; expected 1 to {} pixels",
+        "{}: {} is {}; expected {} to {} pixels",
         where,
         field,
         pixels,
+        kLeastSide,
         kMostSide
     );
   check_least(where, "views", source.views, 1);

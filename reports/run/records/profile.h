@@ -64,7 +64,7 @@ struct SceneSource {
 struct Profile {
   std::string name, description;
   int iterations = 1000;               // of every method
-  std::vector<std::string> methods;    // ids
+  std::vector<std::string> methods;    // ids, globs of them (named_methods)
   std::vector<std::string> leave_out;  // globs of cells, as of --skip, that are none of its
   std::vector<std::uint64_t> seeds{0};
   int timing_frames = 50, timing_warmup = 5;
@@ -81,7 +81,7 @@ struct Profile {
   void visit(V&& v) {
     v("description", description, "one line");
     v("iterations", iterations, "training steps");
-    v("methods", methods, "method ids");
+    v("methods", methods, "method ids, globs of them");
     v("leave_out", leave_out, "globs of cells that it does not have, as of --skip");
     v("seeds", seeds, "seeds of training");
     v("timing_frames", timing_frames, "frames timed for FPS");

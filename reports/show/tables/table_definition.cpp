@@ -57,7 +57,8 @@ struct TableKeys {
     v("dataset_title", table.dataset_title, "its name as printed");
     v("paper_table", table.paper_table, "number of the paper's table");
     v("paper_datasets", table.paper_datasets, "published column groups");
-    v("leave_out", table.leave_out, "methods that other tables show; all others have rows");
+    v("leave_out", table.leave_out, "globs of methods that other tables show; all others have rows"
+    );
     v("rows", rows, "methods");
     v("columns", columns, "metrics");
   }

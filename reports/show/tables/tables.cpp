@@ -8,6 +8,7 @@
 #include <set>
 
 #include "glint/method.h"
+#include "reports/run/records/cell_filter.h"
 #include "reports/run/records/manifest.h"
 #include "reports/show/tables/method_title.h"
 #include "reports/show/tables/published.h"
@@ -99,11 +100,13 @@ std::vector<TableRowDefinition> rows_of(
     const TableDefinition& definition, const std::vector<Record>& records
 ) {
   std::vector<TableRowDefinition> rows = definition.rows;
-  std::set<std::string> listed(definition.leave_out.begin(), definition.leave_out.end());
+  std::set<std::string> listed;
   for (const TableRowDefinition& row : rows) listed.insert(row.method);
   std::set<std::string> extra;
   for (const Record& record : records)
-    if (!listed.contains(record.cell.method)) extra.insert(record.cell.method);
+    if (!listed.contains(record.cell.method) &&
+        !any_glob_matches(definition.leave_out, record.cell.method))
+      extra.insert(record.cell.method);
   for (const std::string& method : extra) rows.push_back({method, method_title(method), ""});
   for (TableRowDefinition& row : rows) {
     if (is_imported(records, row.method)) row.title += " (renders imported)";

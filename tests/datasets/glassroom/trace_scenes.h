@@ -7,14 +7,10 @@
 #include <string>
 
 #include "datasets/glassroom/path_tracer.h"
+#include "datasets/glassroom/shapes.h"
 #include "datasets/glassroom/trace_scene.h"
 
 namespace glint::test {
-
-inline int add_material(TraceScene& scene, const Material& material) {
-  scene.materials.push_back(material);
-  return static_cast<int>(scene.materials.size()) - 1;
-}
 
 inline Material diffuse(float albedo) {
   Material m;

@@ -150,6 +150,19 @@ TEST_CASE("JSON that is nested too deeply is none") {
   CHECK(parse_json(nested(10'000'000)).is_discarded());
   CHECK(parse_json("{\"a\": \"" + nested(1000) + "\\\"[\"}").is_object());  // in a text
   CHECK_THROWS_WITH(
-      check_json_depth(nested(101), "x.json"), Catch::Contains("x.json: lists and objects nested")
+      check_json_text(nested(101), "x.json"), Catch::Contains("x.json: lists and objects nested")
+  );
+}
+
+TEST_CASE("JSON of more fields in an object than anything has is refused before it is parsed") {
+  const auto object = [](int fields) {
+    std::string text = "[{";
+    for (int i = 0; i < fields; ++i) text += fmt::format("{}\"{}\":0", i > 0 ? "," : "", i);
+    return text + "}]";
+  };
+  CHECK(parse_json(object(60000)).is_array());
+  CHECK(parse_json(object(70000)).is_discarded());
+  CHECK_THROWS_WITH(
+      check_json_text(object(70000), "x.json"), Catch::Contains("x.json: an object of 70000 fields")
   );
 }

@@ -71,3 +71,38 @@ TEST_CASE("A folder that may not be made is named with the reason") {
   }
   fs::permissions(folder.path(), fs::perms::owner_all);
 }
+
+TEST_CASE("A worker whose parent was killed is waited for, any other one is not") {
+  const test::TempFolder folder;
+  const fs::path file = folder.path() / "lock";
+  const pid_t ended = ::fork();
+  if (ended == 0) ::_exit(0);
+  ::waitpid(ended, nullptr, 0);
+  const auto take_beside_worker_of = [&](pid_t parent, bool& waited) {
+    int ready[2];
+    REQUIRE(::pipe(ready) == 0);
+    const pid_t worker = ::fork();
+    if (worker == 0) {
+      ::setenv(kWorksFor, std::to_string(parent).c_str(), 1);
+      {
+        const auto lock = FileLock::take(file);
+        [[maybe_unused]] const ssize_t told = ::write(ready[1], "x", 1);
+        ::usleep(200000);
+      }
+      ::_exit(0);
+    }
+    char byte = 0;
+    REQUIRE(::read(ready[0], &byte, 1) == 1);
+    const auto lock = FileLock::take_from_orphan(file, [&](const std::string& holder) {
+      waited = holder.find(" for process ") != std::string::npos;
+    });
+    const bool taken = std::holds_alternative<FileLock>(lock);
+    ::waitpid(worker, nullptr, 0);
+    return taken;
+  };
+  bool waited = false;
+  CHECK_FALSE(take_beside_worker_of(::getpid(), waited));
+  CHECK_FALSE(waited);
+  CHECK(take_beside_worker_of(ended, waited));
+  CHECK(waited);
+}

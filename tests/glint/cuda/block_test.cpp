@@ -15,11 +15,11 @@ using gpu::kWarp;
 
 namespace {
 
-constexpr int kThreads = 96;
+constexpr int kBlockSize = 96;
 
-// Each thread's number of `in`, [blocks][kThreads]: what warps make of it.
+// Each thread's number of `in`, [blocks][kBlockSize]: what warps make of it.
 struct AskWarps {
-  static constexpr int kThreads = ::kThreads;
+  static constexpr int kThreads = kBlockSize;
   struct Shared {
     int values[kThreads];
   };
@@ -76,9 +76,9 @@ void check_sums() {
 }  // namespace
 
 TEST_CASE("Warps vote, broadcast, match and sum in any order of the threads") {
-  constexpr int kBlocks = 3, kWarps = kBlocks * kThreads / kWarp;
+  constexpr int kBlocks = 3, kWarps = kBlocks * kBlockSize / kWarp;
   Rng rng(5);
-  std::vector<int> in(kBlocks * kThreads);
+  std::vector<int> in(kBlocks * kBlockSize);
   for (int& v : in) v = static_cast<int>(rng.uniform(0, 9));
   for (const std::uint64_t order : {0, 1, 2, 3}) {
     const HostOrder in_order(order);

@@ -194,6 +194,21 @@ TEST_CASE("NPY of other types and a batch of bad headers") {
   message(npy_file(overflow, bytes));
 }
 
+TEST_CASE("an NPY header is what NumPy writes, and not something that looks like it") {
+  const TempFolder folder;
+  const std::string bytes(static_cast<std::size_t>(4) * 5 * 3 * 4, '\0');
+  const auto message = [&](const std::string& shape, const std::string& order = "False") {
+    std::string dictionary = npy_dictionary("<f4", shape);
+    dictionary.replace(dictionary.find("False"), 5, order);
+    write_file(folder / "x.npy", npy_file(dictionary, bytes));
+    return bad_reference([&] { read_image(folder / "x.npy"); });
+  };
+  for (const char* shape : {"(-4, 5, -3)", "(4e5, 3)", "('4','5','3')", "4, 5, 3", "(4, , 3)"})
+    CHECK_THAT(message(shape), Contains("x.npy: the NPY header's 'shape' is "));
+  CHECK_THAT(message("(4, 5, 3)", "Falsehood"), Contains("'fortran_order' is Falsehood"));
+  CHECK_THAT(message("(6, 5, 2)"), Contains("shape (6, 5, 2); expected (height, width)"));
+}
+
 TEST_CASE("NPY arrays in Fortran order are read as those in C order") {
   const TempFolder folder;
   // [2][3][3], value 100 y + 10 x + c in 8 bits, once with the last index fastest and once the

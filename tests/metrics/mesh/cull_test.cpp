@@ -135,3 +135,11 @@ TEST_CASE("splitting keeps area, orientation and short faces") {
   for (const Vec3f& normal : face_normals(split)) CHECK(normal.z == Approx(1));
   CHECK(split_long_faces(unit_square(0), 1e-9).faces.size() == 2 * 64 * 64);
 }
+
+TEST_CASE("a mesh that would be split into more faces than one can hold is refused before that") {
+  const TriangleMesh mesh = parallelogram({0, 0, 0}, {4, 0, 0}, {0, 3, 0}, 200, 200);
+  CHECK_THROWS_WITH(
+      split_long_faces(mesh, 1e-9), Catch::Contains("with max_edge_m (--max-edge) 1e-09")
+  );
+  CHECK_NOTHROW(split_long_faces(unit_square(0), 1e-9));  // 64 parts of an edge at most
+}

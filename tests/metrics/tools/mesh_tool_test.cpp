@@ -307,3 +307,20 @@ TEST_CASE("glint-mesh refuses thresholds beyond the largest distance, repeated o
       pair.run({"--max-distance", "0"}).err, Contains("--max-distance: '0' must be above 0\n")
   );
 }
+
+TEST_CASE("glint-mesh writes over nothing that it reads, and asks for no more than there is") {
+  const Pair pair;
+  const std::string before = read_file(pair.pred);
+  for (const std::string option : {"--colored", "--colored-reference"})
+    for (const std::string& input : {pair.pred, pair.ref}) {
+      const Result result = pair.run({option, input});
+      CHECK(result.code == 1);
+      CHECK_THAT(result.err, Contains("is read, and would be written over"));
+    }
+  CHECK(read_file(pair.pred) == before);
+  CHECK_THAT(pair.run({"--seed", ""}).err, Contains("--seed is empty"));
+  std::ostringstream out, err;
+  CHECK(run_mesh_tool({pair.pred, pair.ref, "--quiet", "--samples", "1000000000"}, out, err) == 6);
+  CHECK_THAT(err.str(), Contains("--samples 1000000000 needs about 600.0 GB"));
+  CHECK(run_mesh_tool({pair.pred, pair.ref, "--samples", "18446744073709551615"}, out, err) == 1);
+}

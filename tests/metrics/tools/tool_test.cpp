@@ -530,6 +530,31 @@ TEST_CASE("numbers on the command line are finite") {
   }
 }
 
+TEST_CASE("counts on the command line are no more than can be counted") {
+  const Result result = depth_tool({"a", "b", "--threads", "2000000000"});
+  CHECK(result.code == 1);
+  CHECK_THAT(
+      result.err, Catch::Contains("--threads is 2000000000") && Catch::Contains("1000000000")
+  );
+}
+
+TEST_CASE("a mask that leaves nothing out but may be in alpha is told of") {
+  const test::TempFolder folder;
+  // 4 x 3 pixels, white, grey with alpha.
+  constexpr unsigned char kWhite[] = {
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
+      0x52, 0x00, 0x00, 0x00, 0x04, 0x00, 0x00, 0x00, 0x03, 0x08, 0x04, 0x00, 0x00, 0x00, 0x1e,
+      0xfd, 0x66, 0x4d, 0x00, 0x00, 0x00, 0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0xf8,
+      0xdf, 0x00, 0x81, 0x0c, 0x18, 0x0c, 0x00, 0xf5, 0x73, 0x11, 0xf5, 0x29, 0x63, 0x55, 0xa9,
+      0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+  write_file(folder / "mask.png", std::string(std::begin(kWhite), std::end(kWhite)));
+  write_png(folder / "a.png", Image(4, 3, 3, 0.5f));
+  const Result result =
+      psnr_tool({folder / "a.png", folder / "a.png", "--mask", folder / "mask.png"});
+  CHECK(result.code == 0);
+  CHECK(load_mask(folder / "mask.png", {4, 3}).at(0, 0) == 255);
+}
+
 TEST_CASE("names in CSV are no formulas, and messages show what a terminal would obey") {
   const test::TempFolder folder;
   for (const char* name : {"=1+1.png", "x.png"}) {

@@ -123,3 +123,14 @@ TEST_CASE("glint-tsdf says what is wrong with its inputs, and writes no mesh") {
       "mask of 5 x 5"
   );
 }
+
+TEST_CASE("glint-tsdf writes over nothing that it reads and no file of the dataset") {
+  const Maps maps;
+  const auto written_to = [&](const std::string& out) {
+    const Outcome outcome = run({maps.path("maps/*_z.exr"), maps.room(), "-o", out});
+    CHECK(outcome.code == 1);
+    return outcome.err;
+  };
+  CHECK_THAT(written_to(maps.room() + "/scene.json"), Catch::Contains("a mesh is written as .ply"));
+  CHECK_THAT(written_to(maps.room() + "/gt/mesh.ply"), Catch::Contains("is a file of the dataset"));
+}

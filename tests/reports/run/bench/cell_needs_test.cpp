@@ -104,3 +104,19 @@ TEST_CASE("this machine has memory that may be taken") {
   CHECK(available_memory_bytes() <= this_machine().memory_bytes);
   CHECK(resident_memory_bytes() > 1000000);
 }
+
+TEST_CASE("a setting that asks for memory by its number is what the estimate goes by") {
+  SceneSize scene = size_of(fake_scene("room_1"));
+  MemoryUser user{"fake", 1000, 0};
+  const Estimate usual = estimate_memory(user, scene, {});
+  user.config = {{"map_height", 4096}, {"map_channels", 16}};
+  const Estimate map = estimate_memory(user, scene, {});
+  CHECK(map.from == "map_height = 4096");
+  CHECK(map.bytes > 4096.0 * 8192 * 16 * 4 * 4);  // values, gradients and two moments
+  user.config = {{"random_points", 1000000000}};
+  scene.points = 0;
+  CHECK(estimate_memory(user, scene, {}).from == "random_points = 1000000000");
+  scene.points = 1;  // then none are drawn
+  CHECK(estimate_memory(user, scene, {}).from == usual.from);
+  CHECK_THROWS_AS(check_fits({1e12, "map_height = 8192"}, 1000), OutOfMemory);
+}

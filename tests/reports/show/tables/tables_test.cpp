@@ -350,13 +350,18 @@ TEST_CASE("every method with records has a row under its title in every table") 
       if (row.method == "2dgs/prior") CHECK(row.title == "2DGS + priors");
 }
 
-TEST_CASE("what a table leaves out stands in another one") {
-  std::set<std::string> listed;
+TEST_CASE("what a table leaves out stands in another one, or is a method of this program") {
+  std::set<std::string> known;
   for (const TableDefinition& definition : table_definitions())
-    for (const TableRowDefinition& row : definition.rows) listed.insert(row.method);
+    for (const TableRowDefinition& row : definition.rows) known.insert(row.method);
+  for (const auto& [id, spec] : Registry<MethodSpec>::all()) known.insert(id);
   for (const TableDefinition& definition : table_definitions())
-    for (const std::string& method : definition.leave_out)
-      CHECK((listed.contains(method) || Registry<MethodSpec>::all().contains(method)));
+    for (const std::string& glob : definition.leave_out) {
+      INFO(definition.id << " " << glob);
+      CHECK(std::ranges::any_of(known, [&](const std::string& method) {
+        return glob_match(glob, method);
+      }));
+    }
 }
 
 TEST_CASE("without any record every measured cell is missing and the paper's stand") {
