@@ -18,6 +18,7 @@
 
 #include "glint/core/config.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
 
 namespace glint {
@@ -84,7 +85,7 @@ class FolderFiles : public Assimp::DefaultIOSystem {
     return is_inside(file, folder_) && DefaultIOSystem::Exists(file);
   }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
-    if (!is_inside(name, folder_)) return nullptr;
+    if (!is_inside(name, folder_) || !or_warn([&] { return is_file(name); })) return nullptr;
     std::unique_ptr<Assimp::IOStream> file(DefaultIOSystem::Open(name, mode));
     return file == nullptr ? nullptr : new ListedFile(std::move(file), open_);
   }
@@ -124,6 +125,7 @@ class Importer {
  public:
   Importer(const fs::path& file, TraceScene& scene, const fs::path& texture)
       : file_(file), scene_(scene), texture_(texture) {
+    check_exists(file);
     if (lower_extension(file) != ".obj") check_gltf(file);
     importer_.SetIOHandler(new FolderFiles(file.parent_path()));  // which the importer owns
     model_ = importer_.ReadFile(

@@ -10,6 +10,7 @@
 #include "datasets/map_files.h"
 #include "datasets/opencv_yaml.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/core/rng.h"
 #include "glint/scene/image_files.h"
 
@@ -143,8 +144,8 @@ TriangleMesh truth_mesh(const TraceScene& scene, TruthLayer layer, float max_edg
 
 std::set<std::string> files_below(const fs::path& folder) {
   std::set<std::string> names;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file()) names.insert(fs::relative(entry.path(), folder).generic_string());
+  for (const fs::path& file : list_files_below(folder))
+    names.insert(file.lexically_relative(folder).generic_string());
   return names;
 }
 

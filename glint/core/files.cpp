@@ -57,7 +57,7 @@ const char* mend_of_write(int why) {
                 : "free some disk space or choose another --out";
 }
 
-std::string read_whole(std::ifstream& in, std::size_t block) {
+std::string read_whole(std::istream& in, std::size_t block) {
   std::string content;
   for (std::size_t size = 0; in.good(); content.resize(size)) {
     content.resize(size + block);
@@ -190,6 +190,7 @@ int append_piece(int file, std::string_view line) {
 
 // One process at a time: two that append to one file mix no lines.
 void append_line(const fs::path& path, std::string_view line) {
+  is_there(path);  // what is written into a pipe or a device is lost
   std::error_code code;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), code);
   const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -233,22 +234,17 @@ std::vector<fs::path> list_files(
     const fs::path& folder, const std::vector<std::string>& extensions
 ) {
   GLINT_CHECK(is_folder(folder), kBadReference, "{}: not a folder", folder.string());
-  std::error_code code;
   std::vector<fs::path> files;
-  fs::directory_iterator it(folder, code);
-  GLINT_CHECK(
-      !code, kBadReference, "{}: folder cannot be read ({})", folder.string(), code.message()
-  );
-  for (const fs::directory_entry& entry : it) {
-    std::string extension = entry.path().extension().string();
+  for (const fs::path& path : list_entries(folder)) {
+    std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
       return static_cast<char>(std::tolower(c));
     });
     const bool wanted =
         extensions.empty() ||
         std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
-    const bool hidden = entry.path().filename().string().starts_with('.');
-    if (wanted && !hidden && is_file(entry.path())) files.push_back(entry.path());
+    const bool hidden = path.filename().string().starts_with('.');
+    if (wanted && !hidden && is_file(path)) files.push_back(path);
   }
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return natural_less(a.filename().string(), b.filename().string());

@@ -11,6 +11,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/machine.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -47,23 +48,19 @@ std::optional<Writer> writer_of(const std::string& name, std::string_view with_m
   return writer;
 }
 
-bool has_ended(const Writer& writer, const fs::directory_entry& entry) {
+bool has_ended(const Writer& writer, const fs::path& path) {
   if (writer.host == host_mark())
     return writer.process != ::getpid() && process_has_ended(writer.process);
   std::error_code code;
-  const auto age = fs::file_time_type::clock::now() - entry.last_write_time(code);
+  const auto age = fs::file_time_type::clock::now() - fs::last_write_time(path, code);
   return !code && age > std::chrono::hours(24);
 }
 
-template <class Iterator>
-void add_left_behind(Iterator it, std::vector<fs::path>& found) {
-  std::error_code code;
-  for (; it != Iterator(); it.increment(code)) {
-    const auto writer = writer_of(it->path().filename().string());
-    if (writer && has_ended(*writer, *it)) found.push_back(it->path());
-    if constexpr (requires { it.disable_recursion_pending(); })
-      if (writer) it.disable_recursion_pending();
-    if (code) return;
+void add_left_behind(const fs::path& folder, bool recursive, std::vector<fs::path>& found) {
+  for (const fs::path& path : or_warn([&] { return list_entries(folder); })) {
+    const auto writer = writer_of(path.filename().string());
+    if (writer && has_ended(*writer, path)) found.push_back(path);
+    if (!writer && recursive && is_real_folder(path)) add_left_behind(path, recursive, found);
   }
 }
 
@@ -93,29 +90,21 @@ fs::path aside_path(const fs::path& folder) {
 
 std::vector<fs::path> list_aside(const fs::path& folder) {
   std::vector<fs::path> found;
-  std::error_code code;
   const std::string start = fmt::format(".{}.", folder.filename().string().substr(0, kLongest));
-  for (fs::directory_iterator it(folder.parent_path(), code), end; !code && it != end;
-       it.increment(code)) {
-    const std::string name = it->path().filename();
+  for (const fs::path& path : list_entries(folder.parent_path())) {
+    const std::string name = path.filename();
     const auto writer = writer_of(name, kAside);
     // What follows has no dot but that of the mark: else it is of a folder with a longer name.
     const bool is_its =
         name.starts_with(start) && name.find('.', start.size()) == name.size() - kAside.size();
-    if (writer && is_its && has_ended(*writer, *it)) found.push_back(it->path());
+    if (writer && is_its && has_ended(*writer, path)) found.push_back(path);
   }
-  std::sort(found.begin(), found.end());
   return found;
 }
 
 std::vector<fs::path> list_left_behind(const fs::path& folder, bool recursive) {
   std::vector<fs::path> found;
-  std::error_code code;
-  constexpr auto kOptions = fs::directory_options::skip_permission_denied;
-  if (recursive)
-    add_left_behind(fs::recursive_directory_iterator(folder, kOptions, code), found);
-  else
-    add_left_behind(fs::directory_iterator(folder, kOptions, code), found);
+  add_left_behind(folder, recursive, found);
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -18,7 +18,8 @@ fs::path absolute_folder(const fs::path& folder);
 fs::path unfinished_path(const fs::path& path);
 
 // Unfinished files and folders in `folder` (and below it, where `recursive`) whose process has
-// ended: of this machine when no process has the number any more, of others after a day.
+// ended: of this machine when no process has the number any more, of others after a day. A folder
+// that cannot be read is a warning.
 std::vector<fs::path> list_left_behind(const fs::path& folder, bool recursive = true);
 
 // Removes them; what cannot be removed stays without a word.
@@ -27,7 +28,7 @@ void remove_left_behind(const fs::path& folder, bool recursive = true);
 // ".NAME.PID-HOST.old" beside a folder: where the one that it replaces waits to be removed.
 fs::path aside_path(const fs::path& folder);
 
-// Those of `folder`, which is absolute, whose process has ended.
+// Those of `folder`, which is absolute, whose process has ended. Errors: as list_entries().
 std::vector<fs::path> list_aside(const fs::path& folder);
 
 // A folder beside the one it will become, made anew; at its end, what was not moved out of it goes.

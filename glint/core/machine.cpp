@@ -110,12 +110,17 @@ Machine this_machine() {
   return machine;
 }
 
-std::uint64_t free_disk_bytes(const fs::path& folder) {
+fs::path nearest_existing(const fs::path& folder) {
   std::error_code code;
-  fs::path existing = fs::absolute(folder, code);
+  fs::path existing = fs::absolute(folder, code).lexically_normal();
   while (!fs::exists(existing, code) && existing.has_relative_path())
     existing = existing.parent_path();
-  const fs::space_info space = fs::space(existing, code);
+  return existing;
+}
+
+std::uint64_t free_disk_bytes(const fs::path& folder) {
+  std::error_code code;
+  const fs::space_info space = fs::space(nearest_existing(folder), code);
   return code ? 0 : space.available;
 }
 

@@ -18,6 +18,9 @@ struct Machine {
 };
 Machine this_machine();
 
+// The folder, or the nearest one above that is there: of its disk it will be.
+fs::path nearest_existing(const fs::path& folder);
+
 // Free bytes of the disk that holds `folder` (or its nearest existing parent); 0: unknown.
 std::uint64_t free_disk_bytes(const fs::path& folder);
 

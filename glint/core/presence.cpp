@@ -91,19 +91,81 @@ bool is_there(const fs::path& path) { return presence_of(path) != Presence::kAbs
 bool is_file(const fs::path& path) { return presence_of(path) == Presence::kFile; }
 bool is_folder(const fs::path& path) { return presence_of(path) == Presence::kFolder; }
 
-std::vector<fs::path> list_folders(const fs::path& folder) {
-  std::vector<fs::path> folders;
-  if (!is_folder(folder)) return folders;
+bool is_taken(const fs::path& path) {
   std::error_code code;
-  for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
-    const bool hidden = it->path().filename().string().starts_with('.');
-    if (!hidden && is_folder(it->path())) folders.push_back(it->path());
-  }
+  const fs::file_status status = fs::symlink_status(path, code);
+  if (status.type() == fs::file_type::none) throw_unseen(path, code);
+  return status.type() != fs::file_type::not_found;
+}
+
+bool is_real_folder(const fs::path& path) {
+  std::error_code code;
+  return fs::symlink_status(path, code).type() == fs::file_type::directory;
+}
+
+std::vector<fs::path> list_entries(const fs::path& folder) {
+  const Presence presence = presence_of(folder);
+  if (presence == Presence::kAbsent) return {};
   GLINT_CHECK(
-      !code, kBadReference, "{}: folder cannot be read ({})", folder.string(), code.message()
+      presence == Presence::kFolder,
+      kBadReference,
+      "{}: is a file, expected a folder",
+      folder.string()
   );
-  std::sort(folders.begin(), folders.end());
+  std::vector<fs::path> entries;
+  std::error_code code;
+  for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code))
+    entries.push_back(it->path());
+  GLINT_CHECK(
+      code != std::errc::permission_denied,
+      kEnvironment,
+      "{}: permission denied; let this user read the folder",
+      folder.string()
+  );
+  GLINT_CHECK(
+      !code || code == std::errc::no_such_file_or_directory,  // has just been removed
+      kBadReference,
+      "{}: folder cannot be read ({})",
+      folder.string(),
+      code.message()
+  );
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+std::vector<fs::path> list_folders(const fs::path& folder) {
+  std::vector<fs::path> folders = list_entries(folder);
+  std::erase_if(folders, [](const fs::path& path) {
+    return path.filename().string().starts_with('.') || !is_folder(path);
+  });
   return folders;
+}
+
+namespace {
+
+void add_files_below(
+    const fs::path& folder,
+    const std::function<bool(const fs::path&)>& leaves_out,
+    std::vector<fs::path>& files
+) {
+  for (const fs::path& path : list_entries(folder)) {
+    if (leaves_out(path)) continue;
+    if (is_file(path))
+      files.push_back(path);
+    else if (!is_link(path))
+      add_files_below(path, leaves_out, files);
+  }
+}
+
+}  // namespace
+
+std::vector<fs::path> list_files_below(
+    const fs::path& folder, const std::function<bool(const fs::path& path)>& leaves_out
+) {
+  std::vector<fs::path> files;
+  add_files_below(folder, leaves_out, files);
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 std::ifstream open_file(const fs::path& path) {

@@ -10,6 +10,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -19,13 +20,7 @@ void check(const std::error_code& code, const fs::path& path) {
 }
 
 bool holds_nothing(const fs::path& folder) {
-  std::error_code code;
-  return !fs::exists(fs::symlink_status(folder, code)) || fs::is_empty(folder, code);
-}
-
-bool stands(const fs::path& path) {
-  std::error_code code;
-  return fs::exists(fs::symlink_status(path, code));
+  return !is_taken(folder) || (is_folder(folder) && list_entries(folder).empty());
 }
 
 // Two names change places in one step; false: this file system cannot.
@@ -52,13 +47,20 @@ void swap_in(const fs::path& made, const fs::path& folder, const fs::path& aside
   rename_to(made, folder);
 }
 
+bool is_plain_folder(const fs::path& path) {
+  std::error_code code;
+  return fs::is_directory(fs::symlink_status(path, code));
+}
+
+// Not those empty folders that the new one has, too: files of ours stood in them.
 std::vector<std::string> foreign_names(
     const fs::path& old, const fs::path& fresh, const OwnNames& own
 ) {
   const std::set<std::string> ours = own(old, fresh);
   std::vector<std::string> names;
   for (const std::string& name : leaves_below(old))
-    if (!ours.contains(name)) names.push_back(name);
+    if (!ours.contains(name) && !(is_plain_folder(old / name) && is_plain_folder(fresh / name)))
+      names.push_back(name);
   return names;
 }
 
@@ -66,7 +68,7 @@ std::vector<std::string> foreign_names(
 void move_over(const fs::path& from, const fs::path& to, const std::vector<std::string>& names) {
   std::error_code code;
   for (const std::string& name : names) {
-    if (stands(to / name)) continue;
+    if (is_taken(to / name)) continue;
     fs::create_directories((to / name).parent_path(), code);
     check(code, to / name);
     rename_to(from / name, to / name);
@@ -86,7 +88,7 @@ void remove_old(const fs::path& aside) {
 void finish(const fs::path& aside, const fs::path& folder, const OwnNames& own) {
   const std::vector<std::string> foreign = foreign_names(aside, folder, own);
   move_over(aside, folder, foreign);
-  const auto is_left = [&](const std::string& name) { return stands(aside / name); };
+  const auto is_left = [&](const std::string& name) { return is_taken(aside / name); };
   if (std::none_of(foreign.begin(), foreign.end(), is_left)) remove_old(aside);
 }
 
@@ -96,28 +98,26 @@ void check_names(
 ) {
   for (const std::string& name : foreign)
     GLINT_CHECK(
-        !stands(made / name),
+        !is_taken(made / name),
         kUsage,
         "{}: was put there by somebody else, and a new file needs its name; move it away",
         (folder / name).string()
     );
 }
 
+void add_leaves(const fs::path& path, const fs::path& folder, std::set<std::string>& names) {
+  const bool enters = path == folder || is_real_folder(path);
+  const auto entries = enters ? list_entries(path) : std::vector<fs::path>();
+  for (const fs::path& entry : entries) add_leaves(entry, folder, names);
+  if (entries.empty() && path != folder)
+    names.insert(path.lexically_relative(folder).generic_string());
+}
+
 }  // namespace
 
 std::set<std::string> leaves_below(const fs::path& folder) {
   std::set<std::string> names;
-  std::error_code code;
-  fs::recursive_directory_iterator it(folder, code);
-  for (; !code && it != fs::recursive_directory_iterator(); it.increment(code)) {
-    const bool is_folder = fs::is_directory(it->symlink_status(code));
-    if (!is_folder || fs::is_empty(it->path(), code))
-      names.insert(it->path().lexically_relative(folder).generic_string());
-    if (code) break;
-  }
-  GLINT_CHECK(
-      !code, kEnvironment, "{}: cannot be read whole ({})", folder.string(), code.message()
-  );
+  add_leaves(folder, folder, names);
   return names;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/method.h"
 
 namespace glint {
@@ -118,8 +119,7 @@ bool write_checkpoint(
 }
 
 bool is_checkpoint_of(const fs::path& file, const std::string& identity) {
-  std::error_code code;
-  if (!fs::exists(file, code)) return false;
+  if (!is_there(file)) return false;
   try {
     const SafetensorsFile found(file);
     const auto& texts = found.metadata();

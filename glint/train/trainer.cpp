@@ -13,6 +13,7 @@
 #include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/machine.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/core/rng.h"
 #include "glint/render/void_steps.h"
@@ -78,7 +79,7 @@ class ImagesOnDevice {
 
 // Lines of the log from this iteration on will be written again.
 void cut_log(const fs::path& file, int iteration) {
-  if (!fs::exists(file)) return;
+  if (!is_there(file)) return;
   std::istringstream log(read_file(file));
   std::string kept;
   for (std::string line; std::getline(log, line);) {
@@ -117,7 +118,7 @@ class Training {
   // What is left of the run when it fails.
   std::string where() const {
     if (!on_disk_) return "nothing was to be kept";
-    if (!fs::exists(checkpoint_)) return "before the first checkpoint";
+    if (!is_taken(checkpoint_)) return "before the first checkpoint";
     return "the last checkpoint is " + checkpoint_.string();
   }
   template <class F>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "glint/core/presence.h"
 #include "reports/verbs/dataset_parts.h"
 
 #include "datasets/scene_index.h"
@@ -16,8 +17,7 @@ struct PlacedManifest {
 
 PlacedManifest manifest_called(const CommonOptions& common, const std::string& name) {
   if (const Manifest* manifest = find_manifest(name)) return {manifest, common.data};
-  std::error_code code;
-  if (!fs::is_directory(name, code)) return {};
+  if (!is_folder(name)) return {};
   const fs::path folder = fs::absolute(fs::path(name) / ".").lexically_normal().parent_path();
   return {find_manifest(folder.filename().string()), folder.parent_path()};
 }

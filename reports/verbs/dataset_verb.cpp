@@ -7,6 +7,7 @@
 #include "datasets/packed_scene.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/nearest.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/core/rows.h"
 #include "metrics/tools/numeric_options.h"
@@ -168,16 +169,15 @@ struct PackOptions : FolderOptions {
 
 // An earlier packed scene is replaced; whatever else lies there is somebody's.
 void check_pack_target(const fs::path& file) {
-  std::error_code code;
   GLINT_CHECK(
-      file.has_filename() && !fs::is_directory(file, code),
+      file.has_filename() && !is_folder(file),
       kUsage,
       "{}: is a folder; give the name of a file, such as {}",
       file.string(),
       (file / "scene.safetensors").string()
   );
   GLINT_CHECK(
-      !fs::exists(file, code) || is_packed_scene(file),
+      !is_there(file) || is_packed_scene(file),
       kUsage,
       "{}: is there and is no packed scene; it is left as it is, give another name or move it away",
       file.string()

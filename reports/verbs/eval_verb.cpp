@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf.h"
 #include "metrics/tools/numeric_options.h"
@@ -19,8 +20,11 @@ namespace {
 
 // What an earlier scoring measured and counted: scoring again does not change it.
 void add_earlier_cost(const fs::path& metrics_file, ScoreOptions& options) {
-  if (!fs::exists(metrics_file)) return;
-  const Json json = parse_json(read_file(metrics_file));
+  const auto text = with_exit_code(ExitCode::kBadPrediction, [&] {
+    return is_there(metrics_file) ? std::optional(read_file(metrics_file)) : std::nullopt;
+  });
+  if (!text) return;
+  const Json json = parse_json(*text);
   if (!json.is_object())
     return log::warn(
         fmt::format("{}: damaged; fps and surfels are not known any more", metrics_file.string())
@@ -222,6 +226,7 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
   const RunSpec spec =
       make_spec(cell, profile, loaded, run_folder(common.own_folder(profile), cell.cell));
   const fs::path records = common.records_file(profile);
+  const FileLock lock = lock_run(spec.folder, "give another --method or --seed");
   check_new_import(records, cell.cell, arguments);
   EarlierRun earlier(spec.folder);
   const auto notes = import_predictions(

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "glint/core/interrupt.h"
+#include "glint/core/presence.h"
 #include "glint/core/printable.h"
 #include "glint/core/progress.h"
 #include "glint/scene/camera_path.h"
@@ -63,9 +64,8 @@ std::vector<Camera> cameras_of(const std::vector<View>& views) {
 // Of a file. Errors: kUsage (no such file), those of read_camera_path.
 CameraPath path_of_file(const RenderArguments& arguments, const Camera& lens) {
   const std::string& file = arguments.path;
-  std::error_code code;
   GLINT_CHECK(
-      fs::is_regular_file(file, code),
+      with_exit_code(ExitCode::kUsage, [&] { return is_file(file); }),
       kUsage,
       "--path {}: no such file; {}expected orbit, spline, or a file with cameras",
       file,

@@ -8,6 +8,7 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/nearest.h"
 #include "glint/core/parallel.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "metrics/tools/numeric_options.h"
 #include "reports/run/bench/child_process.h"
@@ -203,7 +204,7 @@ int leave_out_missing(const fs::path& data_folder, RunnerOptions& options) {
     const auto [known, is_new] = missing.try_emplace(cell.cell.scene, false);
     if (is_new) {
       const ManifestScene scene{cell.source.scene, cell.source.folder};
-      known->second = !fs::exists(manifest_scene_folder(*manifest, scene, data_folder));
+      known->second = !is_there(manifest_scene_folder(*manifest, scene, data_folder));
     }
     if (!known->second) continue;
     ++count;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
 #include "reports/run/bench/stage_documents.h"
@@ -18,30 +19,20 @@ namespace {
 
 constexpr int kDefaultIterations = 7000;  // of `train` without --iterations
 
-FileLock lock_of(const fs::path& run) {
-  auto lock = FileLock::take(FileLock::file_beside(run));
-  if (const auto* holder = std::get_if<std::string>(&lock))
-    throw Error(
-        ExitCode::kUsage,
-        fmt::format(
-            "{}: {} is at work there; wait for it, or choose another --run", run.string(), *holder
-        )
-    );
-  return std::get<FileLock>(std::move(lock));
-}
-
 // A training of the same document may go on there.
 void check_new_run(const RunSpec& spec) {
   const fs::path& folder = spec.folder;
-  const bool goes_on = is_checkpoint_of(folder / kCheckpointFile, stage_key(spec.train_document));
+  const auto goes_on = [&] {
+    return is_checkpoint_of(folder / kCheckpointFile, stage_key(spec.train_document));
+  };
   GLINT_CHECK(
-      spec.anew || goes_on || !holds_work(folder),
+      spec.anew || goes_on() || !holds_work(folder),
       kUsage,
       "{}: holds {}; --force replaces it, --run names another folder",
       folder.string(),
-      fs::exists(folder / "env.json") ? "a run already"
-                                      : "a training that was cut off and has other settings, data "
-                                        "or code, so that it cannot go on"
+      is_there(folder / "env.json") ? "a run already"
+                                    : "a training that was cut off and has other settings, data "
+                                      "or code, so that it cannot go on"
   );
   check_run_folder(folder);
 }
@@ -85,7 +76,7 @@ SingleCell with_data(
       spec.method, spec.config, spec.options, identify_source(cell.source, common.data).document
   );
   single.scene = std::move(loaded.scene);
-  single.lock.emplace(lock_of(spec.folder));
+  single.lock.emplace(lock_run(spec.folder));
   return single;
 }
 
@@ -104,6 +95,16 @@ SingleCell cell_with_model(const CommonOptions& common, const NewCellOptions& op
 }
 
 }  // namespace
+
+FileLock lock_run(const fs::path& run, std::string_view otherwise) {
+  auto lock = FileLock::take(FileLock::file_beside(run));
+  if (const auto* holder = std::get_if<std::string>(&lock))
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format("{}: {} is at work there; wait for it, or {}", run.string(), *holder, otherwise)
+    );
+  return std::get<FileLock>(std::move(lock));
+}
 
 Profile single_profile(const CommonOptions& common, int iterations) {
   Profile profile;
@@ -127,11 +128,10 @@ SingleCell open_single_cell(const std::string& run_folder, const std::string& da
   SingleCell single;
   RunSpec& spec = single.spec;
   spec = read_run_spec(run_folder);
-  single.lock.emplace(lock_of(run_folder));
+  single.lock.emplace(lock_run(run_folder));
   if (!dataset.empty()) spec.dataset_folder = fs::absolute(dataset);
-  std::error_code code;
   GLINT_CHECK(
-      !dataset.empty() || fs::exists(spec.dataset_folder, code),
+      !dataset.empty() || is_there(spec.dataset_folder),
       kBadReference,
       "{}: not there, but {} was trained on it; if the data have moved, give --dataset FOLDER",
       spec.dataset_folder.string(),

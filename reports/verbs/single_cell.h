@@ -32,6 +32,10 @@ struct NewCellOptions {
 // work there), kBadReference (the dataset); of models check_row_name()'s and import_model()'s.
 SingleCell new_single_cell(const CommonOptions& common, const NewCellOptions& options);
 
+// Nobody else writes into the folder while it lives. Errors (kUsage): somebody is at work there;
+// `otherwise` says what to do but to wait.
+FileLock lock_run(const fs::path& run, std::string_view otherwise = "choose another --run");
+
 // The run of a folder that `train` or `all` filled, with its dataset loaded again; from `dataset`
 // (a folder or packed scene) where that is given, since the data may have moved. Other data than
 // the run was trained on come with a warning. Errors (kBadPrediction): no run; kBadReference: the

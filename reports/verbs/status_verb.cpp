@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/core/rows.h"
 #include "reports/run/bench/cell_stages.h"
@@ -21,7 +22,7 @@ struct PlannedCell {
   const Record* record;  // null: none
 };
 
-// `records` must outlive the cells. Errors: as make_plan, identify_source.
+// `records` must outlive the cells. Errors: as make_plan.
 std::vector<PlannedCell> planned_cells(
     const CommonOptions& common, const Profile& profile, const std::vector<Record>& records
 ) {
@@ -30,7 +31,8 @@ std::vector<PlannedCell> planned_cells(
   std::map<std::string, SceneIdentity> scenes;  // by name
   std::vector<PlannedCell> cells;
   for (const PlanCell& cell : make_plan(profile, common.filter(), common.set)) {
-    if (!scenes.contains(cell.cell.scene)) scenes[cell.cell.scene] = identify(cell.source);
+    if (!scenes.contains(cell.cell.scene))
+      scenes[cell.cell.scene] = identity_or_why(identify, cell.source);
     const Record* record = find_record(records, cell.cell);
     const fs::path run = run_folder(folder, cell.cell);
     cells.push_back({cell, cell_stages(cell, profile, scenes[cell.cell.scene], record, run), record}
@@ -67,6 +69,15 @@ std::string last_step(const fs::path& run) {
   return "";
 }
 
+// Of a cell without a record.
+void add_progress(const fs::path& run, StatusRow& row) try {
+  if (!is_there(run / "config.json")) return;
+  row.state = is_there(run / "env.json") ? "trained" : "started";
+  row.detail = last_step(run);
+} catch (const Error& error) {
+  row.detail = error.what();
+}
+
 StatusRow status_of(
     const PlannedCell& planned, const fs::path& folder, const std::vector<Record>& records
 ) {
@@ -82,10 +93,7 @@ StatusRow status_of(
         planned.record->failure->message
     );
   const fs::path run = run_folder(folder, row.cell);
-  if (row.state == "pending" && fs::exists(run / "config.json")) {
-    row.state = fs::exists(run / "env.json") ? "trained" : "started";
-    row.detail = last_step(run);
-  }
+  if (row.state == "pending") add_progress(run, row);
   if (!stages.done()) row.seconds = estimated_seconds(planned.cell, records, stages_to_do(stages));
   return row;
 }

@@ -5,6 +5,7 @@
 
 #include "glint/core/file_lock.h"
 #include "glint/core/interrupt.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/core/rows.h"
 #include "reports/run/provenance/verify_run.h"
@@ -40,8 +41,7 @@ struct VerifyPlan {
 };
 
 bool is_folder_of_runs(const fs::path& folder) {
-  std::error_code code;
-  return fs::exists(folder / "records.jsonl", code) || fs::is_directory(folder / "runs", code);
+  return is_there(folder / "records.jsonl") || is_folder(folder / "runs");
 }
 
 // One whose config.json is damaged, too: it is told of.
@@ -77,7 +77,9 @@ VerifyPlan plan_of_run(const CommonOptions& common, const fs::path& run) {
 }
 
 VerifyPlan make_verify_plan(const CommonOptions& common, const VerifyArguments& arguments) {
-  const bool is_one = fs::exists(fs::path(arguments.place) / "config.json");
+  const bool is_one = with_exit_code(ExitCode::kBadPrediction, [&] {
+    return is_there(fs::path(arguments.place) / "config.json");
+  });
   GLINT_CHECK(
       is_one || arguments.dataset.empty(),
       kUsage,
@@ -120,9 +122,8 @@ class Verification {
   // As other verbs that open a run.
   void check_dataset(const fs::path& run) const {
     const fs::path dataset = dataset_of(read_run_spec(run));
-    std::error_code code;
     GLINT_CHECK(
-        fs::exists(dataset, code),
+        is_there(dataset),
         kBadReference,
         "{}: not there, but {} was made from it; if the data have moved, give --dataset FOLDER",
         dataset.string(),
@@ -134,9 +135,7 @@ class Verification {
   fs::path dataset_of(const RunSpec& spec) const {
     if (!arguments_.dataset.empty()) return arguments_.dataset;
     const fs::path below = data_ / spec.dataset / spec.dataset_folder.filename();
-    std::error_code code;
-    return !fs::exists(spec.dataset_folder, code) && fs::exists(below, code) ? below
-                                                                             : spec.dataset_folder;
+    return !is_there(spec.dataset_folder) && is_there(below) ? below : spec.dataset_folder;
   }
 
   // One of many that cannot be read does not stop the others.

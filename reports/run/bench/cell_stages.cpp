@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "glint/core/presence.h"
 #include "reports/run/bench/stage_documents.h"
 #include "reports/run/records/parcel_run.h"
 
@@ -31,8 +32,8 @@ std::string after_inputs(const Json& then, const Json& now) {
 std::string why_never(const fs::path& run, Stage stage, const Record* record) {
   const bool first = stage == Stage::kTrain;
   if (!first) return "not yet";
-  if (!run.empty() && fs::exists(run / "env.json")) return std::string("trained ") + kWithoutKeys;
-  if (!run.empty() && fs::exists(run / "config.json")) return "not trained to the end";
+  if (!run.empty() && is_there(run / "env.json")) return std::string("trained ") + kWithoutKeys;
+  if (!run.empty() && is_there(run / "config.json")) return "not trained to the end";
   if (record && record->train_key.empty()) return std::string("recorded ") + kWithoutKeys;
   return "not yet";
 }
@@ -41,7 +42,8 @@ class Judge {
  public:
   Judge(const fs::path& run, const Record* record) : run_(run), record_(record) {}
 
-  StageState operator()(Stage stage, const Json& wanted) const {
+  // What cannot be looked up is to do: the cell says so, and the others go on.
+  StageState operator()(Stage stage, const Json& wanted) const try {
     const auto found = run_.empty() ? std::nullopt : read_stage(run_, stage);
     if (!found) return {false, run_.empty() ? "--force" : why_never(run_, stage, record_), wanted};
     const Json document = with_machine_of(wanted, found->document);
@@ -55,11 +57,14 @@ class Judge {
         false,
         document.contains("inputs") ? after_inputs(found->document, document) : "after data",
         wanted};
+  } catch (const Error& error) {
+    return {false, error.what(), wanted};
   }
 
   // A stage that ended without a mesh is done for as long as no other memory is allowed.
   StageState mesh(const Json& wanted, const TsdfOptions& options) const {
-    const auto found = run_.empty() ? std::nullopt : read_stage(run_, Stage::kMesh);
+    const auto found =
+        run_.empty() ? std::nullopt : or_warn([&] { return read_stage(run_, Stage::kMesh); });
     const bool without = found && !found->note.empty();
     return (*this)(Stage::kMesh, without ? document_without_mesh(wanted, options) : wanted);
   }

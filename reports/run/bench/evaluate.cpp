@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reports/run/bench/evaluate.h"
 
+#include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
 #include "reports/run/records/run_folder.h"
 
@@ -18,7 +19,7 @@ void settle_uncounted(const View& view, MaskView counted, MapSet& rendered) {
 }
 
 Image read_map(const fs::path& path, int channels, ImageSize size) {
-  if (!fs::exists(path)) return {};
+  if (!is_there(path)) return {};
   Image map = read_image(path, channels);
   GLINT_CHECK(
       map.size() == size,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The part of the mesh stage that needs the library fusion.
 #include "glint/core/interrupt.h"
+#include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"
 #include "reports/run/bench/mesh_stage.h"
@@ -32,7 +33,7 @@ FusionView load_view(const fs::path& run, const View& view, MapId map) {
 }
 
 bool has_map(const fs::path& run, const Scene& scene, MapId map) {
-  return fs::exists(train_view_folder(run, scene.train.front()) / map.row().file);
+  return is_there(train_view_folder(run, scene.train.front()) / map.row().file);
 }
 
 Json fuse_renders(const RunSpec& spec, const Scene& scene, TsdfOptions options) {

@@ -2,6 +2,7 @@
 #include "reports/run/bench/mesh_eval.h"
 
 #include "datasets/released_truth.h"
+#include "glint/core/presence.h"
 #include "metrics/mesh/mesh_scores.h"
 #include "metrics/tools/mesh_inputs.h"
 #include "reports/run/bench/mesh_stage.h"
@@ -51,7 +52,7 @@ MeshValues score_run_meshes(
   for (const MeshLayer& layer : kMeshLayers) {
     const fs::path predicted = mesh_of(spec.folder, layer);
     const fs::path true_file = true_mesh(spec.dataset_folder, layer.truth);
-    if (!fs::exists(predicted) || !fs::exists(true_file)) continue;
+    if (!is_there(predicted) || !is_there(true_file)) continue;
     Json done = Json::object();
     const Surface mesh =
         prepared(predicted, ExitCode::kBadPrediction, cameras, protocol, done["prediction"]);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "reports/run/bench/mesh_stage.h"
 
+#include <algorithm>
+
 #include "glint/core/interrupt.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "metrics/fusion/tsdf_volume.h"
@@ -14,14 +17,11 @@ namespace {
 
 // Do the renders have what depth_through_glass() goes by?
 bool looks_behind_glass(const fs::path& run) {
-  std::error_code code, unseen;
-  const auto has = [&](const fs::path& view, MapId map) {
-    return fs::exists(view / map.row().file, unseen);
-  };
-  for (fs::directory_iterator it(run / "renders", code), end; !code && it != end;
-       it.increment(code))
-    if (has(it->path(), "behind_depth") && has(it->path(), "transparency")) return true;
-  return false;
+  const auto has = [](const fs::path& view, MapId map) { return is_there(view / map.row().file); };
+  const auto views = list_folders(run / "renders");
+  return std::any_of(views.begin(), views.end(), [&](const fs::path& view) {
+    return has(view, "behind_depth") && has(view, "transparency");
+  });
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ Image depth_through_glass(const MapSet& rendered) {
 
 fs::path mesh_of(const fs::path& run, const MeshLayer& layer) {
   const fs::path path = run / layer.mesh;
-  return fs::exists(path) || looks_behind_glass(run) ? path : run / kMeshLayers[0].mesh;
+  return is_there(path) || looks_behind_glass(run) ? path : run / kMeshLayers[0].mesh;
 }
 
 void remove_meshes(const fs::path& run) {

@@ -5,6 +5,7 @@
 
 #include "glint/core/interrupt.h"
 #include "glint/core/nearest.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "reports/run/bench/video.h"
@@ -51,9 +52,9 @@ std::vector<fs::path> outputs_in(const fs::path& folder) {
 void clear_path_folder(const fs::path& folder) {
   std::error_code code;
   for (const fs::path& output : outputs_in(folder)) {
-    if (!fs::exists(output, code)) continue;
+    if (!is_taken(output)) continue;
     GLINT_CHECK(
-        fs::exists(folder / kPathFile, code),
+        is_there(folder / kPathFile),
         kUsage,
         "{}: is there, but of no earlier path; choose another folder",
         output.string()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reports/run/bench/run_record.h"
 
+#include "glint/core/presence.h"
 #include "metrics/metric.h"
 #include "reports/run/bench/mesh_stage.h"
 #include "reports/run/records/environment.h"
@@ -68,7 +69,7 @@ Record new_record(const std::string& profile, const std::string& dataset, const 
 std::vector<std::string> meshes_without_truth(const Record& record, const RunSpec& spec) {
   std::vector<std::string> ids;
   for (const MeshLayer& layer : kMeshLayers) {
-    if (fs::exists(true_mesh(spec.dataset_folder, layer.truth))) continue;
+    if (is_there(true_mesh(spec.dataset_folder, layer.truth))) continue;
     for (const Metric& metric : mesh_metric_list()) {
       const bool behind = metric.id.starts_with(kBehindMesh);
       if (behind == (std::string_view(layer.prefix) == kBehindMesh) &&

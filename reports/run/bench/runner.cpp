@@ -4,6 +4,7 @@
 #include "glint/core/file_lock.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "reports/run/bench/cell_run.h"
 #include "reports/run/records/merge_runs.h"
@@ -43,11 +44,10 @@ class Runner {
 
   // Others write, too.
   void read_new_records() {
-    std::error_code code;
-    const std::uintmax_t bytes = fs::file_size(records_file_, code);
-    if (!code && bytes == records_bytes_) return;
+    const std::uintmax_t bytes = is_file(records_file_) ? fs::file_size(records_file_) : 0;
+    if (bytes > 0 && bytes == records_bytes_) return;
     records_ = read_records(records_file_);
-    records_bytes_ = code ? 0 : bytes;
+    records_bytes_ = bytes;
   }
 
   // False: another process is at it.

@@ -3,6 +3,7 @@
 
 #include "glint/core/device.h"
 #include "glint/core/machine.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
 #include "glint/train/trainer.h"
@@ -33,7 +34,7 @@ TrainOptions train_options(const RunSpec& spec) {
 std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
   const fs::path checkpoint = spec.folder / kCheckpointFile;
   const bool goes_on = !spec.anew && is_checkpoint_of(checkpoint, stage_key(spec.train_document));
-  if (!goes_on && !spec.anew && fs::exists(checkpoint))
+  if (!goes_on && !spec.anew && is_there(checkpoint))
     log::warn(checkpoint.string() + ": damaged, or of other settings, data or code; starting anew");
   auto method = create_method(spec.method, spec.config);
   EarlierRun earlier(spec.folder, goes_on);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/core/sha256.h"
 
 namespace glint {
@@ -61,9 +62,10 @@ bool has_registration(std::string_view code) {
 
 SourceTree::SourceTree(const fs::path& root) {
   for (const char* folder : {"glint", "metrics", "datasets", "baselines", "reports"}) {
-    if (!fs::exists(root / folder)) continue;
-    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
-      if (is_source(entry.path().string())) read(root, entry.path());
+    const auto is_other = [](const fs::path& path) {
+      return !is_folder(path) && !is_source(path.string());
+    };
+    for (const fs::path& file : list_files_below(root / folder, is_other)) read(root, file);
   }
   find_implementations();
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "reports/run/code/source_tree.h"
 #include "reports/run/code/stage_sources.h"
 
@@ -42,7 +43,7 @@ int write_code_hashes(int argc, const char* const* argv) {
   }
   const fs::path output = argv[2];
   const std::string text = generated(SourceTree(argv[1]));
-  if (!fs::exists(output) || read_file(output) != text) write_file(output, text);
+  if (!is_there(output) || read_file(output) != text) write_file(output, text);
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "glint/core/machine.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "reports/run/bench/cell_run.h"
 #include "reports/run/records/failure_kinds.h"
@@ -21,9 +22,7 @@ constexpr std::size_t kTailBytes = 8192, kTailLines = 30;
 constexpr double kGraceSeconds = 60;  // to write a checkpoint
 
 std::uintmax_t bytes_of_file(const fs::path& file) {
-  std::error_code code;
-  const std::uintmax_t bytes = fs::file_size(file, code);
-  return code ? 0 : bytes;
+  return is_file(file) ? fs::file_size(file) : 0;
 }
 
 // Of what a terminal was shown: without the progress lines that were drawn over.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/train/checkpoint.h"
 #include "reports/run/bench/cell_needs.h"
@@ -12,20 +13,11 @@
 namespace glint {
 namespace {
 
-// Data that cannot be identified are for the cell to say so.
-SceneIdentity identity_of(const RunnerOptions& options, const SceneSource& source) {
-  try {
-    return options.identify(source);
-  } catch (const Error& error) {
-    return {Json::object(), error.what()};
-  }
-}
-
 // How much of its training a run has in a checkpoint from which it would go on, from 0 to 1.
 double trained_share(const fs::path& run, const StageState& train) try {
   const bool goes_on = !run.empty() && !train.done &&
                        is_checkpoint_of(run / kCheckpointFile, train.key()) &&
-                       fs::exists(run / kProgressFile);
+                       is_there(run / kProgressFile);
   if (!goes_on) return 0;
   const Json progress = parse_json(read_file(run / kProgressFile));
   const double of = number_or(progress, "of", 0), done = number_or(progress, "iterations", 0);
@@ -46,7 +38,7 @@ CellQueue::CellQueue(
   std::map<std::string, SceneIdentity> scenes;
   for (const PlanCell& cell : plan) {
     const auto [scene, is_new] = scenes.try_emplace(cell.cell.scene);
-    if (is_new) scene->second = identity_of(options, cell.source);
+    if (is_new) scene->second = identity_or_why(options.identify, cell.source);
     const fs::path run = options.force ? fs::path() : run_folder(out_, cell.cell);
     const CellStages stages =
         cell_stages(cell, options.profile, scene->second, find_record(records_, cell.cell), run);
@@ -97,7 +89,8 @@ CellTry CellQueue::take() {
 // What --force had to undo is undone where the cell has a checkpoint since then.
 CellTry CellQueue::again(const CellTry& what) const {
   CellTry again = what;
-  again.force = what.force && !fs::exists(run_folder(out_, what.cell->cell) / kCheckpointFile);
+  const fs::path checkpoint = run_folder(out_, what.cell->cell) / kCheckpointFile;
+  again.force = what.force && !or_warn([&] { return is_there(checkpoint); });
   return again;
 }
 

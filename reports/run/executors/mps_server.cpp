@@ -14,6 +14,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/interrupt.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 
 namespace glint {
@@ -145,10 +146,9 @@ std::string MpsServer::wait_until_ready() {
     pollfd waiting{keeper_->output(), POLLIN, 0};
     ::poll(&waiting, 1, kWaitMilliseconds);
     said += keeper_->read();
-    std::error_code code;
     const fs::path file = folder_ / "pipe" / kProcessFile;
     if (said.ends_with(kReady)) {
-      if (fs::exists(file, code)) process_ = in_one_line(read_file(file));
+      if (is_there(file)) process_ = in_one_line(read_file(file));
       return "";
     }
     if (const auto end = keeper_->end())

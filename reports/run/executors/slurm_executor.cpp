@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "reports/run/bench/child_process.h"
 #include "reports/run/bench/device_of_cells.h"
@@ -98,7 +99,7 @@ class Submission {
     if (queue_.empty()) return summary;
     array_ = max_array_size();
     number_ = 1;
-    while (fs::exists(file("tasks", "tsv"))) ++number_;
+    while (is_taken(file("tasks", "tsv"))) ++number_;
     write_file(file("task", "sh"), kTaskScript);
     write_file(file("table", "sh"), kTableScript);
     const auto cells = queue_.cells();

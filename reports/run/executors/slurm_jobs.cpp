@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "glint/core/config.h"
+#include "glint/core/presence.h"
 #include "reports/run/bench/child_process.h"
 #include "reports/run/executors/task_file.h"
 
@@ -82,8 +83,7 @@ void append_job(const fs::path& profile_folder, const SlurmJob& job) {
 }
 
 std::vector<SlurmJob> read_jobs(const fs::path& profile_folder) {
-  std::error_code code;
-  if (!fs::exists(jobs_file(profile_folder), code)) return {};
+  if (!is_there(jobs_file(profile_folder))) return {};
   std::vector<SlurmJob> jobs;
   std::istringstream lines(read_file(jobs_file(profile_folder)));
   for (std::string line; std::getline(lines, line);) {
@@ -144,8 +144,7 @@ std::map<std::string, SlurmState> slurm_states(const fs::path& profile_folder) {
   std::map<std::string, SlurmState> by_cell;
   for (const SlurmJob& job : jobs) {
     if (job.stage != "cells") continue;
-    std::error_code code;
-    if (!fs::exists(job.tasks, code)) continue;
+    if (!is_there(job.tasks)) continue;
     const auto cells = cells_of_tasks(job.tasks);
     for (std::size_t i = 0; i < job.count && job.offset + i < cells.size(); ++i)
       if (const auto state = states.find(fmt::format("{}_{}", job.id, i)); state != states.end())

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "glint/core/nearest.h"
+#include "glint/core/presence.h"
 #include "glint/scene/gaussian_ply.h"
 #include "glint/scene/ply.h"
 #include "reports/run/records/earlier_run.h"
@@ -25,22 +26,16 @@ const std::array<SetNames, 3> kSets{{
     {"reflection.ply", {"reflection.ply", "env.ply", "refl.ply", "environment.ply"}},
 }};
 
-bool is_file(const fs::path& path) {
-  std::error_code code;
-  return fs::is_regular_file(path, code);
-}
-
 // point_cloud/iteration_N/point_cloud.ply of the largest N; empty: none.
 fs::path last_iteration(const fs::path& folder) {
   fs::path last;
   long most = -1;
-  std::error_code code;
-  for (const auto& entry : fs::directory_iterator(folder / "point_cloud", code)) {
-    const std::string name = entry.path().filename().string(), prefix = "iteration_";
+  for (const fs::path& entry : list_folders(folder / "point_cloud")) {
+    const std::string name = entry.filename().string(), prefix = "iteration_";
     long iteration = -1;
     if (!name.starts_with(prefix)) continue;
     std::from_chars(name.data() + prefix.size(), name.data() + name.size(), iteration);
-    const fs::path file = entry.path() / "point_cloud.ply";
+    const fs::path file = entry / "point_cloud.ply";
     if (iteration > most && is_file(file)) most = iteration, last = file;
   }
   return last;

@@ -17,6 +17,7 @@
 #include "glint/core/error.h"
 #include "glint/core/file_lock.h"
 #include "glint/core/interrupt.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "reports/run/bench/child_process.h"
@@ -111,15 +112,16 @@ std::vector<fs::path> find_photos(const fs::path& folder, const fs::path& masks)
   check_exists(folder, "folder");
   const std::set<std::string> pictures{".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp"};
   std::vector<fs::path> photos;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    std::string extension = entry.path().extension().string();
+  const auto is_other = [&](const fs::path& path) {
+    std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
       return static_cast<char>(std::tolower(c));
     });
-    if (!masks.empty() && lies_in(entry.path(), masks)) continue;
-    if (entry.is_regular_file() && pictures.contains(extension))
-      photos.push_back(entry.path().lexically_relative(folder));
-  }
+    return (!masks.empty() && lies_in(path, masks)) ||
+           (!pictures.contains(extension) && !is_real_folder(path));
+  };
+  for (const fs::path& file : list_files_below(folder, is_other))
+    photos.push_back(file.lexically_relative(folder));
   GLINT_CHECK(
       photos.size() >= kFewestPhotos,
       kBadReference,
@@ -139,11 +141,10 @@ std::map<fs::path, fs::path> find_masks(
   std::map<fs::path, fs::path> masks;
   if (folder.empty()) return masks;
   check_exists(folder, "folder");
-  std::error_code code;
   for (const fs::path& photo : photos)
     for (const fs::path& name :
          {fs::path(photo.string() + ".png"), fs::path(photo).replace_extension(".png")})
-      if (fs::is_regular_file(folder / name, code)) {
+      if (is_file(folder / name)) {
         masks.emplace(photo, folder / name);
         break;
       }
@@ -175,9 +176,8 @@ class PhotoImport {
         work_(out.string() + ".colmap"),
         options_(options),
         colmap_(work_) {
-    std::error_code code;
     GLINT_CHECK(
-        !fs::exists(out, code) || fs::is_empty(out, code),
+        list_entries(out).empty(),
         kUsage,
         "{}: holds files; name another folder with --out",
         out.string()
@@ -287,14 +287,12 @@ class PhotoImport {
   std::pair<fs::path, ColmapModel> largest_model() {
     std::pair<fs::path, ColmapModel> best;
     std::size_t models = 0;
-    for (const auto& entry : fs::directory_iterator(work_ / "sparse")) {
-      if (!entry.is_directory()) continue;
-      ColmapModel model = read_colmap_model(entry.path());
+    for (const fs::path& folder : list_folders(work_ / "sparse")) {
+      ColmapModel model = read_colmap_model(folder);
       ++models;
-      const bool better =
-          model.images.size() > best.second.images.size() ||
-          (model.images.size() == best.second.images.size() && entry.path() < best.first);
-      if (better) best = {entry.path(), std::move(model)};
+      const bool better = model.images.size() > best.second.images.size() ||
+                          (model.images.size() == best.second.images.size() && folder < best.first);
+      if (better) best = {folder, std::move(model)};
     }
     GLINT_CHECK(
         best.second.images.size() >= kFewestPhotos,

@@ -7,6 +7,7 @@
 
 #include "datasets/map_files.h"
 #include "datasets/scene_index.h"
+#include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/image_files_stored.h"
 #include "metrics/depth.h"
@@ -189,7 +190,7 @@ bool has_eight_bit_images(const PredictionFiles& found) {
 }
 
 void copy_mesh(const fs::path& from, const fs::path& to) {
-  GLINT_CHECK(fs::is_regular_file(from), kBadPrediction, "{}: no such mesh", from.string());
+  GLINT_CHECK(is_file(from), kBadPrediction, "{}: no such mesh", from.string());
   write_file(to, with_exit_code(ExitCode::kBadPrediction, [&] { return read_file(from); }));
 }
 

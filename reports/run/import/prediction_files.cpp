@@ -6,6 +6,7 @@
 #include <set>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "reports/run/records/run_folder.h"
 
 namespace glint {
@@ -94,15 +95,19 @@ struct FoundFile {
   fs::path path;
 };
 
+// What is in it where it is a folder.
+std::vector<fs::path> list_if_folder(const fs::path& path) {
+  return is_folder(path) ? list_entries(path) : std::vector<fs::path>();
+}
+
 // Folders that `pattern` means below `root`; a part with '*' means its last match.
 fs::path resolve(const fs::path& root, const std::string& pattern) {
   fs::path folder = root;
   for (const fs::path& part : fs::path(pattern)) {
     std::string best;
-    std::error_code code;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
-      const std::string name = entry.path().filename().string();
-      if (entry.is_directory(code) && glob_match(part.string(), name) &&
+    for (const fs::path& entry : list_if_folder(folder)) {
+      const std::string name = entry.filename().string();
+      if (glob_match(part.string(), name) && is_folder(entry) &&
           (best.empty() || natural_less(best, name)))
         best = name;
     }
@@ -117,12 +122,10 @@ bool by_name(const FoundFile& a, const FoundFile& b) { return natural_less(a.nam
 // Files of the pattern side by side, or one in a folder per view.
 std::vector<FoundFile> files_in(const fs::path& folder, const std::string& pattern) {
   std::vector<FoundFile> files;
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
-    const fs::path path = entry.path();
-    if (entry.is_regular_file(code) && glob_match(pattern, path.filename().string()))
+  for (const fs::path& path : list_if_folder(folder)) {
+    if (glob_match(pattern, path.filename().string()) && is_file(path))
       files.push_back({path.stem().string(), path});
-    if (!entry.is_directory(code)) continue;
+    if (!is_folder(path)) continue;
     for (const fs::path& inside : list_files(path))
       if (glob_match(pattern, inside.filename().string())) {
         files.push_back({path.filename().string(), inside});
@@ -191,10 +194,10 @@ fs::path find_mesh(const fs::path& root) {
         "mesh/tsdf_fusion_interface_post.ply",
         "mesh/tsdf_fusion_post.ply",
         "mesh/tsdf_fusion.ply"})
-    if (fs::is_regular_file(root / candidate)) return root / candidate;
+    if (is_file(root / candidate)) return root / candidate;
   const fs::path train = resolve(root, "train/ours_*");
   for (const char* candidate : {"fuse_post.ply", "fuse_unbounded_post.ply", "fuse.ply"})
-    if (!train.empty() && fs::is_regular_file(train / candidate)) return train / candidate;
+    if (!train.empty() && is_file(train / candidate)) return train / candidate;
   return {};
 }
 
@@ -208,17 +211,15 @@ std::vector<fs::path> unread_files(
   for (const auto& view : found.views)
     for (const auto& [id, path] : view) read.insert(path);
   std::vector<fs::path> unread;
-  std::error_code code;
-  for (fs::recursive_directory_iterator entry(folder, code), end; entry != end && !code;
-       entry.increment(code)) {
-    if (entry.depth() >= kDeepest) entry.disable_recursion_pending();
-    const fs::path& path = entry->path();
+  const auto is_deep = [&](const fs::path& path) {
+    const fs::path below = path.lexically_relative(folder);
+    return std::distance(below.begin(), below.end()) > kDeepest + 1;
+  };
+  for (const fs::path& path : or_warn([&] { return list_files_below(folder, is_deep); })) {
     const std::string name =
         lower(path.parent_path().filename().string() + "/" + path.filename().string());
-    if (entry->is_regular_file(code) && name.find(map) != std::string::npos && !read.contains(path))
-      unread.push_back(path);
+    if (name.find(map) != std::string::npos && !read.contains(path)) unread.push_back(path);
   }
-  std::sort(unread.begin(), unread.end());
   return unread;
 }
 
@@ -232,7 +233,7 @@ std::vector<MapPlaces> map_places() {
 PredictionFiles find_predictions(
     const fs::path& folder, const std::vector<std::string>& view_names
 ) {
-  GLINT_CHECK(fs::is_directory(folder), kBadPrediction, "{}: no such folder", folder.string());
+  GLINT_CHECK(is_folder(folder), kBadPrediction, "{}: no such folder", folder.string());
   PredictionFiles found;
   found.views.resize(view_names.size());
   for (const MapPlaces& places : map_places())

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "reports/run/parcels/find_parcels.h"
 
+#include <algorithm>
+
 #include "glint/core/interrupt.h"
+#include "glint/core/presence.h"
 #include "reports/run/parcels/tar_file.h"
 
 namespace glint {
@@ -58,18 +61,32 @@ class ParcelFinder {
 
 }  // namespace
 
+namespace {
+
+// Whatever they are: one that cannot be read is lost, and the others are not.
+std::vector<fs::path> parcels_in(const fs::path& folder) {
+  std::vector<fs::path> parcels = list_entries(folder);
+  std::erase_if(parcels, [](const fs::path& path) {
+    return path.filename().string().starts_with('.') || path.extension() != kParcelExtension;
+  });
+  std::sort(parcels.begin(), parcels.end(), [](const fs::path& a, const fs::path& b) {
+    return natural_less(a.filename().string(), b.filename().string());
+  });
+  return parcels;
+}
+
+}  // namespace
+
 bool holds_parcels(const fs::path& path) {
-  std::error_code code;
-  if (!fs::is_directory(path, code)) return fs::exists(path, code);
-  return !list_files(path, {kParcelExtension}).empty();
+  const auto presence = with_exit_code(ExitCode::kBadPrediction, [&] { return presence_of(path); });
+  if (presence != Presence::kFolder) return presence == Presence::kFile;
+  return !parcels_in(path).empty();
 }
 
 std::vector<LostParcel> for_each_parcel(const fs::path& path, const Take& take) {
   ParcelFinder finder(take);
-  std::error_code code;
-  if (fs::is_directory(path, code)) {
-    for (const fs::path& file : list_files(path, {kParcelExtension}))
-      finder.file(file, file.string());
+  if (is_folder(path)) {
+    for (const fs::path& file : parcels_in(path)) finder.file(file, file.string());
   } else if (is_tar_file(path)) {
     finder.archive(path);
   } else {

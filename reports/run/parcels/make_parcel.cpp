@@ -5,6 +5,7 @@
 
 #include "glint/core/device_lost.h"
 #include "glint/core/interrupt.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "reports/run/parcels/parcel_file.h"
 #include "reports/run/parcels/parcel_pictures.h"
@@ -21,8 +22,7 @@ std::string record_text(const Record& record) { return record_to_json(record).du
 // What is there of them.
 void add_files(const fs::path& run, Parcel& parcel) {
   const auto add = [&](const std::string& name) {
-    std::error_code code;
-    if (fs::is_regular_file(run / name, code)) parcel.files[name] = read_file(run / name);
+    if (is_file(run / name)) parcel.files[name] = read_file(run / name);
   };
   for (const char* name : kRunFiles) add(name);
   for (const Stage stage : kStages) add(fmt::format("keys/{}.json", stage_name(stage)));
@@ -86,9 +86,8 @@ void make_parcel(const EndedCell& cell, const fs::path& folder) {
 }
 
 bool has_parcel_of(const Record& record, const fs::path& folder) {
-  std::error_code code;
   const fs::path path = folder / parcel_name(record.cell);
-  if (!fs::exists(path, code)) return false;
+  if (!is_there(path)) return false;
   try {
     return record_text(read_parcel_record(path)) == record_text(record);
   } catch (const Error&) {

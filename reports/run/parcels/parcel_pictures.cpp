@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reports/run/parcels/parcel_pictures.h"
 
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "reports/run/parcels/depth_check.h"
@@ -65,7 +66,7 @@ class PictureTaker {
     for (const std::size_t view : views_) {
       const fs::path folder = view_folder(spec_.folder, scene_.test[view].name);
       const fs::path picture = folder / MapId("rgb").row().picture;
-      if (fs::exists(picture))
+      if (is_there(picture))
         add("renders" / folder.filename() / picture.filename(), read_file(picture));
     }
   }

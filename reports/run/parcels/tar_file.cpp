@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 namespace {
@@ -73,10 +74,7 @@ std::string path_of_pax(const std::string& records) {
 
 class TarReader {
  public:
-  explicit TarReader(const fs::path& path)
-      : in_(path, std::ios::binary), size_(fs::file_size(path)) {
-    GLINT_CHECK(in_.good(), kBadReference, "{}: cannot be opened", path.string());
-  }
+  explicit TarReader(const fs::path& path) : in_(open_file(path)), size_(fs::file_size(path)) {}
 
   std::string read(
       const std::function<bool(const TarMember&)>& wanted,
@@ -136,7 +134,7 @@ class TarReader {
 }  // namespace
 
 bool is_tar_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = open_file(path);
   Block block{};
   in.read(block.data(), kBlock);
   return in.good() && !is_empty(block) && header_of(block).has_value();

@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "glint/core/machine.h"
+
 namespace glint {
 namespace {
 
@@ -57,14 +59,6 @@ class TrialFile {
   int descriptor_;
   std::string why_;
 };
-
-fs::path nearest_existing(const fs::path& folder) {
-  std::error_code code;
-  fs::path existing = fs::absolute(folder, code).lexically_normal();
-  while (!fs::exists(existing, code) && existing.has_relative_path())
-    existing = existing.parent_path();
-  return existing;
-}
 
 std::string utc_text(std::time_t time) {
   std::array<char, 32> text{};

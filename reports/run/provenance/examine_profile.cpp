@@ -24,12 +24,8 @@ std::string size_in_gb(double bytes) { return fmt::format("{:.2f} GB", bytes / k
 
 bool on_one_disk(const fs::path& a, const fs::path& b) {
   const auto device_of = [](const fs::path& path) {
-    std::error_code code;
-    fs::path existing = fs::absolute(path, code);
-    while (!fs::exists(existing, code) && existing.has_relative_path())
-      existing = existing.parent_path();
     struct stat status {};
-    return ::stat(existing.c_str(), &status) == 0 ? status.st_dev : dev_t{};
+    return ::stat(nearest_existing(path).c_str(), &status) == 0 ? status.st_dev : dev_t{};
   };
   return device_of(a) == device_of(b);
 }

@@ -6,10 +6,12 @@
 
 #include "datasets/dataset.h"
 #include "glint/core/interrupt.h"
+#include "glint/core/presence.h"
 #include "reports/run/bench/run_stage.h"
 #include "reports/run/bench/stage_documents.h"
 #include "reports/run/provenance/compare_scores.h"
 #include "reports/run/records/earlier_run.h"
+#include "reports/run/records/merge_runs.h"
 #include "reports/run/records/parcel_run.h"
 
 namespace glint {
@@ -63,6 +65,31 @@ Json document_now(
   );
 }
 
+// What records.jsonl says otherwise, field by field. `also_judged`: also what the run itself tells.
+std::vector<std::string> record_differences(
+    const Record& file, const Record& recorded, bool also_judged
+) {
+  const auto fields = [&](const Record& record) {
+    Json json = record_to_json(record);
+    if (!also_judged)
+      for (const char* name : {"metrics", "train_key", "score_key", "dataset_hash"})
+        json.erase(name);
+    return json.flatten();
+  };
+  const Json a = fields(file), b = fields(recorded);
+  Json both = a;
+  both.update(b);
+  std::vector<std::string> differing;
+  for (const auto& entry : both.items()) {
+    const Json here = a.value(entry.key(), Json()), there = b.value(entry.key(), Json());
+    if (here != there)
+      differing.push_back(fmt::format(
+          "{} {}, records.jsonl has {}", entry.key().substr(1), here.dump(), there.dump()
+      ));
+  }
+  return differing;
+}
+
 // Files of ours that a stage would have written, and has not.
 std::vector<std::string> added_files(const fs::path& run, Stage stage, const StageFile& done) {
   std::vector<std::string> added;
@@ -86,8 +113,9 @@ class RunExamination {
     if (!run.dataset.empty()) spec_.dataset_folder = fs::absolute(run.dataset);
     parcel_ = parcel_of_run(run.folder).has_value();
     for (const Stage stage : kRunStages)
-      if (const auto done = read_stage(run.folder, stage)) done_.emplace(stage, *done);
-    imported_ = !fs::exists(run.folder / "keys/train.json") &&
+      if (why_unreadable(run.folder, stage).empty())
+        if (const auto done = read_stage(run.folder, stage)) done_.emplace(stage, *done);
+    imported_ = !is_taken(run.folder / "keys/train.json") &&
                 !Registry<MethodSpec>::all().contains(spec_.method);
   }
 
@@ -97,6 +125,7 @@ class RunExamination {
     for (const Stage stage : kRunStages)
       guarded(std::string(stage_name(stage)), [&] { check_stage(stage); });
     guarded("record", [&] { check_record(); });
+    guarded(kRecordFile, [&] { check_record_file(); });
     guarded("cost", [&] { check_cost(); });
     guarded("metrics", [&] { check_scores(); });
     return std::move(rows_);
@@ -155,8 +184,7 @@ class RunExamination {
   }
 
   void check_data() {
-    std::error_code code;
-    if (!fs::exists(spec_.dataset_folder, code))
+    if (!is_there(spec_.dataset_folder))
       return add(
           "data",
           parcel_ ? CheckState::kNote : CheckState::kBad,
@@ -272,6 +300,25 @@ class RunExamination {
     if (!record.ok()) return add("record", CheckState::kNote, "failed: " + record.failure->message);
     if (record.score_key.empty())
       return add("record", CheckState::kNote, "by an earlier version, without keys");
+    add("record", wrong_in(record), fmt::format("{} values", record.metrics.size()));
+  }
+
+  // `merge` adopts a run by it. Single runs and earlier versions have none.
+  void check_record_file() {
+    const fs::path file = run_.folder / kRecordFile;
+    if (!is_file(file)) return;
+    const Record record = record_from_json(read_json_object(file), file.string());
+    const bool has_keys = record.ok() && !record.score_key.empty();
+    std::vector<std::string> wrong;
+    if (has_keys) wrong = wrong_in(record);
+    if (run_.record)
+      for (std::string& line : record_differences(record, *run_.record, !has_keys))
+        wrong.push_back(std::move(line));
+    add(kRecordFile, wrong, fmt::format("{} values", record.metrics.size()));
+  }
+
+  // Against the keys of the run and its scores.
+  std::vector<std::string> wrong_in(const Record& record) const {
     std::vector<std::string> wrong;
     const auto compare = [&](const char* what, const std::string& recorded, const std::string& is) {
       if (recorded != is)
@@ -280,13 +327,13 @@ class RunExamination {
     compare("train_key", record.train_key, key_of(Stage::kTrain));
     compare("score_key", record.score_key, key_of(Stage::kScore));
     compare("dataset_hash", record.dataset_hash, spec_.dataset_hash);
-    compare_recorded_metrics(wrong);
-    add("record", wrong, fmt::format("{} values", record.metrics.size()));
+    compare_recorded_metrics(record, wrong);
+    return wrong;
   }
 
-  void compare_recorded_metrics(std::vector<std::string>& wrong) const {
+  void compare_recorded_metrics(const Record& record, std::vector<std::string>& wrong) const {
     const Json means = metrics_file().value("metrics", Json::object());
-    const Json recorded(run_.record->metrics);
+    const Json recorded(record.metrics);
     const auto compare = [&](const Json& ids) {
       for (const auto& entry : ids.items()) {
         const std::string& id = entry.key();

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <set>
 
 #include "glint/core/config.h"
 #include "glint/core/error.h"
 #include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
+#include "glint/core/replace_folder.h"
 #include "glint/scene/maps.h"
 #include "glint/train/checkpoint.h"
 #include "reports/run/records/parcel_run.h"
@@ -38,20 +41,16 @@ bool is_map_file(const std::string& name) {
   });
 }
 
-// Regular files of a folder, and links to such.
+// All but folders, links themselves too.
 std::vector<fs::path> files_in(const fs::path& folder) {
-  std::error_code code;
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder, code))
-    if (!entry.is_directory(code) || entry.is_symlink(code)) files.push_back(entry.path());
+  std::vector<fs::path> files = list_entries(folder);
+  std::erase_if(files, is_real_folder);
   return files;
 }
 
 std::vector<fs::path> folders_in(const fs::path& folder) {
-  std::error_code code;
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(folder, code))
-    if (entry.is_directory(code) && !entry.is_symlink(code)) folders.push_back(entry.path());
+  std::vector<fs::path> folders = list_entries(folder);
+  std::erase_if(folders, std::not_fn(is_real_folder));
   return folders;
 }
 
@@ -110,10 +109,7 @@ std::vector<fs::path> files_of_run(const fs::path& run) {
   for (const char* renders : kRenderFolders) add_render_files(run / renders, ours);
   add_parcel_pictures(run / kParcelPictures, ours);
   add_path_files(run / "paths", ours);
-  std::error_code code;
-  std::erase_if(ours, [&](const fs::path& file) {
-    return !fs::exists(fs::symlink_status(file, code));
-  });
+  std::erase_if(ours, std::not_fn(is_taken));
   std::sort(ours.begin(), ours.end());
   ours.erase(std::unique(ours.begin(), ours.end()), ours.end());
   std::stable_sort(ours.begin(), ours.end(), [&](const fs::path& a, const fs::path& b) {
@@ -149,6 +145,21 @@ void check_done(const std::error_code& code, const fs::path& path) {
 
 constexpr const char* kCheckpoint = "checkpoint";
 
+// What others put beside it stays.
+void remove_checkpoint(const fs::path& run) {
+  const std::vector<fs::path> files = {run / kProgressFile, run / kCheckpointFile};
+  std::error_code code;
+  for (const fs::path& file : files) {
+    if (is_taken(file)) fs::remove(file, code);
+    check_done(code, file);
+  }
+  remove_empty_folders(files, run);
+  const fs::path folder = run / kCheckpoint;
+  if (!is_real_folder(folder)) return;
+  for (const std::string& name : leaves_below(folder))
+    log::warn(fmt::format("{}: of no run, left as it is", (folder / name).string()));
+}
+
 }  // namespace
 
 void remove_run(const fs::path& run) {
@@ -160,11 +171,9 @@ void remove_run(const fs::path& run) {
   };
   for (const fs::path& file : files)
     if (rank_of(file, run) < 3) remove_file(file);
-  for (const std::string& folder :
-       {std::string(kCheckpoint), std::string(kCheckpoint) + ".tmp", std::string(kSaving)}) {
-    fs::remove_all(run / folder, code);
-    check_done(code, run / folder);
-  }
+  fs::remove_all(run / kSaving, code);
+  check_done(code, run / kSaving);
+  remove_checkpoint(run);
   remove_empty_folders(files, run);
   remove_file(run / "config.json");  // until now the folder is a run's
   fs::remove(run, code);             // fails where something is left
@@ -182,12 +191,12 @@ void move_run(const fs::path& from, const fs::path& to) {
     fs::rename(file, target, code);
     check_done(code, file);
   }
-  fs::remove_all(from / kCheckpoint, code);  // of a finished run: its last state is in its files
+  remove_checkpoint(from);  // of a finished run: its last state is in its files
   remove_empty_folders(files, from);
 }
 
 bool is_finished(const fs::path& run) {
-  return fs::exists(run / "env.json") || fs::exists(run / "metrics.json");
+  return is_there(run / "env.json") || is_there(run / "metrics.json");
 }
 
 void remove_previous(const fs::path& run) {
@@ -201,40 +210,45 @@ void remove_previous(const fs::path& run) {
 }  // namespace
 
 bool is_our_run(const fs::path& folder) {
-  std::error_code code;
   const fs::path path = folder / "config.json";
-  if (!fs::is_regular_file(path, code)) return false;
+  if (!is_file(path)) return false;
   const Json json = parse_json(read_file(path));
   return json.is_object() && json.value(kWrittenByField, Json()) == kWrittenBy;
 }
 
-std::vector<fs::path> runs_below(const fs::path& folder) {
-  std::error_code code;
-  std::vector<fs::path> runs;
-  for (fs::recursive_directory_iterator it(folder, code), end; it != end; it.increment(code)) {
-    if (code) break;
-    if (!it->is_directory(code) || !is_our_run(it->path())) continue;
-    runs.push_back(it->path());
-    it.disable_recursion_pending();
+namespace {
+
+void add_runs_below(const fs::path& folder, std::vector<fs::path>& runs) {
+  for (const fs::path& path : or_warn([&] { return list_entries(folder); })) {
+    const bool is_run = or_warn([&] { return is_folder(path) && is_our_run(path); });
+    if (is_run)
+      runs.push_back(path);
+    else if (is_real_folder(path))
+      add_runs_below(path, runs);
   }
+}
+
+}  // namespace
+
+std::vector<fs::path> runs_below(const fs::path& folder) {
+  std::vector<fs::path> runs;
+  add_runs_below(folder, runs);
   std::sort(runs.begin(), runs.end());
   return runs;
 }
 
 bool holds_work(const fs::path& folder) {
-  return fs::exists(folder / "config.json") &&
-         (is_finished(folder) || fs::exists(folder / kCheckpointFile));
+  return is_there(folder / "config.json") &&
+         (is_finished(folder) || is_there(folder / kCheckpointFile));
 }
 
 namespace {
 
 // What a process left that was killed while it wrote is nobody's work.
 bool holds_files(const fs::path& folder) {
-  std::error_code code;
+  const std::vector<fs::path> entries = list_entries(folder);
   const std::vector<fs::path> left = list_left_behind(folder, false);
-  for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code))
-    if (!std::binary_search(left.begin(), left.end(), it->path())) return true;
-  return false;
+  return !std::includes(left.begin(), left.end(), entries.begin(), entries.end());
 }
 
 }  // namespace
@@ -255,9 +269,7 @@ namespace {
 // The outermost of a folder and those around it that is not there; empty: all are.
 fs::path outermost_missing(fs::path folder) {
   fs::path missing;
-  std::error_code code;
-  for (; !folder.empty() && !fs::exists(folder, code); folder = folder.parent_path())
-    missing = folder;
+  for (; !folder.empty() && !is_there(folder); folder = folder.parent_path()) missing = folder;
   return missing;
 }
 
@@ -304,8 +316,8 @@ void EarlierRun::put_back() const {
     if (!outermost_made_.empty()) remove_if_empty(folder_, outermost_made_);
     return;
   }
-  for (const char* sign : {"log.jsonl", kCheckpoint, "env.json", "metrics.json"})
-    if (fs::exists(folder_ / sign)) {
+  for (const char* sign : {"log.jsonl", kCheckpointFile, "env.json", "metrics.json"})
+    if (is_taken(folder_ / sign)) {
       log::warn(fmt::format("the run that was there before is kept in {}", previous.string()));
       return;
     }
@@ -335,9 +347,9 @@ std::vector<std::string> save_in_place(
   fs::remove_all(fresh);
   save(fresh);
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(fresh)) {
-    names.push_back(entry.path().filename().string());
-    fs::rename(entry.path(), folder / names.back());
+  for (const fs::path& file : list_entries(fresh)) {
+    names.push_back(file.filename().string());
+    fs::rename(file, folder / names.back());
   }
   fs::remove(fresh);
   std::sort(names.begin(), names.end());

@@ -19,7 +19,8 @@ inline constexpr const char* kPreviousRun = "previous_run";
 // Does config.json say that the folder is a run of ours?
 bool is_our_run(const fs::path& folder);
 
-// Runs of ours in a folder and in its folders, sorted; not what lies in the folder of a run.
+// Runs of ours in a folder and in its folders, sorted; not what lies in the folder of a run. What
+// cannot be looked up is named in a warning.
 std::vector<fs::path> runs_below(const fs::path& folder);
 
 // A run that has ended, or a checkpoint that one could go on from: more than a minute's work.
@@ -30,7 +31,8 @@ void check_run_folder(const fs::path& folder);
 
 // What this program wrote into the folder of a run, files only, config.json last.
 std::vector<fs::path> files_of_run(const fs::path& run);
-// Removes them, and the folder if nothing else is there. Errors (kEnvironment): they cannot be.
+// Removes them and the checkpoint, and the folder if nothing else is there; what others put beside
+// the checkpoint is named in warnings. Errors (kEnvironment): they cannot be.
 void remove_run(const fs::path& run);
 
 // Makes room for a new run. A finished run is set aside in FOLDER/previous_run until drop(); one

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "glint/core/presence.h"
 #include "glint/core/process.h"
 #include "glint/train/checkpoint.h"
 #include "reports/run/records/run_folder.h"
@@ -69,8 +70,7 @@ int iteration_of_log(const fs::path& run) {
 }
 
 int iteration_of_checkpoint(const fs::path& run) {
-  std::error_code code;
-  if (!fs::exists(run / kProgressFile, code)) return -1;
+  if (!is_there(run / kProgressFile)) return -1;
   const Json json = parse_json(read_file(run / kProgressFile));
   return json.is_object() ? json.value("iterations", -1) : -1;
 }

@@ -7,6 +7,7 @@
 #include "glint/core/error.h"
 #include "glint/core/file_lock.h"
 #include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
 #include "glint/train/checkpoint.h"
 #include "reports/run/records/earlier_run.h"
 #include "reports/run/records/records.h"
@@ -24,12 +25,8 @@ std::uintmax_t bytes_of(const std::vector<fs::path>& files) {
 }
 
 std::uintmax_t bytes_below(const fs::path& path) {
-  std::error_code code;
-  if (!fs::is_directory(path, code)) return bytes_of({path});
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(path, code))
-    if (entry.is_regular_file(code)) files.push_back(entry.path());
-  return bytes_of(files);
+  if (!is_real_folder(path)) return bytes_of({path});
+  return bytes_of(or_warn([&] { return list_files_below(path); }));
 }
 
 // Why a run belongs to no finished cell; nothing: it does, or it is kept.
@@ -40,7 +37,7 @@ std::optional<std::string> why_leftover(
   if (record != nullptr)
     return unfinished ? std::optional("failed: " + record->failure->message) : std::nullopt;
   const bool goes_on =
-      fs::exists(run / kCheckpointFile) || read_stage(run, Stage::kTrain).has_value();
+      is_there(run / kCheckpointFile) || read_stage(run, Stage::kTrain).has_value();
   if (!goes_on) return "stopped before it left anything to go on from";
   return unfinished ? std::optional<std::string>("not finished") : std::nullopt;
 }
@@ -68,7 +65,7 @@ void add_run(
     return;
   }
   const bool trained = read_stage(run, Stage::kTrain).has_value();
-  if (trained && fs::exists(run / kCheckpointFile))
+  if (trained && is_there(run / kCheckpointFile))
     found.push_back(
         {run / kCheckpointFile, "the training has ended", bytes_of({run / kCheckpointFile}), false}
     );
@@ -86,7 +83,7 @@ std::vector<Leftover> find_leftovers(const fs::path& folder, bool unfinished) {
     found.push_back({path, "the process that wrote it has ended", bytes_below(path), false});
   const std::vector<Record> records = read_records(folder / "records.jsonl");
   for (const fs::path& run : runs_below(folder / "runs"))
-    add_run(run, record_of(run, folder, records), unfinished, found);
+    or_warn([&] { add_run(run, record_of(run, folder, records), unfinished, found); });
   return found;
 }
 

@@ -9,6 +9,7 @@
 #include "datasets/dataset.h"
 #include "datasets/released_truth.h"
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/core/sha256.h"
 #include "glint/scene/image_files.h"
 #include "reports/run/records/embedded.h"
@@ -46,9 +47,8 @@ fs::path hashes_file(const Manifest& manifest, const fs::path& data_folder) {
 // What a release has; priors and what people add later do not change it.
 std::string hash_of_scene(const fs::path& folder, const fs::path& data_folder) {
   std::string text;
-  std::error_code code;
   for (const char* part : {"images", "intri.yml", "extri.yml", "sparse", "transforms.json"})
-    if (fs::exists(folder / part, code))
+    if (is_there(folder / part))
       text += fmt::format("{} {}\n", part, content_hash(folder / part, data_folder / ".hashes"));
   return sha256(text).substr(0, 16);
 }
@@ -57,8 +57,7 @@ void compare_hashes(
     const Manifest& manifest, const fs::path& data_folder, std::vector<ManifestSceneState>& states
 ) {
   const fs::path file = hashes_file(manifest, data_folder);
-  std::error_code code;
-  Json known = fs::exists(file, code) ? read_json_object(file) : Json::object();
+  Json known = is_there(file) ? read_json_object(file) : Json::object();
   const Json before = known;
   for (ManifestSceneState& state : states) {
     if (!state.there) continue;
@@ -92,15 +91,12 @@ std::string size_text(ImageSize size) { return fmt::format("{}x{}", size.width, 
 
 // Of the first picture below images/; empty: none whose header says it.
 ImageSize first_picture_size(const fs::path& folder) {
-  std::error_code code;
-  fs::recursive_directory_iterator it(folder / "images", code), end;
-  std::vector<fs::path> pictures;
-  for (; !code && it != end && pictures.empty(); it.increment(code)) {
-    const std::string extension = it->path().extension().string();
+  for (const fs::path& file : list_files_below(folder / "images")) {
+    const std::string extension = file.extension().string();
     if (extension == ".png" || extension == ".jpg" || extension == ".jpeg")
-      pictures.push_back(it->path());
+      return read_image_size(file);
   }
-  return pictures.empty() ? ImageSize{} : read_image_size(pictures.front());
+  return {};
 }
 
 void compare_counts(const ManifestScene& expected, ManifestSceneState& state) {
@@ -156,9 +152,8 @@ void compare_extent(const ManifestScene& expected, const Scene& found, ManifestS
 std::size_t count_with_depth(const fs::path& folder, const std::vector<View>& views) {
   const fs::path released = released_truth(folder);
   return static_cast<std::size_t>(std::count_if(views.begin(), views.end(), [&](const View& view) {
-    std::error_code code;
     return !released_depth(released, view.name).empty() ||
-           fs::exists(folder / "gt" / true_map_file(MapId("depth").row(), view.name), code);
+           is_there(folder / "gt" / true_map_file(MapId("depth").row(), view.name));
   }));
 }
 
@@ -168,8 +163,7 @@ ManifestSceneState examine_scene(
   ManifestSceneState state;
   state.name = scene.name;
   state.folder = manifest_scene_folder(manifest, scene, data_folder);
-  std::error_code code;
-  state.there = fs::exists(state.folder, code);
+  state.there = is_there(state.folder);
   if (!state.there) return state;
   try {
     LoadOptions options;
@@ -217,8 +211,7 @@ fs::path manifest_scene_folder(
 ) {
   const fs::path full = data_folder / manifest.id / scene.folder;
   const fs::path cut = data_folder / manifest.id / scene.name;
-  std::error_code code;
-  return !fs::exists(full, code) && fs::exists(cut, code) ? cut : full;
+  return !is_there(full) && is_there(cut) ? cut : full;
 }
 
 std::vector<ManifestSceneState> examine_manifest(
@@ -233,9 +226,8 @@ std::vector<ManifestSceneState> examine_manifest(
 
 std::string missing_scenes_text(const Manifest& manifest, const fs::path& data_folder) {
   std::vector<std::string> missing;
-  std::error_code code;
   for (const ManifestScene& scene : manifest.scenes)
-    if (!fs::exists(manifest_scene_folder(manifest, scene, data_folder), code))
+    if (!is_there(manifest_scene_folder(manifest, scene, data_folder)))
       missing.push_back(scene.name);
   if (missing.empty()) return {};
   return fmt::format(

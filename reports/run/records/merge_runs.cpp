@@ -6,8 +6,9 @@
 #include <set>
 
 #include "glint/core/error.h"
-#include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
+#include "reports/run/records/copy_run.h"
 #include "reports/run/records/run_folder.h"
 
 namespace glint {
@@ -37,25 +38,6 @@ std::string training_differences(const Record& a, const Record& b) {
   return "trained by other settings or code";
 }
 
-// Whole, or not at all: a copy that is cut off leaves a hidden folder.
-void copy_run(const fs::path& from, const fs::path& to) {
-  std::error_code code;
-  if (!fs::exists(from, code)) return;  // records alone were kept
-  const fs::path fresh = unfinished_path(to);
-  fs::create_directories(fresh.parent_path(), code);
-  fs::copy(from, fresh, fs::copy_options::recursive | fs::copy_options::skip_symlinks, code);
-  if (!code) {
-    fs::remove_all(to, code);  // of a cell that failed there
-    fs::rename(fresh, to, code);
-  }
-  const std::string why = code.message();
-  const bool failed = static_cast<bool>(code);
-  if (failed) fs::remove_all(fresh, code);
-  GLINT_CHECK(
-      !failed, kEnvironment, "{}: cannot be copied to {} ({})", from.string(), to.string(), why
-  );
-}
-
 // The keys of its scores: also of those that came without meshes, before these were made.
 std::set<std::string> score_keys(const Record& record) {
   std::set<std::string> keys{record.score_key};
@@ -75,24 +57,27 @@ bool is_of_meshes(const std::string& id) {
   return id.starts_with("mesh-") || id.starts_with("behind-mesh-");
 }
 
+std::vector<fs::path> record_files_below(const fs::path& runs) {
+  return with_exit_code(ExitCode::kBadPrediction, [&] {
+    return list_files_below(runs, [](const fs::path& path) {
+      const std::string name = path.filename().string();
+      if (!is_real_folder(path)) return name != kRecordFile;
+      return name.starts_with(".") || name == "renders" || name == "keys";
+    });
+  });
+}
+
 // run folder -> the record that it holds, of those below `runs`.
 std::vector<Record> records_beside_runs(const fs::path& runs) {
   std::vector<Record> records;
-  std::error_code code;
-  for (fs::recursive_directory_iterator it(runs, code), end; !code && it != end;
-       it.increment(code)) {
-    const std::string name = it->path().filename().string();
-    if (it->is_directory(code) && (name.starts_with(".") || name == "renders" || name == "keys"))
-      it.disable_recursion_pending();
-    if (name != kRecordFile) continue;
-    const Json json = parse_json(read_file(it->path()));
+  for (const fs::path& file : record_files_below(runs)) {
+    const Json json = parse_json(read_file(file));
     try {
-      Record record = record_from_json(json, it->path().string());
-      const bool in_place = fs::equivalent(
-          it->path().parent_path(), run_folder(runs.parent_path(), record.cell), code
-      );
+      Record record = record_from_json(json, file.string());
+      std::error_code code;
+      const bool in_place =
+          fs::equivalent(file.parent_path(), run_folder(runs.parent_path(), record.cell), code);
       if (in_place && !code) records.push_back(std::move(record));
-      code.clear();
     } catch (const Error& error) {
       log::warn(error.what());
     }
@@ -154,9 +139,9 @@ std::vector<MergedCell> merge_runs(const fs::path& into, const fs::path& from, b
   const auto ours = read_records(records_file);
   for (const Record& theirs : read_records(from / "records.jsonl")) {
     merged.push_back(judge_merge(theirs, find_record(ours, theirs.cell), from.string()));
-    if (merged.back().verdict != MergeVerdict::kTaken || !write) continue;
-    copy_run(run_folder(from, theirs.cell), run_folder(into, theirs.cell));
-    append_record(records_file, theirs);
+    if (merged.back().verdict != MergeVerdict::kTaken) continue;
+    copy_run(run_folder(from, theirs.cell), run_folder(into, theirs.cell), write);
+    if (write) append_record(records_file, theirs);
   }
   return merged;
 }

@@ -35,8 +35,7 @@ std::string_view merge_verdict_name(MergeVerdict verdict);
 MergedCell judge_merge(const Record& theirs, const Record* ours, const std::string& from);
 
 // Takes over from the profile's folder `from` into `into` what is not there; nothing that is there
-// is changed. `write`: false: only says what would be. Errors: as read_records; kEnvironment: a
-// folder cannot be copied.
+// is changed. `write`: false: only says what would be. Errors: as read_records and copy_run().
 std::vector<MergedCell> merge_runs(const fs::path& into, const fs::path& from, bool write);
 
 // Run folders below `folder` whose records are not in its records.jsonl: their records join it.

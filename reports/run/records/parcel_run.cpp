@@ -2,14 +2,16 @@
 #include "reports/run/records/parcel_run.h"
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 
 std::optional<Json> parcel_of_run(const fs::path& run) {
-  std::error_code code;
   const fs::path file = run / kParcelFile;
-  if (run.empty() || !fs::exists(file, code)) return std::nullopt;
-  return read_json_object(file, ExitCode::kBadPrediction);
+  return with_exit_code(ExitCode::kBadPrediction, [&]() -> std::optional<Json> {
+    if (run.empty() || !is_there(file)) return std::nullopt;
+    return read_json_object(file);
+  });
 }
 
 void refuse_parcel_run(const fs::path& run, std::string_view verb) {

@@ -7,6 +7,7 @@
 
 #include "glint/core/files.h"
 #include "glint/core/nearest.h"
+#include "glint/core/presence.h"
 #include "glint/method.h"
 #include "glint/scene/scene.h"
 #include "reports/run/records/embedded.h"
@@ -21,7 +22,7 @@ std::string profile_text(const std::string& name) {
   if (it != embedded_files().end()) return std::string(it->second);
   const std::vector<std::string> known = embedded_names("profiles");
   GLINT_CHECK(
-      fs::is_regular_file(name),
+      with_exit_code(ExitCode::kUsage, [&] { return is_file(name); }),
       kUsage,
       "--profile {}: no such profile or TOML file; {}profiles: {}",
       name,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "glint/core/presence.h"
 #include "reports/run/records/embedded.h"
 #include "reports/run/records/records.h"
 
@@ -14,18 +15,17 @@ constexpr const char* kRecordsFile = "records.jsonl";
 constexpr const char* kSingleRuns = "single";  // in records of runs apart from profiles
 
 bool has_records(const fs::path& folder) {
-  std::error_code code;
-  const auto size = fs::file_size(folder / kRecordsFile, code);
-  return !code && size > 0;
+  const fs::path file = folder / kRecordsFile;
+  return with_exit_code(ExitCode::kBadPrediction, [&] {
+    return is_file(file) && fs::file_size(file) > 0;
+  });
 }
 
 // "; out has records of smoke (--profile smoke)"; empty: of none.
 std::string other_profiles(const fs::path& out) {
   std::vector<std::string> names;
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(out, code))
-    if (has_records(entry.path())) names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
+  for (const fs::path& folder : or_warn([&] { return list_folders(out); }))
+    if (or_warn([&] { return has_records(folder); })) names.push_back(folder.filename().string());
   if (names.empty()) return "";
   return fmt::format(
       "; {0} has records of {1}: name the folder, e.g. --out {2}",

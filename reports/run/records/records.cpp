@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "glint/core/json_error.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/scene.h"
 
@@ -103,7 +104,7 @@ void check_names(const CellKey& cell, std::string_view where) {
 
 std::string end_of_file(const fs::path& file, std::uintmax_t from_byte) {
   if (from_byte == 0) return read_file(file);
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in = open_file(file);
   in.seekg(static_cast<std::streamoff>(from_byte));
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -173,10 +174,9 @@ void append_record(const fs::path& file, const Record& record) {
 }
 
 std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte) {
-  if (!fs::exists(file)) return {};
   RecordList records;
   std::istringstream lines(with_exit_code(ExitCode::kBadPrediction, [&] {
-    return end_of_file(file, from_byte);
+    return is_there(file) ? end_of_file(file, from_byte) : "";
   }));
   int number = 0;
   for (std::string line; std::getline(lines, line);) {

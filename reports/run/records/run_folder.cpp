@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "glint/core/json_error.h"
+#include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
 #include "reports/run/records/earlier_run.h"
 #include "reports/run/records/environment.h"
@@ -66,7 +67,7 @@ void write_run_spec(const RunSpec& spec, const Json& resolved_config) {
 RunSpec read_run_spec(const fs::path& folder) {
   const fs::path path = folder / "config.json";
   GLINT_CHECK(
-      fs::exists(path),
+      with_exit_code(ExitCode::kBadPrediction, [&] { return is_there(path); }),
       kBadPrediction,
       "{}: not a run folder (no config.json); make one with `glint-bench train`",
       folder.string()
@@ -102,7 +103,8 @@ void write_trained(const RunSpec& spec, const TrainCost& cost) {
 
 std::optional<TrainCost> trained_cost(const RunSpec& spec) {
   const fs::path path = spec.folder / "env.json";
-  if (!fs::exists(path)) return std::nullopt;
+  if (!with_exit_code(ExitCode::kBadPrediction, [&] { return is_there(path); }))
+    return std::nullopt;
   const Json json = read_json_object(path, ExitCode::kBadPrediction);
   try {
     return TrainCost{
@@ -138,7 +140,7 @@ void write_render(const fs::path& folder, const MapSet& rendered, bool eight_bit
 
 bool is_eight_bit_render(const fs::path& view_folder) {
   const fs::path run = view_folder.parent_path().parent_path();
-  if (fs::exists(view_folder / "rgb.exr") || !fs::exists(run / "config.json")) return false;
+  if (is_there(view_folder / "rgb.exr") || !is_there(run / "config.json")) return false;
   const Json json = read_json_object(run / "config.json", ExitCode::kBadPrediction);
   const auto config = json.find("config");
   return config != json.end() && config->is_object() &&
@@ -147,13 +149,13 @@ bool is_eight_bit_render(const fs::path& view_folder) {
 
 fs::path render_file(const fs::path& folder, const MapRow& row) {
   const fs::path stored = folder / row.stored_file(), picture = folder / row.picture;
-  return !row.picture.empty() && !fs::exists(stored) && fs::exists(picture) ? picture : stored;
+  return !row.picture.empty() && !is_there(stored) && is_there(picture) ? picture : stored;
 }
 
 std::vector<std::string> log_tail(const fs::path& run, std::size_t lines) {
   std::vector<std::string> tail;
   const fs::path path = run / "log.jsonl";
-  if (run.empty() || !fs::exists(path)) return tail;
+  if (run.empty() || !is_there(path)) return tail;
   std::istringstream log(read_file(path));
   for (std::string line; std::getline(log, line);) tail.push_back(line);
   if (tail.size() > lines) tail.erase(tail.begin(), tail.end() - static_cast<long>(lines));

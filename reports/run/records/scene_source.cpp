@@ -7,6 +7,7 @@
 #include "datasets/glassroom/glassroom.h"
 #include "datasets/released_truth.h"
 #include "glint/core/file_lock.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/core/sha256.h"
 #include "reports/run/records/code_hashes.h"
@@ -58,7 +59,7 @@ Json make_document(const SceneSource& source) {
 
 // Empty: the folder holds what this program would make.
 std::string why_make(const SceneSource& source, const fs::path& folder) {
-  if (!fs::exists(folder)) return "not made yet";
+  if (!is_there(folder)) return "not made yet";
   const auto made = read_stage(folder, Stage::kData);
   if (!made) return "made by an earlier version, without a key, or not to the end";
   const auto differences = stage_differences(made->document, make_document(source));
@@ -154,18 +155,24 @@ void make_source(const SceneSource& source, const fs::path& folder) {
 SceneIdentity identify_source(const SceneSource& source, const fs::path& data_folder) {
   if (source.made()) return made_identity(source, data_folder);
   const fs::path folder = folder_of(source, data_folder);
-  if (!fs::exists(folder))
+  if (!is_there(folder))
     return {
         {{"scene", {{"max_pixels", source.max_pixels}}}},
         folder.string() + ": no such folder or file"};
   const PriorOptions& priors = source.foreign_priors;
   const std::string prior_folder = placed_priors(priors, data_folder).folder;
-  if (!prior_folder.empty() && !fs::exists(prior_folder))
+  if (!prior_folder.empty() && !is_there(prior_folder))
     return {{{"scene", {{"max_pixels", source.max_pixels}}}}, prior_folder + ": no such folder"};
   return {
       data_document(folder, options_of(source), data_folder),
       "",
       truth_content(folder, data_folder)};
+}
+
+SceneIdentity identity_or_why(const SceneIdentifier& identify, const SceneSource& source) try {
+  return identify(source);
+} catch (const Error& error) {
+  return {Json::object(), error.what()};
 }
 
 std::string truth_content(const fs::path& dataset, const fs::path& data_folder) {

@@ -30,6 +30,9 @@ struct SceneIdentity {
 SceneIdentity identify_source(const SceneSource& source, const fs::path& data_folder);
 using SceneIdentifier = std::function<SceneIdentity(const SceneSource&)>;
 
+// What cannot be identified has the error as its reason: the cell says so, and others go on.
+SceneIdentity identity_or_why(const SceneIdentifier& identify, const SceneSource& source);
+
 // Of a folder or packed file of the user's; hashes are kept below `data_folder`. Of the options the
 // loader, the sizes and the priors count; their folder is as of SceneSource. Errors
 // (kBadReference): as identify_source, and nothing there that a loader knows.

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "glint/core/error.h"
+#include "glint/core/presence.h"
 #include "glint/core/sha256.h"
 
 namespace glint {
@@ -25,19 +26,11 @@ std::string relative_name(const fs::path& file, const fs::path& folder) {
 
 // Regular files below, but for hidden ones and keys/.
 std::vector<fs::path> files_below(const fs::path& place) {
-  std::error_code code;
-  if (fs::is_regular_file(place, code)) return {place};
-  std::vector<fs::path> files;
-  if (!fs::is_directory(place, code)) return files;
-  for (auto it = fs::recursive_directory_iterator(place); it != fs::end(it); ++it) {
-    const std::string name = it->path().filename().string();
-    if (it->is_directory() && (name == "keys" || name.starts_with(".")))
-      it.disable_recursion_pending();
-    else if (it->is_regular_file() && !name.starts_with("."))
-      files.push_back(it->path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
+  if (is_file(place)) return {place};
+  return list_files_below(place, [](const fs::path& path) {
+    const std::string name = path.filename().string();
+    return name.starts_with(".") || (name == "keys" && is_folder(path));
+  });
 }
 
 struct StageReading {
@@ -47,9 +40,12 @@ struct StageReading {
 
 StageReading examine(const fs::path& folder, Stage stage) {
   const fs::path path = file_of(folder, stage);
-  std::error_code code;
-  if (!fs::exists(path, code)) return {};
-  const Json json = parse_json(read_file(path));
+  const auto code = stage == Stage::kData ? ExitCode::kBadReference : ExitCode::kBadPrediction;
+  const auto text = with_exit_code(code, [&] {
+    return is_there(path) ? std::optional(read_file(path)) : std::nullopt;
+  });
+  if (!text) return {};
+  const Json json = parse_json(*text);
   try {
     StageFile file{
         json.at("made_from"),
@@ -69,9 +65,8 @@ StageReading examine(const fs::path& folder, Stage stage) {
 
 // Empty: the file is there and of that size.
 std::string size_change(const fs::path& folder, const std::string& name, std::uintmax_t bytes) {
-  std::error_code code;
-  const std::uintmax_t size = fs::file_size(folder / name, code);
-  if (code) return name + " is missing";
+  if (!is_file(folder / name)) return name + " is missing";
+  const std::uintmax_t size = fs::file_size(folder / name);
   return size == bytes ? "" : fmt::format("{} has {} bytes, had {}", name, size, bytes);
 }
 
@@ -98,13 +93,12 @@ Json state_of(const fs::path& file) {
   return {found.st_size, nanoseconds(found.st_mtim), nanoseconds(found.st_ctim), found.st_ino};
 }
 
-// Hashes of files, by name and state.
+// Hashes of files, by name and state. What cannot be read of them is computed again.
 class HashCache {
  public:
   HashCache(const fs::path& data, const fs::path& cache)
       : path_(cache / (sha256(fs::absolute(data).lexically_normal().string()) + ".json")) {
-    std::error_code code;
-    if (fs::exists(path_, code)) known_ = parse_json(read_file(path_));
+    known_ = or_warn([&] { return is_there(path_) ? parse_json(read_file(path_)) : Json(); });
     if (!known_.is_object()) known_ = Json::object();
   }
 
@@ -154,8 +148,10 @@ std::string key_of_stage(const fs::path& folder, Stage stage) {
   return ended ? stage_key(ended->document) : "";
 }
 
-std::string why_unreadable(const fs::path& folder, Stage stage) {
+std::string why_unreadable(const fs::path& folder, Stage stage) try {
   return examine(folder, stage).why_not;
+} catch (const Error& error) {
+  return error.what();
 }
 
 void write_stage(

@@ -32,12 +32,13 @@ struct StageFile {
   std::map<std::string, std::string> hashes;    // name -> SHA-256; earlier versions wrote none
 };
 
-// Nothing: the stage did not end here (or the file is damaged, which is the same).
+// Nothing: the stage did not end here (or the file is damaged, which is the same). Errors
+// (kBadPrediction; of data kBadReference): it cannot be looked up or read.
 std::optional<StageFile> read_stage(const fs::path& folder, Stage stage);
 // Its key; empty: it did not end here.
 std::string key_of_stage(const fs::path& folder, Stage stage);
-// What is wrong with the stage's file: "damaged", "its key is not that of its document". Empty:
-// nothing, or it is not there.
+// What is wrong with the stage's file: "damaged", "its key is not that of its document", why it
+// cannot be read. Empty: nothing, or it is not there.
 std::string why_unreadable(const fs::path& folder, Stage stage);
 // With the files below `outputs` (files or folders in `folder`; those that are absent are not
 // listed).

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "glint/core/presence.h"
 #include "reports/run/selftest/programs.h"
 
 namespace glint {
@@ -24,8 +25,7 @@ std::vector<std::string> located(
 ) {
   std::vector<std::string> result = arguments;
   for (std::size_t i = 1; i < result.size(); ++i)
-    if (std::error_code code; fs::exists(folder / result[i], code))
-      result[i] = (folder / result[i]).string();
+    if (is_there(folder / result[i])) result[i] = (folder / result[i]).string();
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "glint/core/presence.h"
 #include "glint/drawing/chart.h"
 #include "reports/run/records/cell_filter.h"
 #include "reports/run/records/run_folder.h"
@@ -110,15 +111,15 @@ GrowthRun run_in(const fs::path& folder) {
 
 // Folders with the log of a run, by name.
 std::set<fs::path> runs_below(const fs::path& folder) {
-  std::set<fs::path> runs;
-  const auto add = [&](const fs::path& candidate) {
-    if (fs::exists(candidate / "log.jsonl") && fs::exists(candidate / "config.json"))
-      runs.insert(candidate);
+  GLINT_CHECK(is_folder(folder), kUsage, "--runs {}: no such folder", folder.string());
+  const auto is_other = [](const fs::path& path) {
+    return path.filename() != "log.jsonl" && !is_real_folder(path);
   };
-  GLINT_CHECK(fs::is_directory(folder), kUsage, "--runs {}: no such folder", folder.string());
-  add(folder);
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_directory()) add(entry.path());
+  std::set<fs::path> runs;
+  with_exit_code(ExitCode::kBadPrediction, [&] {
+    for (const fs::path& log : list_files_below(folder, is_other))
+      if (is_there(log.parent_path() / "config.json")) runs.insert(log.parent_path());
+  });
   GLINT_CHECK(!runs.empty(), kUsage, "--runs {}: no run with a log there", folder.string());
   return runs;
 }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "datasets/released_truth.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/ply.h"
@@ -32,8 +33,8 @@ constexpr MeshKind kKinds[] = {
 MeshProtocol protocol_of(const FigureScene& scene) {
   for (const auto& [method, folder] : scene.runs) {
     const fs::path path = folder / "metrics.json";
-    if (!fs::exists(path)) continue;
     try {
+      if (!is_there(path)) continue;
       const Json json = read_json_object(path, ExitCode::kBadPrediction);
       if (!json.contains("meshes")) continue;
       MeshProtocol protocol;
@@ -65,7 +66,7 @@ class MeshPainter {
   // Null: no such file, or a damaged one (a warning). The same file is read once.
   const SeenMesh* see(const fs::path& path, bool is_truth) {
     const auto [it, added] = seen_.try_emplace(path);
-    if (added && fs::exists(path)) it->second = look_at(path);
+    if (added) it->second = look_at(path);
     if (it->second && !is_truth) it->second->kept = {};
     return it->second ? &*it->second : nullptr;
   }
@@ -79,6 +80,7 @@ class MeshPainter {
  private:
   std::optional<SeenMesh> look_at(const fs::path& path) const {
     try {
+      if (!is_there(path)) return std::nullopt;
       const TriangleMesh mesh = clean_mesh(read_mesh_ply(path, NonFinite::kKeep)).mesh;
       SeenMesh seen{shade(mesh), render_mesh(mesh, camera_), {}, kept(mesh)};
       seen.scored = render_mesh(seen.kept, camera_);
@@ -110,7 +112,7 @@ class MeshPainter {
 bool any_has(const FigureScene& scene, const std::set<std::string>& methods, const char* mesh) {
   return std::any_of(methods.begin(), methods.end(), [&](const std::string& method) {
     const auto run = scene.runs.find(method);
-    return run != scene.runs.end() && fs::exists(run->second / mesh);
+    return run != scene.runs.end() && or_warn([&] { return is_there(run->second / mesh); });
   });
 }
 

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "reports/show/page/page.h"
 
+#include <functional>
+#include <regex>
+#include <set>
+
 #include "glint/core/file_lock.h"
 #include "glint/core/left_behind.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
+#include "glint/core/replace_folder.h"
 #include "reports/run/records/embedded.h"
 #include "reports/run/records/script_text.h"
 #include "reports/show/page/mesh_part.h"
@@ -51,10 +57,7 @@ std::string inlined_page(const PageOptions& options, const fs::path& assets) {
   const auto add = [&](const fs::path& file) {
     scripts += fmt::format("<script>{}</script>\n", inline_text(read_file(file)));
   };
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(assets))
-    if (entry.is_regular_file()) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  const std::vector<fs::path> files = list_files_below(assets);
   Progress progress("report: into one file", files.size());
   for (const fs::path& file : files) {
     progress.advance();
@@ -96,12 +99,34 @@ void write_assets(
   write_file(assets / "data.js", fmt::format("window.GLINT_REPORT={};\n", script_json(summary)));
 }
 
-std::uintmax_t bytes_of_page(const fs::path& report) {
-  std::uintmax_t bytes = fs::file_size(report / "index.html");
-  if (!fs::exists(report / "assets")) return bytes;
-  for (const auto& entry : fs::recursive_directory_iterator(report / "assets"))
-    if (entry.is_regular_file()) bytes += entry.file_size();
+std::uintmax_t bytes_below(const fs::path& folder) {
+  std::uintmax_t bytes = 0;
+  for (const fs::path& file : list_files_below(folder)) bytes += fs::file_size(file);
   return bytes;
+}
+
+// Names that write_assets() and write_scene() give, of earlier pages too.
+bool is_of_a_page(const std::string& name) {
+  static const std::regex ours(
+      R"((report|mesh3d|data|scene_\d+|probe_\d+_\d+|mesh_\d+_[tr]\d+[ab]?)\.js|report\.css|)"
+      R"(LICENSES\.txt|pictures/s\d+/v\d+_[tr]\d*_\w+\.(png|js))"
+  );
+  return std::regex_match(name, ours);
+}
+
+std::set<std::string> own_names(const fs::path& assets, const fs::path&) {
+  std::set<std::string> names = leaves_below(assets);
+  std::erase_if(names, std::not_fn(is_of_a_page));
+  return names;
+}
+
+// What others put there stays, also where a page in a single file needs no folder.
+void replace_assets(const fs::path& fresh, const fs::path& assets) {
+  const bool is_empty = list_entries(fresh).empty();
+  for (const std::string& name : replace_folder(fresh, assets, own_names))
+    log::warn(fmt::format("{}: of no page, left as it is", (assets / name).string()));
+  std::error_code code;
+  if (is_empty) fs::remove(assets, code);  // fails where something of others is left
 }
 
 // Each `all` on a folder writes the page at its end: the pages come one after the other.
@@ -111,23 +136,9 @@ FileLock wait_for_page(const fs::path& report) {
   });
 }
 
-void remove_folder(const fs::path& folder) {
+void empty_folder(const fs::path& folder) {
   std::error_code code;
-  fs::remove_all(folder, code);
-  GLINT_CHECK(!code, kEnvironment, "{}: cannot be removed ({})", folder.string(), code.message());
-}
-
-void move_folder(const fs::path& from, const fs::path& to) {
-  std::error_code code;
-  fs::rename(from, to, code);
-  GLINT_CHECK(
-      !code,
-      kEnvironment,
-      "{}: cannot be moved to {} ({})",
-      from.string(),
-      to.string(),
-      code.message()
-  );
+  for (const fs::path& path : list_entries(folder)) fs::remove_all(path, code);
 }
 
 }  // namespace
@@ -138,18 +149,19 @@ std::size_t mesh_faces(const PageOptions& options) {
 }
 
 fs::path write_page(const PageOptions& options, const std::vector<Table>& tables) {
-  const fs::path report = options.folder / "report", assets = report / "assets";
+  const fs::path report = options.folder / "report", assets = absolute_folder(report / "assets");
   const UnfinishedFolder fresh(assets);  // an error leaves the page before as it was
   write_assets(options, tables, fresh.path());
   const std::string html =
       options.single_file ? inlined_page(options, fresh.path()) : linked_page(options);
+  if (options.single_file) empty_folder(fresh.path());
+  const std::uintmax_t bytes = html.size() + bytes_below(fresh.path());
   const FileLock lock = wait_for_page(report);
-  remove_folder(assets);
-  if (!options.single_file) move_folder(fresh.path(), assets);
+  replace_assets(fresh.path(), assets);
   write_file(report / "index.html", html);
   log::info(fmt::format(
       "report: {:.1f} MB in {}, meshes of at most {} faces",
-      static_cast<double>(bytes_of_page(report)) / 1e6,
+      static_cast<double>(bytes) / 1e6,
       options.single_file ? "one file" : "a folder",
       mesh_faces(options)
   ));

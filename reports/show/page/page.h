@@ -27,10 +27,11 @@ inline constexpr std::size_t kLargePageBytes = 50'000'000;
 
 std::size_t mesh_faces(const PageOptions& options);
 
-// Writes FOLDER/report/index.html and, unless `single_file`, FOLDER/report/assets/ (made anew).
-// Absent renders, maps, meshes, logs and data are shown as missing; damaged ones too, with a
-// warning. Progress and the size written go to standard error. Returns the path of index.html.
-// Errors: those of read_records(), kEnvironment (disk).
+// Writes FOLDER/report/index.html and, unless `single_file`, FOLDER/report/assets/ (made anew; what
+// others put there stays, and is named in a warning). Absent renders, maps, meshes, logs and data
+// are shown as missing; damaged ones too, with a warning. Progress and the size written go to
+// standard error. Returns the path of index.html. Errors: those of read_records(), kEnvironment
+// (disk).
 fs::path write_page(const PageOptions& options, const std::vector<Table>& tables);
 
 }  // namespace glint

@@ -7,6 +7,7 @@
 
 #include "datasets/released_truth.h"
 #include "glint/core/parallel.h"
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "reports/run/records/script_text.h"
@@ -20,8 +21,8 @@ namespace glint {
 namespace {
 
 std::optional<RunSpec> spec_of(const fs::path& folder) {
-  if (!fs::exists(folder / "config.json")) return std::nullopt;
   try {
+    if (!is_there(folder / "config.json")) return std::nullopt;
     return read_run_spec(folder);
   } catch (const Error& error) {
     log::warn(fmt::format("report: {}", error.what()));
@@ -32,8 +33,8 @@ std::optional<RunSpec> spec_of(const fs::path& folder) {
 // metrics.json of a run; an empty object where there is none that can be read.
 Json read_scores(const fs::path& folder) {
   const fs::path path = folder / "metrics.json";
-  if (!fs::is_regular_file(path)) return Json::object();
-  const Json json = parse_json(read_file(path));
+  const Json json = or_warn([&] { return is_file(path) ? parse_json(read_file(path)) : Json(); });
+  if (json.is_null()) return Json::object();
   const auto views = json.find("views");
   if (json.is_object() && views != json.end() && views->is_array()) return json;
   log::warn(fmt::format("report: shown as missing: {}: no scores of views", path.string()));
@@ -53,11 +54,8 @@ std::map<std::string, Json> scores_by_view(const Json& scores) {
 constexpr const char* kRunMeshes[] = {"mesh.ply", "mesh_transmission.ply"};
 
 std::size_t run_steps(const fs::path& run) {
-  std::size_t steps = 0;
-  if (fs::is_directory(run / "renders"))
-    for (const auto& entry : fs::directory_iterator(run / "renders"))
-      if (entry.is_directory()) ++steps;
-  for (const char* mesh : kRunMeshes) steps += fs::is_regular_file(run / mesh);
+  std::size_t steps = or_warn([&] { return list_folders(run / "renders"); }).size();
+  for (const char* mesh : kRunMeshes) steps += or_warn([&] { return is_file(run / mesh); });
   return steps;
 }
 
@@ -166,7 +164,7 @@ class SceneWriter {
     for (std::size_t run = 0; run < scene_.runs.size(); ++run) {
       const fs::path folder = view_folder(scene_.runs[run].folder, views_[view]);
       const LayerMaps maps = rendered_layers(folder, truth);
-      if (fs::is_directory(folder)) progress_.advance();
+      if (or_warn([&] { return is_folder(folder); })) progress_.advance();
       if (size == ImageSize{} && !maps.empty()) size = maps.begin()->second.size();
       json["runs"].push_back(write_pictures(maps, view, fmt::format("r{}", run)));
       probe["runs"].push_back(probe_values(maps, probe_step(size)));
@@ -248,7 +246,7 @@ class SceneWriter {
   void add_mesh(
       const fs::path& path, const std::string& title, const std::string& owner, Json& meshes
   ) const {
-    if (!fs::is_regular_file(path)) return;
+    if (!or_warn([&] { return is_file(path); })) return;
     progress_.advance(owner.front() == 'r');  // the truth's is no step: no run has it
     TriangleMesh mesh;
     try {

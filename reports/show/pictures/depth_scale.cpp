@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
 #include "reports/run/records/run_folder.h"
 
@@ -42,7 +43,8 @@ DepthScale depth_scale(const std::vector<fs::path>& runs, const std::vector<View
     for (const View& view : views) {
       if (from_truth) continue;
       for (const MapRow& row : depth_maps())
-        if (const fs::path file = view_folder(run, view.name) / row.file; fs::is_regular_file(file))
+        if (const fs::path file = view_folder(run, view.name) / row.file;
+            or_warn([&] { return is_file(file); }))
           add_depths(read_image(file, 1), depths);
     }
   if (depths.empty()) return {};

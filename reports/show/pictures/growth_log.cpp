@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "glint/core/config.h"
+#include "glint/core/presence.h"
 
 namespace glint {
 
@@ -67,7 +68,7 @@ Course averaged(const Course& course) {
 
 GrowthLog read_growth_log(const fs::path& file) {
   GrowthLog log;
-  if (!fs::is_regular_file(file)) return log;
+  if (!is_file(file)) return log;
   std::istringstream lines(read_file(file));
   for (std::string text; std::getline(lines, text);) {
     const Json line = parse_json(text);

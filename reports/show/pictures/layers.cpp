@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/drawing/color_maps.h"
 #include "glint/scene/image_files.h"
@@ -65,10 +66,10 @@ Image displayed_part(const View& view, const MapRow& part) {
 }
 
 // Empty where there is no file or none that can be read.
-Image read_layer(const fs::path& file, int channels) {
-  if (!fs::exists(file)) return {};
+Image read_layer(const fs::path& view_folder, const MapRow& row) {
   try {
-    return read_image(file, channels);
+    const fs::path file = render_file(view_folder, row);
+    return is_there(file) ? read_image(file, row.channels()) : Image();
   } catch (const Error& error) {
     log::warn(fmt::format("report: shown as missing: {}", error.what()));
     return {};
@@ -163,8 +164,7 @@ std::vector<PageLayer> page_layers() {
 LayerMaps rendered_layers(const fs::path& view_folder, const View* view) {
   Collector layers(view ? view->rgb.size() : ImageSize{});
   for (const MapRow& row : maps())
-    if (!row.shown_file().empty())
-      layers.add(row.id, read_layer(render_file(view_folder, row), row.channels()));
+    if (!row.shown_file().empty()) layers.add(row.id, read_layer(view_folder, row));
   if (view == nullptr) return layers.take();
   if (const Image* rgb = layers.find("rgb")) layers.add("error", error_map(*rgb, view->rgb));
   const Image& true_normal = view->truth["normal"];
@@ -184,7 +184,7 @@ Image rendered_layer(const fs::path& view_folder, const std::string& id, const V
   }
   const MapRow* row = find_map(id);
   if (row == nullptr || row->shown_file().empty()) return {};
-  Image map = read_layer(render_file(view_folder, *row), row->channels());
+  Image map = read_layer(view_folder, *row);
   return map.size() == view.rgb.size() ? map : Image();
 }
 
@@ -193,7 +193,8 @@ bool has_rendered_layer(const fs::path& view_folder, const std::string& id, cons
   if (id == "angle")
     return !view.truth["normal"].empty() && has_rendered_layer(view_folder, "normal", view);
   const MapRow* row = find_map(id);
-  return row != nullptr && !row->shown_file().empty() && fs::exists(render_file(view_folder, *row));
+  return row != nullptr && !row->shown_file().empty() &&
+         or_warn([&] { return is_there(render_file(view_folder, *row)); });
 }
 
 LayerMaps true_layers(const View& view) {

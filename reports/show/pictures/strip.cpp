@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "glint/core/presence.h"
 #include "glint/drawing/color_maps.h"
 #include "glint/drawing/picture_grid.h"
 #include "glint/scene/image_files.h"
@@ -34,7 +35,7 @@ StripPlan plan_strips(const fs::path& run, const std::vector<View>& views) {
   for (const MapRow& row : maps()) {
     if (row.shown_file().empty() || row.id == "rgb") continue;  // the image leads every strip
     const auto rendered = [&](const View& view) {
-      return fs::exists(view_folder(run, view.name) / row.shown_file());
+      return is_there(view_folder(run, view.name) / row.shown_file());
     };
     const auto has_truth = [&](const View& view) { return view.truth.has(row); };
     if (std::any_of(views.begin(), views.end(), rendered))

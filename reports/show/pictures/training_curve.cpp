@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "glint/core/presence.h"
 #include "reports/run/records/script_text.h"
 
 namespace glint {
@@ -116,7 +117,7 @@ Json training_events(const std::vector<Step>& steps) {
 }  // namespace
 
 Json training_curve(const fs::path& log, std::size_t points) {
-  if (!fs::is_regular_file(log)) return nullptr;
+  if (!is_file(log)) return nullptr;
   const std::vector<Step> steps = read_steps(log);
   if (steps.empty()) return nullptr;
   Json curve = Json::object();

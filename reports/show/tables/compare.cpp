@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "glint/core/presence.h"
 #include "metrics/metric.h"
 #include "reports/show/tables/statistics.h"
 
@@ -188,16 +189,18 @@ std::size_t Comparison::num_regressions() const {
   );
 }
 
-std::vector<Record> read_store(const fs::path& path) {
-  const fs::path file = fs::is_directory(path) ? path / "records.jsonl" : path;
+namespace {
+
+std::vector<Record> records_at(const fs::path& path) {
+  const fs::path file = is_folder(path) ? path / "records.jsonl" : path;
   GLINT_CHECK(
-      fs::is_regular_file(file),
+      is_file(file),
       kBadPrediction,
       "{}: no such file; expected a folder with records.jsonl or the file itself",
       file.string()
   );
   // Something else altogether is not read line by line, with a warning each.
-  const bool of_objects = std::ifstream(file).peek() == '{';
+  const bool of_objects = open_file(file).peek() == '{';
   auto records = of_objects ? read_records(file) : std::vector<Record>();
   GLINT_CHECK(
       !records.empty(),
@@ -206,6 +209,12 @@ std::vector<Record> read_store(const fs::path& path) {
       file.string()
   );
   return records;
+}
+
+}  // namespace
+
+std::vector<Record> read_store(const fs::path& path) {
+  return with_exit_code(ExitCode::kBadPrediction, [&] { return records_at(path); });
 }
 
 Comparison compare_records(

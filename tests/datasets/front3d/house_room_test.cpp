@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/front3d/house_room.h"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -124,6 +126,12 @@ TEST_CASE("a model that cannot be read is an error that names it") {
         Contains("raw_model.obj")
     );
   }
+  fs::remove(model);
+  REQUIRE(::mkfifo(model.c_str(), 0600) == 0);
+  CHECK_THAT(
+      bad_reference([&] { furnished(read_house(kFlatHouse), {.models = folder.path()}); }),
+      Contains("raw_model.obj: is a pipe")
+  );
 }
 
 TEST_CASE("no ray leaves the room, through windows, doors or seams, and the window is bright") {

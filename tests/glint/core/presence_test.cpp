@@ -53,6 +53,45 @@ TEST_CASE("a folder that this user may not enter hides nothing in silence") {
     );
 }
 
+TEST_CASE("a name is taken by whatever has it, and a folder's own by a folder alone") {
+  const TempFolder folder;
+  fs::create_symlink("missing", folder / "dangling");
+  fs::create_directories(folder / "inner");
+  fs::create_directory_symlink("inner", folder / "to_folder");
+  CHECK(is_taken(folder / "dangling"));
+  CHECK_FALSE(is_taken(folder / "missing"));
+  CHECK_FALSE(is_taken(folder / "missing/below"));
+  CHECK(is_real_folder(folder / "inner"));
+  CHECK_FALSE(is_real_folder(folder / "to_folder"));
+  CHECK_FALSE(is_real_folder(folder / "dangling"));
+}
+
+TEST_CASE("a folder's entries are listed whatever they are, files below it looked up") {
+  const TempFolder folder;
+  write_file(folder / "b.txt", "b");
+  write_file(folder / "inner/.a.txt", "a");
+  fs::create_directory_symlink("inner", folder / "to_folder");
+  fs::create_symlink("b.txt", folder / "to_file");
+  const std::vector<fs::path> files = {
+      folder / "b.txt", folder / "inner/.a.txt", folder / "to_file"};
+  CHECK(list_files_below(folder.path()) == files);
+  CHECK(list_files_below(folder / "missing").empty());
+  fs::create_symlink("missing", folder / "dangling");
+  CHECK(list_entries(folder.path()).size() == 5);
+  CHECK_THAT(
+      error_of(ExitCode::kBadReference, [&] { list_files_below(folder.path()); }),
+      Contains("dangling: is a link that leads nowhere")
+  );
+  const auto is_link = [](const fs::path& path) { return fs::is_symlink(path); };
+  CHECK(list_files_below(folder.path(), is_link).size() == 2);
+  CHECK_THAT(
+      error_of(ExitCode::kBadReference, [&] { list_entries(folder / "b.txt"); }),
+      Contains("is a file, expected a folder")
+  );
+  CHECK_FALSE(or_warn([&] { return is_there(folder / "dangling"); }));
+  CHECK(or_warn([&] { return is_there(folder / "b.txt"); }));
+}
+
 TEST_CASE("pipes and devices are neither read nor waited for") {
   const TempFolder folder;
   const fs::path pipe = folder / "pipe.png";

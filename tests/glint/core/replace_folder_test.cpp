@@ -124,6 +124,15 @@ TEST_CASE("what a killed replacement left aside comes back, or its foreign files
   CHECK(entries(place.path()) == 1);
 }
 
+TEST_CASE("a folder whose files of ours have gone is nobody else's") {
+  const TempFolder place;
+  const fs::path folder = place / "EX";
+  make_anew(folder, "first");
+  for (const auto& entry : fs::directory_iterator(folder / "images")) fs::remove(entry);
+  CHECK(make_anew(folder, "second").empty());
+  CHECK(is_whole(folder));
+}
+
 TEST_CASE("a foreign file whose name is taken keeps all that stands aside") {
   const TempFolder place;
   const fs::path folder = place / "EX", aside = aside_of_ended(folder);

@@ -6,6 +6,7 @@
 
 #include "glint/core/file_lock.h"
 #include "glint/scene/image_files.h"
+#include "glint/train/checkpoint.h"
 #include "reports/run/records/earlier_run.h"
 #include "tests/reports/run_words.h"
 #include "tests/support/small_room.h"
@@ -84,6 +85,38 @@ TEST_CASE("training again takes the files of the run, and no others") {
   write_file(place.mine / "mine.ply", "another size");
   CHECK(run({"render", "--run", place.mine, "--quiet"}) == 0);
   CHECK(read_file(place.mine / "renders/notes.txt") == "mine");
+}
+
+TEST_CASE("what others put beside a checkpoint stays when the run goes, and is said") {
+  const Place place;
+  write_file(place.mine / "config.json", R"({"written_by": "glint-bench"})");
+  write_file(place.mine / kCheckpointFile, "state");
+  write_file(place.mine / kProgressFile, "{}");
+  write_file(place.mine / "checkpoint/notes/why.txt", "mine");
+  std::string said = test::captured(2, [&] { REQUIRE(place.train({"--force"}) == 0); });
+  CHECK(read_file(place.mine / "checkpoint/notes/why.txt") == "mine");
+  CHECK_THAT(said, Catch::Contains("mine/checkpoint/notes/why.txt: of no run, left as it is"));
+  CHECK_FALSE(fs::exists(place.mine / kCheckpointFile));
+  // A finished run that is set aside, and put back where nothing comes of the new one.
+  const std::string model = read_file(place.mine / "interface.ply");
+  { const EarlierRun earlier(place.mine); }
+  CHECK(read_file(place.mine / "interface.ply") == model);
+  REQUIRE(place.train({"--force"}) == 0);
+  CHECK(read_file(place.mine / "checkpoint/notes/why.txt") == "mine");
+}
+
+TEST_CASE("an import in a place where another process is at work names it") {
+  const Place place;
+  for (const View& view : test::small_room().test)
+    write_png(place / "theirs/rgb" / (view.name + ".png"), view.rgb);
+  const fs::path imported = place / "out/ci/runs/room_1/theirs/0";
+  write_file(imported / "renders/half.png", "of an import that has just begun");
+  const auto lock = FileLock::take(FileLock::file_beside(imported));
+  REQUIRE(std::holds_alternative<FileLock>(lock));
+  const std::string said =
+      test::captured(2, [&] { CHECK(place.import_from(place / "theirs") == 1); });
+  CHECK_THAT(said, Catch::Contains("theirs/0: process "));
+  CHECK_THAT(said, Catch::Contains("is at work there; wait for it, or give another --method"));
 }
 
 TEST_CASE("a training that cannot begin leaves the finished run") {

@@ -6,7 +6,7 @@
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "reports/run/records/stage_files.h"
-#include "tests/reports/run_words.h"
+#include "tests/reports/tiny_store.h"
 #include "tests/support/small_room.h"
 
 using namespace glint;
@@ -14,31 +14,7 @@ using test::run;
 
 namespace {
 
-// A copy of a small profile's results and data: one run of 2DGS in a room of its own.
-class Store {
- public:
-  Store() {
-    fs::copy(original() / "out", folder_ / "out", fs::copy_options::recursive);
-    fs::copy(original() / "data", folder_ / "data", fs::copy_options::recursive);
-    edit_json(cell() / "config.json", [&](Json& json) {
-      json["dataset_folder"] = room().string();
-    });
-  }
-
-  fs::path cell() const { return profile() / "runs/room_1/2dgs/0"; }
-  fs::path profile() const { return folder_ / "out/tiny"; }
-  fs::path room() const {
-    for (const auto& entry : fs::directory_iterator(folder_ / "data/glassroom"))
-      return entry.path();
-    return {};
-  }
-
-  static void edit_json(const fs::path& file, const std::function<void(Json&)>& edit) {
-    Json json = read_json_object(file);
-    edit(json);
-    write_file(file, json.dump(1) + "\n");
-  }
-
+struct Store : test::TinyStore {
   // What verify says of the run, and its exit code.
   struct Answer {
     int code = 0;
@@ -72,41 +48,6 @@ class Store {
   Answer verify_cell() const { return verify({cell().string()}); }
   // Where metrics are not what it is about.
   Answer verify_files() const { return verify({cell().string(), "--fast"}); }
-
- private:
-  static const fs::path& original() {
-    static const test::TempFolder folder;
-    static const bool made = [] {
-      set_quiet(true);
-      write_file(
-          folder / "tiny.toml",
-          "iterations = 3\nmethods = [\"2dgs\"]\ntiming_frames = 1\ntiming_warmup = 0\n"
-          "scenes = [\"room_1\"]\n[defaults]\nwidth = 48\nheight = 27\nviews = 16\nspp = 4\n"
-          "[mesh]\nvoxel = 0.1\n[mesh_metrics]\nnum_samples = 5000\n"
-      );
-      const std::string text = test::captured(1, [] {
-        REQUIRE(
-            run(
-                {"all",
-                 "--executor",
-                 "inline",
-                 "--profile",
-                 folder / "tiny.toml",
-                 "--out",
-                 folder / "out",
-                 "--data",
-                 folder / "data",
-                 "--quiet"}
-            ) == 0
-        );
-      });
-      return !text.empty();
-    }();
-    REQUIRE(made);
-    return folder.path();
-  }
-
-  test::TempFolder folder_;
 };
 
 bool has(const std::vector<std::string>& lines, const std::string& text) {
@@ -186,6 +127,26 @@ TEST_CASE("a record of another training is found") {
   CHECK(has(store.verify_files().bad(), "record: train_key 0123, the run's is"));
 }
 
+TEST_CASE("the record beside a run's files that was edited is found, with records.jsonl or without"
+) {
+  const Store store;
+  const fs::path file = store.cell() / "record.json";
+  CHECK(store.verify_files().verdict_of("record.json") == "ok");
+  Store::edit_json(file, [](Json& json) {
+    json["metrics"]["psnr"] = 99;
+    json["environment"]["cpu"] = "another";
+  });
+  const Store::Answer answer = store.verify_files();
+  CHECK(answer.code == 4);
+  REQUIRE(answer.bad().size() == 1);
+  CHECK(has(answer.bad(), "record.json: psnr 99.0, metrics.json has"));
+  CHECK(has(answer.bad(), "environment/cpu \"another\", records.jsonl has"));
+  fs::remove(store.profile() / "records.jsonl");
+  CHECK(has(store.verify_files().bad(), "record.json: psnr 99.0, metrics.json has"));
+  write_file(file, "{}");
+  CHECK(has(store.verify_files().bad(), "record.json: "));
+}
+
 TEST_CASE("numbers that were edited are computed again") {
   const Store store;
   Store::edit_json(store.cell() / "metrics.json", [](Json& json) {
@@ -222,6 +183,7 @@ TEST_CASE("other code is told, and is no failure") {
   Json record = parse_json(read_file(store.profile() / "records.jsonl"));
   record["score_key"] = read_json_object(store.cell() / "keys/score.json")["key"];
   write_file(store.profile() / "records.jsonl", record.dump() + "\n");
+  write_file(store.cell() / "record.json", record.dump() + "\n");
   const Store::Answer answer = store.verify_files();
   CHECK(answer.code == 0);
   CHECK(answer.verdict_of("score now") == "note");

@@ -8,6 +8,7 @@
 #include "reports/run/records/records.h"
 #include "reports/run/records/run_folder.h"
 #include "reports/run/records/stage_files.h"
+#include "tests/support/captured.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -80,6 +81,20 @@ TEST_CASE("What a finished run no longer needs is left over") {
   CHECK(fs::exists(run / "interface.ply"));
   CHECK(fs::exists(run / "thesis.tex"));
   CHECK(!fs::exists(run / "previous_run"));
+}
+
+TEST_CASE("a run that cannot be looked at is a warning, and the others are listed") {
+  const Store store;
+  store.make_run("started/2dgs/0");
+  const fs::path odd = store.make_run("odd/2dgs/0"), lost = store.run("lost/2dgs/0");
+  fs::create_directories(odd / "checkpoint");
+  fs::create_symlink("nowhere", odd / kCheckpointFile);
+  fs::create_directories(lost);
+  fs::create_symlink("nowhere", lost / "config.json");
+  std::string said =
+      test::captured(2, [&] { CHECK(store.found() == Names{"runs/started/2dgs/0"}); });
+  for (const char* name : {"odd/2dgs/0/checkpoint/state.safetensors", "lost/2dgs/0/config.json"})
+    CHECK_THAT(said, Catch::Contains(std::string(name) + ": is a link that leads nowhere"));
 }
 
 TEST_CASE("Of a run that goes, what others put there stays") {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reports/run/records/merge_runs.h"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 
 #include "glint/core/error.h"
@@ -115,6 +117,48 @@ TEST_CASE("a finished cell takes the place of a failed one, not the other way ro
   CHECK(records[0].ok());
   CHECK(records[1].ok());
   CHECK(ours.from(failed("a")) == "theirs");
+}
+
+TEST_CASE("what a link in a run leads to is copied") {
+  const Store ours("ours", {}), theirs("theirs", {record_of("b", 21)});
+  const test::TempFolder disk;
+  const fs::path there = theirs.run(record_of("b", 0));
+  write_file(disk / "renders/0000/rgb.exr", "render");
+  write_file(disk / "mesh.ply", "mesh");
+  fs::create_directory_symlink(disk / "renders", there / "renders");
+  fs::create_symlink(disk / "mesh.ply", there / "mesh.ply");
+  REQUIRE(
+      verdicts(merge_runs(ours.folder.path(), theirs.folder.path(), true)) == std::vector{V::kTaken}
+  );
+  const fs::path here = ours.run(record_of("b", 0));
+  CHECK(read_file(here / "renders/0000/rgb.exr") == "render");
+  CHECK(read_file(here / "mesh.ply") == "mesh");
+  CHECK_FALSE(fs::is_symlink(here / "renders"));
+  CHECK_FALSE(fs::is_symlink(here / "mesh.ply"));
+}
+
+TEST_CASE("what cannot be copied of a run is named, and nothing of the run is taken over") {
+  const Store ours("ours", {}), theirs("theirs", {record_of("b", 21)});
+  const fs::path there = theirs.run(record_of("b", 0));
+  const auto refused = [&](const fs::path& file, const char* why) {
+    for (const bool write : {false, true}) {
+      const std::string said = test::error_of(ExitCode::kBadPrediction, [&] {
+        merge_runs(ours.folder.path(), theirs.folder.path(), write);
+      });
+      CHECK_THAT(said, Catch::StartsWith(file.string() + ": is " + why));
+    }
+    fs::remove(file);
+    CHECK(read_records(ours.file()).empty());
+    CHECK_FALSE(fs::exists(ours.run(record_of("b", 0))));
+  };
+  const fs::path file = there / "renders/0000/rgb.exr";
+  fs::create_directories(file.parent_path());
+  REQUIRE(::mkfifo(file.c_str(), 0600) == 0);
+  refused(file, "a pipe");
+  fs::create_symlink("nowhere", file);
+  refused(file, "a link that leads nowhere");
+  fs::create_directory_symlink(there, there / "renders/again");
+  refused(there / "renders/again", "a link that leads back to a folder around it");
 }
 
 TEST_CASE("asked only, nothing is written") {

@@ -20,6 +20,7 @@
 #include "reports/show/pictures/layers.h"
 #include "reports/show/tables/method_title.h"
 #include "tests/reports/fake_method.h"
+#include "tests/support/captured.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/told_method.h"
 
@@ -323,6 +324,41 @@ TEST_CASE("a page that is written again keeps nothing of the one before") {
   write_file(store.asset("scene_7.js"), "old");
   store.write();
   CHECK(!fs::exists(store.asset("scene_7.js")));
+}
+
+TEST_CASE("what others put beside the page's files stays, and nothing of the page is taken for it"
+) {
+  Store store;
+  store.add_run("fake");
+  store.write();
+  CHECK(test::captured(2, [&] { store.write(); }).empty());
+  for (const char* name : {"notes.txt", "pictures/s0/mine.png", "mesh_notes.js"})
+    write_file(store.asset(name), "mine");
+  for (const bool single_file : {false, true}) {
+    store.options.single_file = single_file;
+    const std::string said = test::captured(2, [&] { store.write(); });
+    for (const char* name : {"notes.txt", "pictures/s0/mine.png", "mesh_notes.js"}) {
+      CHECK(read_file(store.asset(name)) == "mine");
+      CHECK_THAT(said, Catch::Contains(std::string(name) + ": of no page, left as it is"));
+    }
+    CHECK(fs::exists(store.asset("data.js")) != single_file);
+  }
+}
+
+TEST_CASE("a run that cannot be looked at is a warning, and the page shows the others") {
+  Store store;
+  for (const char* method : {"whole", "odd"}) store.add_run(method);
+  const fs::path odd = store.options.folder / "runs/room_1/odd/0";
+  for (const char* name :
+       {"config.json", "metrics.json", "log.jsonl", "mesh.ply", "renders/0002/rgb.exr"}) {
+    fs::remove(odd / name);
+    fs::create_symlink("nowhere", odd / name);
+  }
+  const std::string said = test::captured(2, [&] { store.write(); });
+  for (const char* name :
+       {"config.json", "metrics.json", "log.jsonl", "mesh.ply", "renders/0002/rgb.exr"})
+    CHECK_THAT(said, Catch::Contains(std::string("odd/0/") + name + ": is a link"));
+  CHECK(part(store, "scene_0")["runs"][0]["scores"] == Json::parse("[[20.0], [20.0]]"));
 }
 
 TEST_CASE("records that cannot be read leave the page before as it was") {
