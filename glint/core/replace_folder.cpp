@@ -47,11 +47,6 @@ void swap_in(const fs::path& made, const fs::path& folder, const fs::path& aside
   rename_to(made, folder);
 }
 
-bool is_plain_folder(const fs::path& path) {
-  std::error_code code;
-  return fs::is_directory(fs::symlink_status(path, code));
-}
-
 // Not those empty folders that the new one has, too: files of ours stood in them.
 std::vector<std::string> foreign_names(
     const fs::path& old, const fs::path& fresh, const OwnNames& own
@@ -59,7 +54,7 @@ std::vector<std::string> foreign_names(
   const std::set<std::string> ours = own(old, fresh);
   std::vector<std::string> names;
   for (const std::string& name : leaves_below(old))
-    if (!ours.contains(name) && !(is_plain_folder(old / name) && is_plain_folder(fresh / name)))
+    if (!ours.contains(name) && !(is_real_folder(old / name) && is_real_folder(fresh / name)))
       names.push_back(name);
   return names;
 }
