@@ -211,6 +211,29 @@ LoadedScene load_imported(
   return loaded;
 }
 
+// A run folder of an import, for it alone. Folders around it that were made for the lock go again
+// where nothing came of the import.
+class ImportPlace {
+ public:
+  explicit ImportPlace(const fs::path& run) : run_(run), there_(run) {
+    do there_ = there_.parent_path();
+    while (!there_.empty() && !is_there(there_));
+    lock_.emplace(lock_run(run, "give another --method or --seed"));
+  }
+  ~ImportPlace() {
+    lock_.reset();
+    std::error_code code;
+    fs::path folder = run_.parent_path();
+    while (folder != there_ && fs::remove(folder, code)) folder = folder.parent_path();
+  }
+  ImportPlace(const ImportPlace&) = delete;
+  ImportPlace& operator=(const ImportPlace&) = delete;
+
+ private:
+  fs::path run_, there_;
+  std::optional<FileLock> lock_;
+};
+
 int eval_predictions(const CommonOptions& common, const EvalArguments& arguments) {
   GLINT_CHECK(
       !arguments.predictions.empty() && !arguments.dataset.empty(),
@@ -226,7 +249,7 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
   const RunSpec spec =
       make_spec(cell, profile, loaded, run_folder(common.own_folder(profile), cell.cell));
   const fs::path records = common.records_file(profile);
-  const FileLock lock = lock_run(spec.folder, "give another --method or --seed");
+  const ImportPlace place(spec.folder);
   check_new_import(records, cell.cell, arguments);
   EarlierRun earlier(spec.folder);
   const auto notes = import_predictions(
