@@ -10,6 +10,7 @@
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
 #include "glint/core/sha256.h"
+#include "reports/run/records/linked_files.h"
 
 namespace glint {
 namespace {
@@ -24,13 +25,15 @@ std::string relative_name(const fs::path& file, const fs::path& folder) {
   return file.lexically_normal().lexically_relative(folder.lexically_normal()).generic_string();
 }
 
-// Regular files below, but for hidden ones and keys/.
+// Hidden ones, and keys/.
+bool is_no_output(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.starts_with(".") || (name == "keys" && is_folder(path));
+}
+
 std::vector<fs::path> files_below(const fs::path& place) {
   if (is_file(place)) return {place};
-  return list_files_below(place, [](const fs::path& path) {
-    const std::string name = path.filename().string();
-    return name.starts_with(".") || (name == "keys" && is_folder(path));
-  });
+  return list_files_below(place, is_no_output);
 }
 
 struct StageReading {
@@ -209,7 +212,8 @@ Json with_machine_of(Json now, const Json& then) {
 std::string content_hash(const fs::path& data, const fs::path& cache) {
   HashCache hashes(data, cache);
   std::string text;
-  for (const fs::path& file : files_below(data)) {
+  const auto files = is_file(data) ? std::vector{data} : list_linked_files(data, is_no_output);
+  for (const fs::path& file : files) {
     const std::string name = relative_name(file, data);
     text += fmt::format("{} {}\n", hashes.hash_of(file, name), name);
   }

@@ -77,3 +77,16 @@ TEST_CASE("a stage whose document was edited is none, and says why") {
   write_file(run / "keys/render.json", "{");
   CHECK(why_unreadable(run.path(), Stage::kRender) == "damaged");
 }
+
+TEST_CASE("photos behind a link count, and a link in a circle is an error") {
+  const test::TempFolder place;
+  const fs::path data = place / "data", photos = place / "photos", cache = place / "hashes";
+  write_file(data / "transforms.json", "{}");
+  write_file(photos / "1.png", "a");
+  fs::create_directory_symlink(photos, data / "images");
+  const std::string before = content_hash(data, cache);
+  write_file(photos / "1.png", "b");
+  CHECK(content_hash(data, cache) != before);
+  fs::create_directory_symlink(data, photos / "back");
+  CHECK_THROWS_WITH(content_hash(data, cache), Catch::Contains("leads back to a folder around it"));
+}
