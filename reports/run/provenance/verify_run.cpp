@@ -209,6 +209,7 @@ class RunExamination {
           "the run came in a parcel: trained on the same scene, in files of another machine"
       );
     add("data", wrong, spec_.dataset_folder.string());
+    has_other_data_ = !wrong.empty();
   }
 
   void compare_data(const Json& then, std::vector<std::string>& wrong) {
@@ -278,7 +279,9 @@ class RunExamination {
       const Json now = with_machine_of(
           document_now(stage, spec_, then, data_for(then), verifier_.hashes_.path()), then
       );
-      const auto changes = stage_differences(then, now);
+      auto changes = stage_differences(then, now);
+      if (stage == Stage::kTrain && has_other_data_ && changes.empty())
+        changes.emplace_back("other files in the data");  // of a room, which its document is not of
       if (changes.empty()) return add(name, CheckState::kOk, "made from what there is now");
       add(name, CheckState::kNote, "would now be made anew: " + some_of(changes));
     } catch (const Error& error) {
@@ -286,12 +289,9 @@ class RunExamination {
     }
   }
 
-  // Whether the files are the same is said of the data.
   Json data_for(const Json& then) const {
     if (!then.contains("data")) return {};
-    Json data = data_now_.is_null() ? then["data"] : data_now_;
-    data["content"] = then["data"].value("content", Json());
-    return data;
+    return data_now_.is_null() ? then["data"] : data_now_;
   }
 
   void check_record() {
@@ -409,6 +409,7 @@ class RunExamination {
   std::map<Stage, StageFile> done_;
   bool imported_ = false;
   bool parcel_ = false;  // what did not come along is no damage
+  bool has_other_data_ = false;
   Json data_now_;
   const Scene* scene_ = nullptr;
   std::vector<Checked> rows_;

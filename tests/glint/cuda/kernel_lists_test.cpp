@@ -17,7 +17,7 @@ namespace {
 std::vector<fs::path> kernel_headers() {
   std::vector<fs::path> headers;
   for (const char* folder : {"glint/render", "glint/train", "baselines", "metrics"})
-    for (const auto& entry : fs::directory_iterator(folder))
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
       if (entry.path().string().ends_with("_kernels.h")) headers.push_back(entry.path());
   return headers;
 }

@@ -201,6 +201,7 @@ TEST_CASE("data that have changed are found, in a room that was made and in a fo
   CHECK(answer.code == 4);
   CHECK(has(answer.bad(), "data: "));
   CHECK(has(answer.bad(), picture.filename().string() + " has other bytes"));
+  CHECK(answer.verdict_of("train now") == "note");  // would be made anew
 }
 
 TEST_CASE("a run on a folder of the user's goes by the folder's content") {
