@@ -55,6 +55,7 @@ std::vector<double> log_ticks(double low, double high) {
         all.push_back(tick);
         if (factor == 1.0) powers.push_back(tick);
       }
+  if (all.size() < 2) return round_ticks(low, high);
   return powers.size() >= 3 ? powers : all;
 }
 

@@ -11,7 +11,7 @@ namespace glint {
 std::vector<double> round_ticks(double low, double high);
 
 // The same for an axis of logarithms: 1, 2 and 5 times powers of ten; the powers alone where there
-// are three of them or more. 0 < low < high; of a narrow range fewer than two may be left.
+// are three of them or more, round_ticks() where a narrow range has fewer than two. 0 < low < high.
 std::vector<double> log_ticks(double low, double high);
 
 // All with the decimals that the finest needs: "0.0", "0.5"; from ten thousand on in thousands,

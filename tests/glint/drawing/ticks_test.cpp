@@ -30,7 +30,7 @@ TEST_CASE("ticks of logarithms are powers of ten, or a few more where there are 
   CHECK(log_ticks(900, 1.2e6) == std::vector<double>{1000, 10000, 100000, 1000000});
   CHECK(log_ticks(8, 60) == std::vector<double>{10, 20, 50});
   CHECK(log_ticks(1, 10) == std::vector<double>{1, 2, 5, 10});
-  CHECK(log_ticks(1.1, 1.9).empty());
+  CHECK(log_ticks(2620, 3300) == round_ticks(2620, 3300));  // narrow: round numbers
   const std::vector<double> small = log_ticks(0.0009, 0.3);
   REQUIRE(small.size() == 3);
   CHECK(small[0] == Approx(0.001));
