@@ -125,7 +125,13 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     fs::rename(temporary, path);
     sync_to_disk(folder);
   } catch (const fs::filesystem_error& error) {
-    const std::string why = fmt::format("{}: {}", path.string(), error.what());
+    const bool is_taken = error.code() == std::errc::is_a_directory;
+    const std::string why = fmt::format(
+        "{}: cannot be written ({}{})",
+        path.string(),
+        error.code().message(),
+        is_taken ? "; move the folder of that name away" : ""
+    );
     give_up(why);
     throw Error(ExitCode::kEnvironment, why);
   } catch (const Error& error) {

@@ -227,3 +227,13 @@ TEST_CASE("a line that there is no room for leaves nothing of it, and says so as
   append_line(file, "second");
   CHECK(read_file(file) == "first\nsecond\n");
 }
+
+TEST_CASE("a folder where a file is to be written is named in our words") {
+  const test::TempFolder folder;
+  fs::create_directories(folder / "x.json/inside");
+  CHECK_THROWS_WITH(
+      write_file(folder / "x.json", "1"),
+      Catch::Contains("x.json: cannot be written (Is a directory; move the folder")
+  );
+  CHECK(list_files(folder.path()).empty());
+}
