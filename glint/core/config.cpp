@@ -47,7 +47,7 @@ JsonSize size_of_json(std::string_view text) {
 std::string json_problem(std::string_view text) {
   // A field is looked for among those before it, which takes the square of their number.
   constexpr std::size_t kMostFields = 65536;
-  constexpr double kBytesPerValue = 110;   // measured: a value, its name, its place in a list
+  constexpr double kBytesPerValue = 110;   // ample: a value, its name, its place in a list
   constexpr std::size_t kSmall = 1 << 20;  // bytes of text that need not be asked about
   const JsonSize size = size_of_json(text);
   if (size.depth > kDeepestJson)
@@ -94,7 +94,7 @@ Json read_json_object(const std::filesystem::path& path, ExitCode code) {
   return with_exit_code(code, [&] {
     const std::string text = read_file(path);
     check_json_text(text, path);
-    Json json = parse_json(text);
+    Json json = Json::parse(text, nullptr, false);
     GLINT_CHECK(
         json.is_object(),
         kBadReference,

@@ -30,6 +30,9 @@ NLOHMANN_JSON_SERIALIZE_ENUM(
 
 std::vector<double> default_thresholds_m();  // 1, 2, 5 and 10 cm
 
+// What scoring takes for each sample: points, normals, distances of two meshes, trees over them.
+inline constexpr double kBytesPerMeshSample = 600;
+
 struct MeshProtocol {
   std::uint64_t num_samples = 1'000'000;
   std::uint64_t seed = 0;

@@ -176,10 +176,9 @@ std::vector<double> curve_thresholds(double last) {
   return thresholds;
 }
 
-// Before anything is drawn: points, normals, distances and the trees over them.
+// Before anything is drawn.
 void check_samples(std::size_t num_samples) {
-  constexpr double kBytesPerSample = 600;
-  const double needed = kBytesPerSample * static_cast<double>(num_samples);
+  const double needed = kBytesPerMeshSample * static_cast<double>(num_samples);
   const auto available = static_cast<double>(available_memory_bytes());
   if (needed > available)
     throw OutOfMemory(fmt::format(

@@ -22,8 +22,6 @@ constexpr double kBytesPerSurfel = 4 * 58 * sizeof(float) + 250;
 constexpr double kSets = 3;  // interface, transmission, reflection
 // Maps that a step keeps for its way back, losses and pictures of features.
 constexpr double kBytesPerPixel = 1500;
-// Points, normals, distances and the trees over them, of two meshes.
-constexpr double kBytesPerSample = 600;
 // Blocks of voxels around the surfaces of a room, and a mesh taken out of them: 0.68 GB at 2 cm.
 constexpr double kFusionBytesTimesVoxel2 = 270e3;  // bytes m^2
 
@@ -172,7 +170,7 @@ Estimate estimate_by_stages(
       {training_bytes(user, scene), "its images and surfels"},
       {user.voxel > 0 ? kFusionBytesTimesVoxel2 / (user.voxel * user.voxel) : 0,
        "its images and the fusion of meshes"},
-      {kBytesPerSample * double(user.mesh_samples), "its images and the samples of meshes"}};
+      {kBytesPerMeshSample * double(user.mesh_samples), "its images and the samples of meshes"}};
   Estimate largest = *std::ranges::max_element(stages, {}, &Estimate::bytes);
   largest.bytes += kProgramBytes + scene.image_bytes;
   return largest;

@@ -15,6 +15,7 @@
 #include "metrics/psnr.h"
 #include "metrics/ssim.h"
 #include "tests/metrics/golden_images.h"
+#include "tests/support/captured.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -549,9 +550,10 @@ TEST_CASE("a mask that leaves nothing out but may be in alpha is told of") {
       0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
   write_file(folder / "mask.png", std::string(std::begin(kWhite), std::end(kWhite)));
   write_png(folder / "a.png", Image(4, 3, 3, 0.5f));
-  const Result result =
-      psnr_tool({folder / "a.png", folder / "a.png", "--mask", folder / "mask.png"});
-  CHECK(result.code == 0);
+  const std::string said = test::captured(2, [&] {
+    CHECK(psnr_tool({folder / "a.png", folder / "a.png", "--mask", folder / "mask.png"}).code == 0);
+  });
+  CHECK_THAT(said, Catch::Contains("mask.png: white throughout"));
   CHECK(load_mask(folder / "mask.png", {4, 3}).at(0, 0) == 255);
 }
 
