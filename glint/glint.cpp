@@ -77,14 +77,19 @@ class Glint final : public MethodOf<GlintConfig> {
     set_up_losses();
     if (windows_.multi_view.lambda > 0) set_up_planes(options.seed);
     const PointCloud points = initial_points(scene, config_.random_points, options.seed);
+    const std::vector<ExtraChannel> glass = {
+        {kTransparency, config_.initial_transparency, config_.rate_transparency},
+        {kSpecular, config_.initial_specular, config_.rate_specular}};
     InitialSurfels initial;
     initial.seed = options.seed + 1;
+    if (config_.layers > 1) initial.extra = glass;
     model_.transmission = new_set(
         points,
         initial,
         windows_.transmission_densify(),
         windows_.secondary_rates(windows_.transmission_from)
     );
+    initial.extra = {};
     initial.seed = options.seed + 2;
     initial.opacity = config_.reflection_opacity;
     model_.reflection = new_set(
@@ -95,9 +100,7 @@ class Glint final : public MethodOf<GlintConfig> {
     );
     initial = {};
     initial.seed = options.seed;
-    initial.extra = {
-        {kTransparency, config_.initial_transparency, config_.rate_transparency},
-        {kSpecular, config_.initial_specular, config_.rate_specular}};
+    initial.extra = glass;
     model_.interface = new_set(points, initial, windows_.interface_densify(), windows_.rates);
     views_ = ViewSampler(scene.train.size(), options.seed);
   }
@@ -143,6 +146,7 @@ class Glint final : public MethodOf<GlintConfig> {
   void load(const std::string& folder) override {
     MethodOf::load(folder);
     check_channels(folder, {kTransparency, kSpecular});
+    if (config_.layers > 1) check_channels(folder, {kTransparency, kSpecular}, 1);
     phase_ = {};
     phase_.transmission = config_.with_transmission;
     phase_.reflection = config_.with_reflection;
@@ -226,7 +230,9 @@ class Glint final : public MethodOf<GlintConfig> {
     phase_.transmission_degree = degree(start(windows_.transmission_from, config_.clone_interface));
     phase_.reflection_degree = degree(start(windows_.reflection_from, config_.clone_reflection));
     if (config_.clone_interface && phase_.transmission && iteration == windows_.transmission_from)
-      model_.transmission.load(without_extra(model_.interface.cloud()));
+      model_.transmission.load(
+          config_.layers > 1 ? model_.interface.cloud() : without_extra(model_.interface.cloud())
+      );
     if (config_.clone_reflection && phase_.reflection && iteration == windows_.reflection_from)
       model_.reflection.load(without_extra(model_.interface.cloud()));
     const bool late = iteration >= windows_.freeze_from;
@@ -327,7 +333,7 @@ SettingGuide guide() {
           {"paper",
            "with_transmission with_reflection transmission_from reflection_from freeze_from freeze "
            "min_cosine guidance depth_threshold low_albedo transparent_weight reflection_cells "
-           "clone_interface clone_reflection"},
+           "clone_interface clone_reflection layers"},
           {"release",
            "l1_weight ssim_weight lambda_lpips lpips_from lambda_depth lambda_normal "
            "lambda_consistency consistency_from lambda_smooth transparency_from "
@@ -372,6 +378,16 @@ SettingGuide guide() {
       "beyond the paper: secondary sets start as copies of the interface, few resets, rates that "
       "settle",
       set_plus},
+     {"glint/nested",
+      "GLINT (2 layers)",
+      "",
+      "beyond the paper: GLINT+ with transport at the second surface along a ray, too",
+      [](GlintConfig& config) { set_nested(config, 2); }},
+     {"glint/nested-3",
+      "GLINT (3 layers)",
+      "",
+      "beyond the paper: the same at the third",
+      [](GlintConfig& config) { set_nested(config, 3); }},
      {"glint/robust",
       "GLINT (robust)",
       "",

@@ -114,6 +114,14 @@ void GlintConfig::check() const {
       "glint: freeze is '{}', expected all, geometry or nothing",
       freeze
   );
+  GLINT_CHECK(
+      layers == 1 || (with_transmission && transmission == "raster"),
+      kUsage,
+      "glint: layers is {}, and {}; more than one layer needs a transmission set that is "
+      "rasterised",
+      layers,
+      with_transmission ? "transmission is trace" : "with_transmission is off"
+  );
   transmission_losses.check("glint");
 }
 
@@ -195,6 +203,11 @@ void set_plus(GlintConfig& config) {
   // Once the sets are grown, rates fall: what is left of the run averages over views and noise.
   config.rates.settled = 0.03f;
   config.freeze = "nothing";
+}
+
+void set_nested(GlintConfig& config, int layers) {
+  set_plus(config);
+  config.layers = layers;
 }
 
 void set_oracle(GlintConfig& config) {

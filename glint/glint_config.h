@@ -37,6 +37,8 @@ struct GlintConfig {
   bool detach_transparency = true;  // no gradient of t to where surfels are and how opaque
   bool oracle = false;              // depth, normal and t of the interface are the true ones
   float secondary_near = 0;
+  int layers = 1;           // surfaces along the straight ray that let light through and mirror it
+  float layer_gap = 0.05f;  // metres behind a layer where the next one may begin
   MirrorCutoffs mirror;
   // Initial sets.
   float initial_transparency = 0.01f, initial_specular = 1e-3f;
@@ -81,6 +83,8 @@ struct GlintConfig {
     v("transmission", transmission, "raster or trace");
     v("linear_light", linear_light, "layers are added as linear, not as displayed values");
     v("secondary_near", secondary_near, "metres behind the interface where transmission starts");
+    v("layers", layers, "surfaces along a ray that let light through and mirror it; paper: 1");
+    v("layer_gap", layer_gap, "metres behind a layer where the next one may begin");
     mirror.visit(v);
     v("initial_transparency", initial_transparency, "t of the interface's initial surfels");
     grid.visit(v);
@@ -140,6 +144,8 @@ void set_release(GlintConfig& config);
 void set_text(GlintConfig& config);
 // Beyond the paper.
 void set_plus(GlintConfig& config);
+// GLINT+ with so many layers.
+void set_nested(GlintConfig& config, int layers);
 // With the true interface.
 void set_oracle(GlintConfig& config);
 

@@ -13,19 +13,6 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;  // pixels a block
 
-// The part of the picture that is `layer` times its weight by pixel.
-Image part_of_picture(
-    const Image& picture, const Image& layer, const Image& weight, bool linear_light
-) {
-  Image part = layer;
-  for (std::size_t i = 0; i < part.values().size(); ++i) {
-    const float w = weight.data()[i / 3];
-    float& value = part.values()[i];
-    value = linear_light ? displayed_part(picture.data()[i], value, w) : value * w;
-  }
-  return part;
-}
-
 }  // namespace
 
 const Image& GlintModel::forward(
@@ -57,12 +44,35 @@ const Image& GlintModel::compose(
   const GlassBuffer& buffer = transport_.read_interface(camera, *surface_);
   copy_color(interface_output_->features, layers_.interface);
   rasterized_ = phase.transmission && config.transmission != "trace";
+  layered_ = rasterized_ && config.layers > 1;
   if (phase.transmission) render_transmission(camera, config, with_behind);
+  if (layered_) add_inner_layers(config);
   if (phase.reflection)
     mirrored_.trace(
         buffer, reflection, phase.reflection_degree, config.mirror, phase.step, layers_.reflection
     );
   return transport_.compose(layers_);
+}
+
+// Their radiance in the place of the transmission set's.
+void GlintModel::add_inner_layers(const GlintConfig& config) {
+  RasterSettings settings = interface_settings(config);
+  settings.with_plane_distance = false;
+  const LayersCall call{
+      .camera = camera_,
+      .settings = settings,
+      .mirror = config.mirror,
+      .reflection = phase_.reflection,
+      .reflection_degree = phase_.reflection_degree,
+      .step = phase_.step,
+      .gap = config.layer_gap,
+      .linear_light = config.linear_light};
+  copy_color(
+      inner_.forward(
+          {interface, transmission, reflection}, call, config.layers - 1, buffer(), near_limit_
+      ),
+      layers_.transmission
+  );
 }
 
 RasterSettings GlintModel::interface_settings(const GlintConfig& config) const {
@@ -101,15 +111,18 @@ void GlintModel::render_transmission(
     copy_color(out.color, layers_.transmission);
   } else {
     RasterSettings settings;
-    settings.with_surface = with_behind;
+    settings.with_surface = with_behind || layered_;
+    if (layered_) settings.detached_features = interface_settings(config).detached_features;
     const RasterOutput& out =
         transmission.forward(camera, phase_.transmission_degree, settings, near_limit_);
     copy_color(out.features, layers_.transmission);
   }
 }
 
-void GlintModel::transmission_vjp(const Image& dL_dradiance) {
-  if (!rasterized_) {
+void GlintModel::transmission_vjp(const Image& dL_dradiance, bool interface_too) {
+  if (layered_) {
+    inner_.backward({interface, transmission, reflection}, dL_dradiance, interface_too);
+  } else if (!rasterized_) {
     copy_color(dL_dradiance, dL_dthrough_.color);
     transmission.trace_backward(dL_dthrough_);
   } else {
@@ -127,7 +140,7 @@ void GlintModel::backward(
   const GlassLayers& dL_dlayers = transport_.compose_vjp(layers_, dL_dimage);
   const Rays* dL_drays = nullptr;
   if (phase_.reflection) dL_drays = &mirrored_.trace_backward(reflection, dL_dlayers.reflection);
-  if (phase_.transmission) transmission_vjp(dL_dlayers.transmission);
+  if (phase_.transmission) transmission_vjp(dL_dlayers.transmission, interface_too);
   if (!interface_too) return;
   const bool given = surface_ != interface_output_;
   transport_.interface_vjp(
@@ -180,6 +193,7 @@ MapSet GlintModel::render(
   add_depth_modes(interface.pass().rasterizer, out);
   if (phase.reflection) out["reflection"] = layers_.reflection;
   add_components(config.linear_light, out);
+  if (layered_) inner_.add_maps(buffer(), out);
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "glint/glint_config.h"
+#include "glint/glint_layers.h"
 #include "glint/method.h"
 #include "glint/render/glass_transport.h"
 #include "glint/train/given_surface.h"
@@ -57,7 +58,8 @@ class GlintModel {
       const Camera& camera, const GlintConfig& config, const GlintPhase& phase, bool with_behind
   );
   void render_transmission(const Camera& camera, const GlintConfig& config, bool with_behind);
-  void transmission_vjp(const Image& dL_dradiance);
+  void add_inner_layers(const GlintConfig& config);
+  void transmission_vjp(const Image& dL_dradiance, bool interface_too);
   void add_behind_depth(const Camera& camera, MapSet& out);
   void add_components(bool linear_light, MapSet& out) const;
 
@@ -69,6 +71,8 @@ class GlintModel {
   GivenSurface given_;
   Image own_depth_;          // of the surfels, where the surface was given
   bool rasterized_ = false;  // the transmission set
+  bool layered_ = false;     // by inner_
+  InnerLayers inner_;
   GlassLayers layers_;
   Image near_limit_;
   Rays through_;

@@ -64,6 +64,8 @@ constexpr SettingRange kRanges[] = {
     {"reflection_from", kStep},
     {"specular_from", kStep},
     {"surface_from", kStep},
+    {"layers", {1, 4}},
+    {"layer_gap", at_least(0)},
     {"transmission_from", kStep},
     {"transparency_from", kStep},
     {"warm_up", kStep},

@@ -21,14 +21,15 @@ void SurfelMethod::load(const std::string& folder) {
   for (const MethodSet& set : sets_) set.set->load(read_surfel_ply(file_of(folder, set)));
 }
 
-void SurfelMethod::check_channels(const std::string& folder, const std::vector<std::string>& names)
-    const {
-  const MethodSet& first = sets_.front();
+void SurfelMethod::check_channels(
+    const std::string& folder, const std::vector<std::string>& names, std::size_t set
+) const {
+  const MethodSet& checked = sets_[set];
   GLINT_CHECK(
-      first.set->cloud().extra_names == names,
+      checked.set->cloud().extra_names == names,
       kBadPrediction,
       "{}: expected the extra fields {}; was it trained by another method?",
-      file_of(folder, first).string(),
+      file_of(folder, checked).string(),
       comma_list(names)
   );
 }

@@ -33,7 +33,9 @@ class SurfelMethod : public Method {
 
  protected:
   // Errors (kBadPrediction): the first set's file, in this folder, has other extra channels.
-  void check_channels(const std::string& folder, const std::vector<std::string>& names) const;
+  void check_channels(
+      const std::string& folder, const std::vector<std::string>& names, std::size_t set = 0
+  ) const;
 
   std::vector<MethodSet> sets_;  // members of what derives from this, whose constructor says which
   std::vector<std::string> warnings_;

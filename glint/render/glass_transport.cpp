@@ -150,4 +150,16 @@ void GlassTransport::interface_vjp(
   );
 }
 
+Image part_of_picture(
+    const Image& picture, const Image& layer, const Image& weight, bool linear_light
+) {
+  Image part = layer;
+  for (std::size_t i = 0; i < part.values().size(); ++i) {
+    const float w = weight.data()[i / 3];
+    float& value = part.values()[i];
+    value = linear_light ? displayed_part(picture.data()[i], value, w) : value * w;
+  }
+  return part;
+}
+
 }  // namespace glint

@@ -35,6 +35,11 @@ InterfaceChannels interface_channels(const SurfelCloud& interface);
 void camera_rays(const Camera& camera, Rays& rays);
 PixelRays pixel_rays(const Camera& camera);
 
+// The part of the picture [H][W][3] that is `layer` times its weight [H][W][1], on the host.
+Image part_of_picture(
+    const Image& picture, const Image& layer, const Image& weight, bool linear_light
+);
+
 class GlassTransport {
  public:
   explicit GlassTransport(GlassOptions options = {}) : options_(options) {}

@@ -25,21 +25,25 @@ const RasterOutput& SurfelSet::forward(
 }
 
 const RasterOutput& SurfelSet::forward_again(
-    RasterPass& pass, RasterPass& first, const RasterSettings& settings, BorrowedImage needed
+    RasterPass& pass,
+    RasterPass& first,
+    const RasterSettings& settings,
+    BorrowedImage needed,
+    BorrowedImage near_limit
 ) const {
   pass.sh_degree = first.sh_degree;
   pass.of_first = &first.used();
   RasterCall call{raster_input(cloud_, pass.used()), first.rasterizer.call().camera, settings};
   call.input.needed = needed;
+  call.input.near_limit = near_limit;
   return pass.rasterizer.forward(call, &first.rasterizer);
 }
 
 const TraceOutput& SurfelSet::trace(
-    const Rays& rays, int sh_degree, const TraceSettings& settings
-) {
-  ActivatedSurfels& activated = trace_pass_.activated;
-  activate_geometry(cloud_, activated);
-  return trace_pass_.tracer.forward({trace_input(cloud_, activated, sh_degree), rays, settings});
+    TracePass& pass, const Rays& rays, int sh_degree, const TraceSettings& settings
+) const {
+  activate_geometry(cloud_, pass.activated);
+  return pass.tracer.forward({trace_input(cloud_, pass.activated, sh_degree), rays, settings});
 }
 
 const RasterGradient& raster_backward(

@@ -49,15 +49,22 @@ class SurfelSet {
   // What `first` has just rasterised of this set, which nobody wrote since, once more: seen by the
   // same camera, with the same colours, which are not computed again, nor are the lists of surfels.
   // `first` must rasterise nothing else before this pass's backward().
-  // needed: see RasterInput.
+  // needed, near_limit: see RasterInput.
   const RasterOutput& forward_again(
       RasterPass& pass,
       RasterPass& first,
       const RasterSettings& settings = {},
-      BorrowedImage needed = {}
+      BorrowedImage needed = {},
+      BorrowedImage near_limit = {}
   ) const;
   // The same for rays, which must stay as they are until trace_backward().
-  const TraceOutput& trace(const Rays& rays, int sh_degree, const TraceSettings& settings = {});
+  const TraceOutput& trace(const Rays& rays, int sh_degree, const TraceSettings& settings = {}) {
+    return trace(trace_pass_, rays, sh_degree, settings);
+  }
+  // With buffers of its own.
+  const TraceOutput& trace(
+      TracePass& pass, const Rays& rays, int sh_degree, const TraceSettings& settings = {}
+  ) const;
 
   // Depth of the first surface of what the first of them rasterised last, see Rasterizer.
   void first_surface(const Image& mask, const FirstSurfaceSettings& settings, Image& depth) {

@@ -18,7 +18,7 @@ void MirroredLayer::trace(
   chosen_ = step && mirror.shares() && !own;
   const RaySharing sharing{.below = mirror.share_below};
   const Rays& rays = chosen_ ? shared_.choose(buffer, sharing, *step) : buffer.reflected;
-  const Image& color = set.trace(rays, sh_degree, mirror.settings(step.has_value())).color;
+  const Image& color = set.trace(pass_, rays, sh_degree, mirror.settings(step.has_value())).color;
   if (chosen_)
     shared_.spread(color, layer);
   else
@@ -30,7 +30,7 @@ const Rays& MirroredLayer::trace_backward(TrainableSet& set, const Image& dL_dla
     shared_.spread_vjp(dL_dlayer, dL_dtrace_.color);
   else
     copy_color(dL_dlayer, dL_dtrace_.color);
-  return set.trace_backward(dL_dtrace_, observes_);
+  return set.trace_backward(dL_dtrace_, pass_, observes_);
 }
 
 }  // namespace glint

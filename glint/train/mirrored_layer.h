@@ -27,6 +27,7 @@ class MirroredLayer {
 
  private:
   SharedRays shared_;
+  TracePass pass_;
   bool chosen_ = false;   // its rays, by shared_; else each pixel has its own
   bool observes_ = true;  // density control, the last trace()
   TraceOutputGradient dL_dtrace_;

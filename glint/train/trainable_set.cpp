@@ -153,9 +153,11 @@ double TrainableSet::penalise_entropy(
   return of > 0 ? sum / of : 0;
 }
 
-const Rays& TrainableSet::trace_backward(const TraceOutputGradient& dL_doutput, bool observe) {
+const Rays& TrainableSet::trace_backward(
+    const TraceOutputGradient& dL_doutput, TracePass& pass, bool observe
+) {
   Training& t = training();
-  const TraceGradient& gradient = glint::trace_backward(trace_pass_, dL_doutput, t.gradient);
+  const TraceGradient& gradient = glint::trace_backward(pass, dL_doutput, t.gradient);
   if (observe) t.densifier.observe(gradient, gradient.rays.origins.height());
   return gradient.rays;
 }

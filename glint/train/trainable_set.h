@@ -63,7 +63,12 @@ class TrainableSet final : public SurfelSet {
   double penalise_entropy(float weight, std::size_t channel, const FloatArray& visibility);
   // backward() for the last trace(); returns the rays' gradient, valid until the next call.
   // observe: the statistics count it.
-  const Rays& trace_backward(const TraceOutputGradient& dL_doutput, bool observe = true);
+  const Rays& trace_backward(const TraceOutputGradient& dL_doutput, bool observe = true) {
+    return trace_backward(dL_doutput, trace_pass_, observe);
+  }
+  const Rays& trace_backward(
+      const TraceOutputGradient& dL_doutput, TracePass& pass, bool observe = true
+  );
   // Whether an update() to come may add surfels. A set that is only rendered does not.
   bool grows() const;
   // From now on positions, scales, rotations and opacities stay; the optimiser moves the rest.

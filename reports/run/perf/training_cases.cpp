@@ -139,6 +139,8 @@ std::vector<PerfCase> training_cases(const PerfOptions& options) {
   for (const auto& [id, spec] : Registry<MethodSpec>::all())
     if (spec.overrides.empty()) add(id + " training step", id, Json::object());
   add("glint step, transmission traced", "glint", Json{{"transmission", "trace"}});
+  for (const int layers : {1, 2, 3})
+    add(fmt::format("glint/plus step, {} layers", layers), "glint/plus", Json{{"layers", layers}});
   add("envgs step, rays shared", "envgs", Json{{"mirror_share_below", 0.2}});
   return cases;
 }

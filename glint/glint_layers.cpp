@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "glint/glint_layers.h"
+
+#include <utility>
+
+#include "glint/core/error.h"
+#include "glint/render/map_ops.h"
+#include "glint/render/nearer_surface_kernels.h"
+
+namespace glint {
+
+namespace {
+
+constexpr std::size_t kGrain = 4096;  // pixels a block
+constexpr float kLeastLight = 0.02f;  // of a pixel's, for a layer to be looked at
+
+// What a layer lets pass; light: what gets to it, null: all.
+void pass_light(const GlassBuffer& layer, const Image* light, Image& passed) {
+  fit(passed, layer.depth.size(), 1);
+  run_kernel(
+      passed.num_pixels(),
+      kGrain,
+      PassLight{
+          layer.transparency.on_device(),
+          layer.specularity.on_device(),
+          light == nullptr ? nullptr : light->array().device_for_reading(),
+          kLeastLight,
+          passed.on_device()}
+  );
+}
+
+void limit_behind(const GlassBuffer& layer, const Image& before, float gap, Image& limit) {
+  fit(limit, layer.depth.size(), 1);
+  run_kernel(
+      limit.num_pixels(),
+      kGrain,
+      LimitBehind{layer.depth.on_device(), before.on_device(), gap, limit.on_device()}
+  );
+}
+
+// The gradient of the colour alone.
+void color_gradient(const Image& dL_dcolor, int features, RasterOutputGradient& dL_doutput) {
+  clear_gradient(dL_dcolor.size(), features, dL_doutput);
+  add_color(dL_dcolor, dL_doutput.features);
+}
+
+}  // namespace
+
+void InnerLayers::see(
+    GlassSets sets, std::size_t m, const GlassBuffer& before, const Image& near_limit
+) {
+  InnerLayer& layer = layers_[m];
+  const bool first = m == 0;
+  pass_light(before, first ? nullptr : &layers_[m - 1].light, layer.light);
+  limit_behind(before, near_limit, call_.gap, layer.pane_limit);
+  RasterPass& interface = sets.interface.pass();
+  RasterPass& transmission = sets.transmission.pass();
+  layer.others =
+      first ? &transmission.rasterizer.output() : &layers_[m - 1].rest.rasterizer.output();
+  const RasterOutput& panes = sets.interface.forward_again(
+      layer.panes, interface, call_.settings, layer.light, layer.pane_limit
+  );
+  const RasterOutput& surface =
+      layer.nearer.pick(panes, *layer.others, channels_.transparency, layer.light);
+  layer.mirrors = call_.reflection && first;
+  layer.transport.set_options(
+      {.channels = channels_,
+       .reflection = layer.mirrors,
+       .detach_origins = true,
+       .linear_light = call_.linear_light}
+  );
+  const GlassBuffer& buffer = layer.transport.read_interface(call_.camera, surface);
+  copy_color(surface.features, layer.radiance.interface);
+  if (layer.mirrors)
+    layer.mirrored.trace(
+        buffer,
+        sets.reflection,
+        call_.reflection_degree,
+        call_.mirror,
+        call_.step,
+        layer.radiance.reflection
+    );
+  limit_behind(buffer, near_limit, call_.gap, layer.limit);
+  sets.transmission.forward_again(
+      layer.rest, transmission, call_.settings, layer.light, layer.limit
+  );
+}
+
+const Image& InnerLayers::forward(
+    GlassSets sets,
+    const LayersCall& call,
+    int count,
+    const GlassBuffer& interface,
+    const Image& near_limit
+) {
+  call_ = call;
+  channels_ = interface_channels(sets.transmission.cloud());
+  layers_.resize(static_cast<std::size_t>(count));
+  for (std::size_t m = 0; m < layers_.size(); ++m) {
+    const bool first = m == 0;
+    see(sets,
+        m,
+        first ? interface : layers_[m - 1].transport.buffer(),
+        first ? near_limit : layers_[m - 1].limit);
+  }
+  copy_color(
+      layers_.back().rest.rasterizer.output().features, layers_.back().radiance.transmission
+  );
+  const Image* radiance = nullptr;
+  for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) {
+    if (radiance != nullptr) copy_color(*radiance, layer->radiance.transmission);
+    radiance = &layer->transport.compose(layer->radiance);
+  }
+  return *radiance;
+}
+
+// To everything but the rasterisations; the gradient of the next layer's radiance.
+const Image& InnerLayers::radiance_vjp(GlassSets sets, std::size_t m, const Image& dL_dradiance) {
+  InnerLayer& layer = layers_[m];
+  const GlassLayers& dL_dlayers = layer.transport.compose_vjp(layer.radiance, dL_dradiance);
+  const Rays* dL_drays = nullptr;
+  if (layer.mirrors)
+    dL_drays = &layer.mirrored.trace_backward(sets.reflection, dL_dlayers.reflection);
+  const RasterOutput& surface = layer.nearer.picked();
+  clear_gradient(surface.alpha.size(), surface.features.channels(), layer.dL_dsurface);
+  layer.transport.interface_vjp(call_.camera, surface, dL_drays, {}, layer.dL_dsurface);
+  return dL_dlayers.transmission;
+}
+
+void InnerLayers::backward(GlassSets sets, const Image& dL_dradiance, bool interface_too) {
+  const Image* dL_dnext = &dL_dradiance;
+  for (std::size_t m = 0; m < layers_.size(); ++m) dL_dnext = &radiance_vjp(sets, m, *dL_dnext);
+  InnerLayer& last = layers_.back();
+  color_gradient(*dL_dnext, last.dL_dsurface.features.channels(), last.dL_drest);
+  for (std::size_t m = 0; m < layers_.size(); ++m) {
+    InnerLayer& layer = layers_[m];
+    RasterOutputGradient& dL_dothers = m == 0 ? dL_dfirst_ : layers_[m - 1].dL_drest;
+    layer.nearer.pick_vjp(layer.dL_dsurface, layer.dL_dpanes, dL_dothers);
+    if (interface_too) sets.interface.backward(layer.dL_dpanes, layer.panes);
+  }
+  RasterPass& pass = sets.transmission.pass();
+  const RasterGradient& first = sets.transmission.backward(dL_dfirst_, pass);
+  const RasterGradient* behind = nullptr;
+  for (InnerLayer& layer : layers_)
+    behind = &sets.transmission.backward(layer.dL_drest, layer.rest);
+  sets.transmission.observe(pass, first, *behind);
+}
+
+namespace {
+
+// Of the map "layer_K_x"; null: the table ends before.
+const MapRow* layer_map(std::size_t layer, const char* of) {
+  return find_map(fmt::format("layer_{}_{}", layer, of));
+}
+
+// Median depth of what was picked.
+Image picked_depth(const InnerLayer& layer) {
+  Image depth = layer.others->depth_median;
+  const Image &is_pane = layer.nearer.is_pane(),
+              &panes = layer.panes.rasterizer.output().depth_median;
+  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
+    if (is_pane.data()[i] > 0) depth.data()[i] = panes.data()[i];
+  return depth;
+}
+
+// Behind a surface that lets little through: that surface again.
+void fill_behind_opaque(const Image& transparency, const Image& before, Image& map) {
+  const auto channels = static_cast<std::size_t>(map.channels());
+  for (std::size_t i = 0; i < map.values().size(); ++i)
+    if (transparency.data()[i / channels] <= 0.5f) map.values()[i] = before.values()[i];
+}
+
+}  // namespace
+
+void InnerLayers::add_maps(const GlassBuffer& interface, MapSet& out) const {
+  Image depth, normal, transparency;  // of the layer before
+  for (std::size_t m = 0; m <= layers_.size(); ++m) {
+    const bool rest = m == layers_.size();
+    const RasterOutput& behind = layers_.back().rest.rasterizer.output();
+    Image next_depth = rest ? behind.depth_median : picked_depth(layers_[m]);
+    Image next_normal = rest ? unit_normals(behind.normal) : layers_[m].transport.buffer().normal;
+    Image next_t =
+        rest ? Image(depth.width(), depth.height(), 1) : layers_[m].transport.buffer().transparency;
+    if (m > 0) {
+      fill_behind_opaque(transparency, depth, next_depth);
+      fill_behind_opaque(transparency, normal, next_normal);
+      fill_behind_opaque(transparency, Image(depth.width(), depth.height(), 1), next_t);
+    }
+    depth = std::move(next_depth), normal = std::move(next_normal),
+    transparency = std::move(next_t);
+    if (const MapRow* row = layer_map(m + 2, "depth")) out[*row] = depth;
+    if (const MapRow* row = layer_map(m + 2, "normal")) out[*row] = normal;
+    if (const MapRow* row = layer_map(m + 2, "transparency"); row != nullptr && !rest)
+      out[*row] = transparency;
+  }
+  out["behind_depth"] = depth;
+  add_parts(interface, out);
+}
+
+// By the first two layers; what the first mirrors is not told apart by what its rays met.
+void InnerLayers::add_parts(const GlassBuffer& interface, MapSet& out) const {
+  const InnerLayer& second = layers_.front();
+  const GlassBuffer& buffer = second.transport.buffer();
+  Image straight = buffer.transparency, through = buffer.transparency, mirrored = straight;
+  for (std::size_t i = 0; i < straight.num_pixels(); ++i) {
+    const float light = (1 - interface.specularity.data()[i]) * interface.transparency.data()[i];
+    const float t = buffer.transparency.data()[i], k = buffer.specularity.data()[i];
+    straight.data()[i] = light * (1 - k) * (1 - t);
+    through.data()[i] = light * (1 - k) * t;
+    mirrored.data()[i] = light * k;
+  }
+  const auto part = [&](const Image& layer, const Image& weight) {
+    return part_of_picture(out["rgb"], layer, weight, call_.linear_light);
+  };
+  out["path_t"] = part(second.radiance.interface, straight);
+  out["path_tt"] = part(second.radiance.transmission, through);
+  if (second.mirrors) out["path_tr"] = part(second.radiance.reflection, mirrored);
+}
+
+}  // namespace glint
