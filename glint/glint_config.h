@@ -84,7 +84,6 @@ struct GlintConfig {
     v("linear_light", linear_light, "layers are added as linear, not as displayed values");
     v("secondary_near", secondary_near, "metres behind the interface where transmission starts");
     v("layers", layers, "surfaces along a ray that let light through and mirror it; paper: 1");
-    v("layer_gap", layer_gap, "metres behind a layer where the next one may begin");
     mirror.visit(v);
     v("initial_transparency", initial_transparency, "t of the interface's initial surfels");
     grid.visit(v);

@@ -17,7 +17,7 @@ constexpr const char* kRemaining = R"({
   "mirror_picture_hits": 256, "mirror_picture_transmittance": 1e-4, "mirror_share_block": 2,
   "mirror_weight_below": 0, "near_consistency": false, "near_first": false, "normal_l1": 0, "only_seen": false,
   "points_per_cell": 5, "prune_light_large": false, "random_background": true, "rate_exposure": 1e-3,
-  "rate_settled": 1, "sample_clones": false, "scale_limit": 0, "settle_from": 15000,
+  "rate_settled": 1, "reflection_points_per_pixel": 1.264, "sample_clones": false, "scale_limit": 0, "settle_from": 15000,
   "settle_until": 30000, "smooth_from": 0, "split_large": false, "unit_consistency": false,
   "weighted_normals": false},
 "glint": {

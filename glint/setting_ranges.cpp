@@ -25,7 +25,6 @@ constexpr SettingRange kRanges[] = {
     // Initial surfels.
     {"random_points", kPoints},
     {"reflection_cells", {1, 1024}},  // their number, cubed, is counted in 32 bits
-    {"reflection_points_per_pixel", {0, 1e6, true}},
     {"reflection_brightness", kShare},
     {"initial_transparency", kInside},
     {"initial_specular", kInside},
@@ -65,7 +64,6 @@ constexpr SettingRange kRanges[] = {
     {"specular_from", kStep},
     {"surface_from", kStep},
     {"layers", {1, 4}},
-    {"layer_gap", at_least(0)},
     {"transmission_from", kStep},
     {"transparency_from", kStep},
     {"warm_up", kStep},

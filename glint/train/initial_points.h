@@ -25,7 +25,7 @@ struct ReflectionGrid {
   int cells = 32, points_per_cell = 5;
   // Deviation: 32^3 cells are meant for images of 480x270; smaller ones start with as many points a
   // pixel, for more could not be told apart by so few rays. Larger images keep `cells`.
-  float points_per_pixel = 1.264f;
+  static constexpr float kPointsPerPixel = 1.264f;
   // Deviation: the official codes draw colours up to 1/255, black but for that, and in runs as
   // short as ours GLINT's stays dark (docs/GLINT_NOTES.md). EnvGS starts as there.
   float brightness = 1;
@@ -33,7 +33,6 @@ struct ReflectionGrid {
   template <class V>
   void visit(V&& v) {
     v("reflection_cells", cells, "most cells of the reflection grid along each axis");
-    v("reflection_points_per_pixel", points_per_pixel, "fewer cells in small images");
     v("reflection_brightness", brightness, "initial colours are random, from 0 to this");
   }
   int cells_for(ImageSize size) const;

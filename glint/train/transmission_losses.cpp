@@ -164,7 +164,7 @@ void TransmissionLosses::add_direct_geometry(
 ) {
   StepStats terms;
   add_perceptual(
-      perceptual_, perceptual_config_, iteration, out.features, view, dL_ddirect_.features, terms
+      perceptual_, perceptual_config_, iteration, direct_color_, view, dL_dcolor_, terms
   );
   direct_geometry_.add(view, iteration, out, direct_depth_, dL_ddirect_, terms);
   add_terms("direct ", terms, stats);
@@ -180,17 +180,19 @@ void TransmissionLosses::add_direct(
 ) {
   const bool plausible = config_.lambda_plausible > 0 && iteration >= config_.plausible_from;
   if (!config_.has_direct() && !plausible) return;
-  clear_gradient(view.camera.size(), 3, dL_ddirect_);
+  const RasterOutput& out = pass_.rasterizer.output();
+  clear_gradient(view.camera.size(), out.features.channels(), dL_ddirect_);
+  clear_image(dL_dcolor_, view.camera.size(), 3);
+  copy_color(out.features, direct_color_);
   if (config_.lambda_direct > 0) {
     const PhotometricWeights direct{
         config_.lambda_direct * weights.l1, config_.lambda_direct * weights.ssim};
-    const PhotometricTerms terms = photometric_.evaluate(
-        pass_.rasterizer.output().features, view, direct, dL_ddirect_.features
-    );
+    const PhotometricTerms terms = photometric_.evaluate(direct_color_, view, direct, dL_dcolor_);
     stats.terms["direct"] = terms.weighted(direct);
   }
-  add_direct_geometry(view, iteration, pass_.rasterizer.output(), stats);
-  if (plausible) add_plausible(view, pass_.rasterizer.output(), buffer, stats);
+  add_direct_geometry(view, iteration, out, stats);
+  if (plausible) add_plausible(view, out, buffer, stats);
+  add_color(dL_dcolor_, dL_ddirect_.features);
   transmission.backward(dL_ddirect_, pass_);
 }
 

@@ -138,6 +138,7 @@ class TransmissionLosses {
   NormalPriorLoss normal_;
   RasterPass pass_;
   RasterOutputGradient dL_ddirect_;
+  Image direct_color_, dL_dcolor_;  // [H][W][3]
   TransparencyMasks masks_;
   Image direct_depth_, cosine_, dL_ddepth_, needed_, plausible_;
 };

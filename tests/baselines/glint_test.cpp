@@ -328,3 +328,22 @@ TEST_CASE("Words that GLINT does not know are refused") {
     CHECK_THROWS_WITH(started(overrides), Catch::Matchers::Contains("sideways"));
   }
 }
+
+TEST_CASE("With more than one layer the transmission set has t and s of its own, and trains them") {
+  const auto method = started({{"layers", 2}, {"transmission_from", 0}, {"reflection_from", 0}});
+  const SurfelCloud before = cloud_of(*method, "transmission.ply");
+  CHECK(before.extra_names == std::vector<std::string>{kTransparency, kSpecular});
+  for (int i = 0; i < 5; ++i) method->step(i);
+  CHECK_FALSE(same(before, cloud_of(*method, "transmission.ply"), "extra_logits"));
+  const TempFolder folder;
+  started({})->save(folder.path().string());
+  CHECK_THROWS_WITH(
+      create_method("glint/nested", {})->load(folder.path().string()),
+      Catch::Contains("transmission.ply") && Catch::Contains("transparency, specular")
+  );
+  CHECK_THROWS_WITH(
+      create_method("glint/nested", Json{{"transmission", "trace"}}),
+      Catch::Contains("layers is 2") && Catch::Contains("rasterised")
+  );
+  CHECK_THROWS_WITH(create_method("glint", Json{{"layers", 5}}), Catch::Contains("at most 4"));
+}

@@ -7,6 +7,7 @@
 
 #include "glint/core/error.h"
 #include "glint/method.h"
+#include "glint/train/initial_points.h"
 #include "reports/run/records/earlier_run.h"
 #include "reports/run/records/run_folder.h"
 #include "reports/run/records/stage_files.h"
@@ -60,7 +61,7 @@ Asked asked_by_settings(const Json& config, const SceneSize& scene) {
   const auto value = [&](const char* name) { return number_or(config, name, 0); };
   const double pixels = scene.view_pixels, rows = value("map_height");
   const double cells = std::pow(value("reflection_cells"), 3);
-  const double grid = std::min(cells, value("reflection_points_per_pixel") * pixels);
+  const double grid = std::min(cells, ReflectionGrid::kPointsPerPixel * pixels);
   const Asked all[] = {
       {"random_points", scene.points > 0 ? 0 : kBytesPerSurfel * value("random_points")},
       {"reflection_cells", kBytesPerSurfel * grid},
