@@ -45,12 +45,7 @@ constexpr const char* kRemaining = R"({
   "run_clock_rates": false, "scale_limit": 0, "secondary_prune_light_large": false,
   "secondary_run_clock": false, "secondary_scale_limit": 0, "transmission_min_opacity": -1,
   "transmission_min_share": 0},
-"glint/plus": {
-  "cosine_consistency": false, "detach_transparency": false, "direct_lpips": false,
-  "freeze_at_least": 10000, "min_surfels": 0, "reflection_min_share": 0, "reflection_quantile": 0,
-  "reset_transparency": false, "run_clock_rates": false, "scale_limit": 0,
-  "secondary_prune_light_large": false, "secondary_run_clock": false, "secondary_scale_limit": 0,
-  "transmission_min_share": 0, "unit_consistency": true},
+"glint/plus": {"near_consistency": true, "transmission_min_opacity": 0.05, "unit_consistency": true},
 "2dgs/prior": {"gate_from": 5000, "smooth_from": 2500},
 "envgs": {"lpips_unit_range": true, "near_first": true, "normal_l1": 1},
 "envgs/prior": {"gate_from": 6667, "near_first": false, "normal_l1": 0, "smooth_from": 3333},
@@ -63,7 +58,9 @@ constexpr const char* kRemaining = R"({
 Json remaining_of(const std::string& method) {
   const Json all = Json::parse(kRemaining);
   Json remaining = Json::object();
-  for (const std::string& id : {std::string(), method.substr(0, method.find('/')), method})
+  const std::string family = method.substr(0, method.find('/'));
+  const std::string base = method == "glint/plus" ? "glint/text" : family;  // as set_plus() does
+  for (const std::string& id : {std::string(), family, base, method})
     remaining.update(all.value(id, Json::object()));
   return remaining;
 }

@@ -143,29 +143,44 @@ std::vector<fs::path> list_folders(const fs::path& folder) {
 
 namespace {
 
-void add_files_below(
-    const fs::path& folder,
-    const std::function<bool(const fs::path&)>& leaves_out,
-    std::vector<fs::path>& files
-) {
-  for (const fs::path& path : list_entries(folder)) {
-    if (leaves_out(path)) continue;
-    if (is_file(path))
-      files.push_back(path);
-    else if (!is_link(path))
-      add_files_below(path, leaves_out, files);
+struct FilesBelow {
+  const std::function<bool(const fs::path&)>& leaves_out;
+  FolderLinks links;
+  std::vector<fs::path> files;
+
+  // `inside`: the folders around it, as they are called without links, where links are followed.
+  void add(const fs::path& folder, std::vector<fs::path> inside) {
+    if (links == FolderLinks::kFollowed) {
+      const fs::path plain = fs::canonical(folder);
+      GLINT_CHECK(
+          std::find(inside.begin(), inside.end(), plain) == inside.end(),
+          kBadReference,
+          "{}: is a link that leads back to a folder around it; remove it",
+          folder.string()
+      );
+      inside.push_back(plain);
+    }
+    for (const fs::path& path : list_entries(folder)) {
+      if (leaves_out && leaves_out(path)) continue;
+      if (is_file(path))
+        files.push_back(path);
+      else if (links == FolderLinks::kFollowed || !is_link(path))
+        add(path, inside);
+    }
   }
-}
+};
 
 }  // namespace
 
 std::vector<fs::path> list_files_below(
-    const fs::path& folder, const std::function<bool(const fs::path& path)>& leaves_out
+    const fs::path& folder,
+    const std::function<bool(const fs::path& path)>& leaves_out,
+    FolderLinks links
 ) {
-  std::vector<fs::path> files;
-  add_files_below(folder, leaves_out, files);
-  std::sort(files.begin(), files.end());
-  return files;
+  FilesBelow below{leaves_out, links, {}};
+  if (links == FolderLinks::kPassedOver || is_there(folder)) below.add(folder, {});
+  std::sort(below.files.begin(), below.files.end());
+  return below.files;
 }
 
 std::ifstream open_file(const fs::path& path) {

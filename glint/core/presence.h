@@ -52,12 +52,15 @@ std::vector<fs::path> list_entries(const fs::path& folder);
 // of list_entries(), and of presence_of() for what is in it.
 std::vector<fs::path> list_folders(const fs::path& folder);
 
-// Files below a folder, sorted; into folders behind links it does not look. What `leaves_out` says
-// yes to is not looked up. Errors: as list_folders().
+enum class FolderLinks { kPassedOver, kFollowed };  // photos often lie behind one
+
+// Files below a folder, sorted by their names below it. What `leaves_out` says yes to is not looked
+// up. Errors: as list_folders(); (kBadReference) a link that is followed leads back to a folder
+// around it.
 std::vector<fs::path> list_files_below(
     const fs::path& folder,
-    const std::function<bool(const fs::path& path)>& leaves_out =
-        [](const fs::path&) { return false; }
+    const std::function<bool(const fs::path& path)>& leaves_out = {},
+    FolderLinks links = FolderLinks::kPassedOver
 );
 
 // To be read from its first byte. Errors: those of presence_of(); (kBadReference) it is missing or

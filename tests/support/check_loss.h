@@ -42,6 +42,29 @@ BasicImage<T> gradient_of(const Loss& loss, const BasicImage<T>& map, T weight =
   return gradient;
 }
 
+// The gradients of value(maps), in double, against its central differences.
+template <class Value>
+GradientError gradient_error_of(
+    const Value& value,
+    std::vector<ImageD> maps,
+    const std::vector<ImageD>& gradients,
+    double step = 1e-6
+) {
+  std::vector<double> expected, actual;
+  for (std::size_t k = 0; k < maps.size(); ++k) {
+    const auto at = [&](const std::vector<double>& x) {
+      std::copy(x.begin(), x.end(), maps[k].data());
+      return value(maps);
+    };
+    const std::vector<double> here(maps[k].values().begin(), maps[k].values().end());
+    const std::vector<double> slopes = central_differences(at, here, {step, 1});
+    std::copy(here.begin(), here.end(), maps[k].data());
+    expected.insert(expected.end(), slopes.begin(), slopes.end());
+    actual.insert(actual.end(), gradients[k].values().begin(), gradients[k].values().end());
+  }
+  return gradient_error<double>(actual, expected);
+}
+
 // In double, against central differences of the value: the gradient is right, is scaled by the
 // weight and is added to what is there. The map must be further than the step from the loss's
 // kinks.
@@ -51,20 +74,42 @@ void check_loss_gradient(const ImageD& map, const Loss& loss, double relative = 
   ImageD gradient(map.width(), map.height(), map.channels(), before);
   const double value = loss(map, weight, gradient);
   CHECK(value == value_of(loss, map));  // the value returned does not depend on the weight
-  const auto at = [&](const std::vector<double>& x) {
-    ImageD moved = map;
-    std::copy(x.begin(), x.end(), moved.data());
-    return value_of(loss, moved);
-  };
-  std::vector<double> x(map.values().begin(), map.values().end());
-  std::vector<double> expected = central_differences(at, x, {1e-5, 1});
-  for (double& g : expected) g = before + weight * g;
-  const GradientError error = gradient_error<double>(gradient.values(), expected);
-  double norm = 0;  // without what was there before
-  for (const double g : expected) norm += (g - before) * (g - before);
+  for (double& g : gradient.values()) g -= before;
+  const auto weighted = [&](const std::vector<ImageD>& m) { return weight * value_of(loss, m[0]); };
+  const GradientError error = gradient_error_of(weighted, {map}, {gradient}, 1e-5);
   INFO("largest difference at value " << error.worst_index);
-  REQUIRE(norm > 0);
-  CHECK(error.distance <= relative * std::sqrt(norm));
+  REQUIRE(error.norm > 0);
+  CHECK(error.distance <= relative * error.norm);
+}
+
+// How far a value is moved, and how near its gradient has to come.
+struct Differences {
+  float step;
+  double relative, absolute;
+};
+// Of what is computed in float: the gradient of each `stride`-th value of a map against differences
+// of value(), which looks at the map.
+template <class Value>
+void check_slopes(
+    Image& map,
+    const Image& gradient,
+    const Value& value,
+    const Differences& by,
+    std::size_t stride = 1
+) {
+  for (std::size_t i = 0; i < map.values().size(); i += stride) {
+    float& x = map.data()[i];
+    const float at = x, up = at + by.step, down = at - by.step;
+    x = up;
+    const double above = value();
+    x = down;
+    const double slope = (above - value()) / static_cast<double>(up - down);
+    x = at;
+    CHECK(
+        static_cast<double>(gradient.data()[i]) ==
+        Approx(slope).epsilon(by.relative).margin(by.absolute)
+    );
+  }
 }
 
 // Same bytes with any number of threads.

@@ -5,7 +5,6 @@
 
 #include "glint/core/left_behind.h"
 #include "glint/core/presence.h"
-#include "reports/run/records/linked_files.h"
 
 namespace glint {
 namespace {
@@ -27,7 +26,7 @@ void copy_run(const fs::path& from, const fs::path& to, bool write) {
   std::vector<fs::path> files;
   const bool is_kept = with_exit_code(ExitCode::kBadPrediction, [&] {
     const bool there = is_there(from);
-    if (there) files = list_linked_files(from);
+    if (there) files = list_files_below(from, {}, FolderLinks::kFollowed);
     return there;
   });
   if (!is_kept || !write) return;

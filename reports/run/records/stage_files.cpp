@@ -10,7 +10,6 @@
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
 #include "glint/core/sha256.h"
-#include "reports/run/records/linked_files.h"
 
 namespace glint {
 namespace {
@@ -212,7 +211,8 @@ Json with_machine_of(Json now, const Json& then) {
 std::string content_hash(const fs::path& data, const fs::path& cache) {
   HashCache hashes(data, cache);
   std::string text;
-  const auto files = is_file(data) ? std::vector{data} : list_linked_files(data, is_no_output);
+  const auto files = is_file(data) ? std::vector{data}
+                                   : list_files_below(data, is_no_output, FolderLinks::kFollowed);
   for (const fs::path& file : files) {
     const std::string name = relative_name(file, data);
     text += fmt::format("{} {}\n", hashes.hash_of(file, name), name);

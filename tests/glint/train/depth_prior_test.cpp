@@ -74,13 +74,6 @@ TEST_CASE("Gradient matching does not join the end of a row to the next row's st
   CHECK(value_of(loss_with(prior, {}, {1, 1}), depth) == Approx(0.25 + 2.0 / 4));
 }
 
-TEST_CASE("The depth loss has the gradient of its differences, the fit's part included") {
-  check_loss_gradient(test_depth(), loss_with(test_prior()));
-  check_loss_gradient(test_depth(), loss_with(test_prior(), test_weights()));
-  check_loss_gradient(test_depth(), loss_with(test_prior(), {}, {4, 0.7f}));
-  check_loss_gradient(test_depth(), loss_with(test_prior(), test_weights(), {3, 1}));
-}
-
 TEST_CASE("A prior's scale multiplies the depth loss by its square, a shift changes nothing") {
   const ImageD depth = test_depth();
   const Image prior = test_prior();
@@ -135,12 +128,4 @@ TEST_CASE("Without a prior, with one pixel, and with constant depth there is no 
 
 TEST_CASE("A depth prior of another size is refused") {
   CHECK_THROWS_AS(value_of(loss_with(Image(2, 1, 1, 1.0f)), Image(3, 1, 1, 1.0f)), Error);
-}
-
-TEST_CASE("The depth loss does not depend on the number of threads") {
-  const ImageSize size{61, 83};
-  check_thread_independence(
-      random_map<float>(size, 1, 2, 4, 5),
-      loss_with(random_map<float>(size, 1, 0, 1, 6), random_map<float>(size, 1, 0, 1, 7), {4, 1})
-  );
 }

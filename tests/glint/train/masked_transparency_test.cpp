@@ -31,24 +31,3 @@ TEST_CASE("Without labels only the smoothness of t is left") {
   const Image image(2, 1, 3), t = map_of<float>(2, 1, 1, {0.5f, 0.25f});
   CHECK(value_of(loss_with(image, {}, 0), t) == Approx(0.125));
 }
-
-TEST_CASE("The masked prior has the gradient of its differences") {
-  const ImageSize size{8, 6};
-  TransparencyMasks masks;
-  masks.transparent = random_map<float>(size, 1, 0, 1, 41);
-  masks.opaque = random_map<float>(size, 1, 0, 1, 42);
-  const Image image = random_map<float>(size, 3, 0, 1, 43);
-  const ImageD t = random_map<double>(size, 1, 0.05f, 0.75f, 44);
-  for (const float late : {0.0f, 0.5f, 1.0f}) check_loss_gradient(t, loss_with(image, masks, late));
-}
-
-TEST_CASE("The masked prior does not depend on the number of threads") {
-  const ImageSize size{45, 67};
-  TransparencyMasks masks;
-  masks.transparent = random_map<float>(size, 1, 0, 1, 45);
-  masks.opaque = random_map<float>(size, 1, 0, 1, 46);
-  check_thread_independence(
-      random_map<float>(size, 1, 0, 1, 47),
-      loss_with(random_map<float>(size, 3, 0, 1, 48), masks, 0.3f)
-  );
-}

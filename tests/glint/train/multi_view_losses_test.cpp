@@ -187,26 +187,20 @@ TEST_CASE("Reprojection errors, weights and gradients of both depth maps are the
   CHECK(result.sum.count == count);
   CHECK(result.sum.sum == Approx(sum).epsilon(1e-10));
 
-  const std::size_t pixels = depth.num_pixels();
-  const auto loss = [&](const std::vector<double>& x) {
-    ImageD a = depth, b = other;
-    std::copy_n(x.begin(), pixels, a.data());
-    std::copy(x.begin() + static_cast<std::ptrdiff_t>(pixels), x.end(), b.data());
+  const auto loss = [&](const std::vector<ImageD>& maps) {
     double total = 0;
     for (int j = 0; j < depth.height(); ++j)
       for (int i = 0; i < depth.width(); ++i)
         if (result.weight.at(i, j) > 0)
-          total += result.weight.at(i, j) * error_at(views, a, b, i, j);
+          total += result.weight.at(i, j) * error_at(views, maps[0], maps[1], i, j);
     return total;
   };
-  std::vector<double> at(depth.values().begin(), depth.values().end());
-  at.insert(at.end(), other.values().begin(), other.values().end());
-  std::vector<double> actual(result.dL_ddepth.values().begin(), result.dL_ddepth.values().end());
-  for (const std::int64_t value : result.sums)
-    actual.push_back(static_cast<double>(value) / FixedSums::kScale);
-  const std::vector<double> expected = central_differences(loss, at, {1e-6, 1});
-  const GradientError error = gradient_error<double>(actual, expected);
-  INFO("largest difference at " << error.worst_index << " of 2 x " << pixels);
+  ImageD dL_dother = other;
+  for (std::size_t i = 0; i < other.num_pixels(); ++i)
+    dL_dother.data()[i] = static_cast<double>(result.sums[i]) / FixedSums::kScale;
+  const GradientError error =
+      gradient_error_of(loss, {depth, other}, {result.dL_ddepth, dL_dother});
+  INFO("largest difference at " << error.worst_index << " of 2 x " << depth.num_pixels());
   CHECK(error.norm > 1);
   CHECK(error.distance < 1e-6 * error.norm);
 }
@@ -236,25 +230,16 @@ TEST_CASE("Patch dissimilarities and their gradients are those of the homography
   CHECK(result.sum.count == count);
   CHECK(result.sum.sum == Approx(sum).epsilon(1e-9));
 
-  const std::size_t pixels = distance.num_pixels();
-  const auto loss = [&](const std::vector<double>& x) {
-    ImageD n = normal, d = distance;
-    std::copy_n(x.begin(), 3 * pixels, n.data());
-    std::copy(x.begin() + static_cast<std::ptrdiff_t>(3 * pixels), x.end(), d.data());
+  const auto loss = [&](const std::vector<ImageD>& maps) {
     double total = 0;
     for (int j = 0; j < distance.height(); ++j)
       for (int i = 0; i < distance.width(); ++i)
-        if (counts.at(i, j) != 0) total += weight.at(i, j) * dissimilarity(n, d, i, j);
+        if (counts.at(i, j) != 0) total += weight.at(i, j) * dissimilarity(maps[0], maps[1], i, j);
     return total;
   };
-  std::vector<double> at(normal.values().begin(), normal.values().end());
-  at.insert(at.end(), distance.values().begin(), distance.values().end());
-  std::vector<double> actual(result.dL_dnormal.values().begin(), result.dL_dnormal.values().end());
-  const auto of_distance = result.dL_ddistance.values();
-  actual.insert(actual.end(), of_distance.begin(), of_distance.end());
-  const std::vector<double> expected = central_differences(loss, at, {1e-7, 1});
-  const GradientError error = gradient_error<double>(actual, expected);
-  INFO("largest difference at " << error.worst_index << " of 4 x " << pixels);
+  const GradientError error =
+      gradient_error_of(loss, {normal, distance}, {result.dL_dnormal, result.dL_ddistance}, 1e-7);
+  INFO("largest difference at " << error.worst_index << " of 4 x " << distance.num_pixels());
   CHECK(error.norm > 1);
   CHECK(error.distance < 1e-5 * error.norm);
 }

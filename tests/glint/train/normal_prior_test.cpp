@@ -8,8 +8,6 @@ using namespace glint::test;
 
 namespace {
 
-constexpr ImageSize kSize{8, 7};
-
 auto loss_of(const NormalPriorLoss& loss, const Image& prior, const Image& weights = {}) {
   return [=](const auto& normal, auto weight, auto& gradient) {
     return loss.evaluate(normal, prior, weights, weight, gradient);
@@ -24,18 +22,6 @@ NormalPriorLoss weighted_mean() {
   return loss;
 }
 constexpr float kNoGate = NormalPriorLoss::kNoGate;
-
-// Unit normals in all directions, one missing.
-Image test_prior(ImageSize size) {
-  Image prior = random_map<float>(size, 3, -1, 1, 11);
-  for (std::size_t i = 0; i < prior.num_pixels(); ++i) {
-    float* p = prior.data() + 3 * i;
-    const Vec3f n = normalize(Vec3f{p[0], p[1], p[2]});
-    p[0] = n.x, p[1] = n.y, p[2] = n.z;
-  }
-  for (int c = 0; c < 3; ++c) prior.at(3, 2, c) = 0;
-  return prior;
-}
 
 // Four pixels: the prior's normal at half length, cosine 0.6, cosine -1, no prior.
 const std::vector<float> kPriors{0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0, 0};
@@ -77,15 +63,6 @@ TEST_CASE("A pixel without a rendered normal counts as cosine zero, without grad
   CHECK(value_of(loss_with(prior, 0.3f), nothing) == 0);
 }
 
-TEST_CASE("The normal prior has the gradient of its differences, through the normalisation") {
-  const ImageD normal = random_map<double>(kSize, 3, -1, 1, 12);
-  const Image weights = random_map<float>(kSize, 1, 0, 1, 13);
-  check_loss_gradient(normal, loss_with(test_prior(kSize), kNoGate));
-  check_loss_gradient(normal, loss_with(test_prior(kSize), kNoGate, weights));
-  check_loss_gradient(normal, loss_with(test_prior(kSize), 0.3f, weights));
-  check_loss_gradient(normal, loss_of(weighted_mean(), test_prior(kSize), weights));
-}
-
 TEST_CASE("Without normal priors there is no loss") {
   const Image normal = map_of<float>(4, 1, 3, kNormals);
   check_no_loss(normal, loss_with({}, kNoGate));
@@ -118,11 +95,4 @@ TEST_CASE("Missing depth weighs nothing and constant depth one") {
   CHECK(weights.at(0, 0) == 1.0f);
   CHECK(weights.at(1, 0) == 0.0f);
   CHECK(inverse_depth_weight(Image(2, 2, 1)).at(1, 1) == 0.0f);
-}
-
-TEST_CASE("The normal prior does not depend on the number of threads") {
-  const ImageSize size{53, 71};
-  check_thread_independence(
-      random_map<float>(size, 3, -1, 1, 14), loss_with(test_prior(size), 0.3f)
-  );
 }

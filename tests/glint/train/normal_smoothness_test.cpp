@@ -39,18 +39,3 @@ TEST_CASE("Differences with a pixel without normal do not count") {
   const Image normal = map_of<float>(3, 1, 3, {0, 0, -1, 0, 0, 0, 1, 0, 0});
   check_no_loss(normal, loss_with(Image(3, 1, 3)));
 }
-
-TEST_CASE("Smoothness has the gradient of its differences with respect to composited normals") {
-  const ImageSize size{7, 6};
-  ImageD normal = random_map<double>(size, 3, -1, 1, 21);
-  const Image image = random_map<float>(size, 3, 0, 1, 22);
-  check_loss_gradient(normal, loss_with(image));
-  check_loss_gradient(normal, loss_with(image, 4));
-}
-
-TEST_CASE("Smoothness does not depend on the number of threads") {
-  const ImageSize size{45, 67};
-  check_thread_independence(
-      random_map<float>(size, 3, -1, 1, 23), loss_with(random_map<float>(size, 3, 0, 1, 24))
-  );
-}

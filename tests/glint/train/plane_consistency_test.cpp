@@ -53,19 +53,12 @@ TEST_CASE("The loss and its gradients are the formula's") {
   );
   const ImageD normal = in_double(in.normal), depth = in_double(in.depth);
   CHECK(loss == Approx(brute_force(camera, normal, depth, in.alpha, in.flatness)).epsilon(1e-5));
-  const std::size_t values = normal.values().size();
-  std::vector<double> at(normal.values().begin(), normal.values().end());
-  at.insert(at.end(), depth.values().begin(), depth.values().end());
-  const auto of = [&](const std::vector<double>& x) {
-    ImageD n = normal, z = depth;
-    std::copy_n(x.begin(), values, n.data());
-    std::copy(x.begin() + static_cast<std::ptrdiff_t>(values), x.end(), z.data());
-    return static_cast<double>(weight) * brute_force(camera, n, z, in.alpha, in.flatness);
+  const auto of = [&](const std::vector<ImageD>& maps) {
+    return static_cast<double>(weight) *
+           brute_force(camera, maps[0], maps[1], in.alpha, in.flatness);
   };
-  const std::vector<double> expected = central_differences(of, at, {1e-6, 1});
-  std::vector<double> actual(dL_dn.values().begin(), dL_dn.values().end());
-  actual.insert(actual.end(), dL_dz.values().begin(), dL_dz.values().end());
-  const GradientError error = gradient_error<double>(actual, expected);
+  const GradientError error =
+      gradient_error_of(of, {normal, depth}, {in_double(dL_dn), in_double(dL_dz)});
   INFO("largest difference at " << error.worst_index);
   REQUIRE(error.norm > 0);
   CHECK(error.distance < 2e-4 * error.norm);  // float

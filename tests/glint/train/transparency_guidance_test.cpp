@@ -197,18 +197,6 @@ TEST_CASE("The release's guidance is the weighted mean cross-entropy of each mas
   );
 }
 
-TEST_CASE("Both kinds of guidance have the gradient of their differences") {
-  const ImageSize size{9, 6};
-  const TransparencyMasks masks{
-      random_map<float>(size, 1, 0, 1, 41), random_map<float>(size, 1, 0, 1, 42)};
-  const ImageD t = random_map<double>(size, 1, 0.02f, 0.98f, 43);
-  check_loss_gradient(t, loss_with(TransparencyGuidance::paper(), masks));
-  TransparencyGuidance lenient = TransparencyGuidance::paper();
-  lenient.transparent_weight = 4;
-  check_loss_gradient(t, loss_with(lenient, masks));
-  check_loss_gradient(t, loss_with(TransparencyGuidance::release(), masks));
-}
-
 TEST_CASE("Without the priors or a depth there is no guidance") {
   const ImageSize size{3, 2};
   const Image t(3, 2, 1, 0.5f);

@@ -33,19 +33,3 @@ TEST_CASE("The transparency prior is entropy, mean and edge-aware smoothness") {
 TEST_CASE("An opaque map costs nothing") {
   CHECK(value_of(loss_with(Image(5, 4, 3)), Image(5, 4, 1)) == Approx(0).margin(2e-5));
 }
-
-TEST_CASE("The transparency prior has the gradient of its differences") {
-  const ImageSize size{8, 6};
-  const Image image = random_map<float>(size, 3, 0, 1, 31);
-  const ImageD t = random_map<double>(size, 1, 0.05f, 0.95f, 32);
-  check_loss_gradient(t, loss_with(image));
-  check_loss_gradient(t, loss_with(image, {0, 1, 3, 5}));
-  check_loss_gradient(t, loss_with(image, {2, 0, 0}));
-}
-
-TEST_CASE("The transparency prior does not depend on the number of threads") {
-  const ImageSize size{45, 67};
-  check_thread_independence(
-      random_map<float>(size, 1, 0, 1, 33), loss_with(random_map<float>(size, 3, 0, 1, 34))
-  );
-}
