@@ -4,6 +4,7 @@
 // `dataset check` walk it, so a new map is a line here and the code that computes it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -46,119 +47,129 @@ struct MapRow {
 };
 
 // In the order in which they are shown. "x_normal" is the normal of the surface at "x_depth".
-inline constexpr auto kMaps = [] {
-  using enum MapKind;
-  return std::to_array<MapRow>({
-      // The true image is no file of gt/ but the view itself.
-      {"rgb", "Image", kColor, "rgb.exr", "rgb.png", "", ""},
-      {"depth", "Depth", kDepth, "depth.exr", "", "depth", "depth"},
-      {"normal", "Normal", kNormal, "normal.exr", "", "normal", "normal"},
-      {"glass", "Glass", kMask, "", "", "glass", "glass"},
-      {"transparency", "Transparency t", kShare, "transparency.exr", "", "", ""},
-      {"specularity", "Specularity k_s", kShare, "specularity.exr", "", "", ""},
-      // The first surface that is not glass along the straight ray.
-      {"behind_depth", "Depth behind glass", kDepth, "behind_depth.exr", "", "behind_depth", ""},
-      // The same of every method by one rule each, for fair scores: of the set that stands for what
-      // is behind glass, or of the only one. Holes stay holes. See add_depth_estimates().
-      {"behind_expected",
-       "Depth behind glass, expected",
-       kDepth,
-       "behind_expected.exr",
-       "",
-       "",
-       "",
-       false},
-      {"behind_median",
-       "Depth behind glass, median",
-       kDepth,
-       "behind_median.exr",
-       "",
-       "",
-       "",
-       false},
-      // First and last mode of the weights along a ray, by one rule for every method, of the set
-      // whose depth it reports. Holes stay holes. See add_depth_modes().
-      {"first_mode", "Depth, first mode", kDepth, "first_mode.exr", "", "", "", false},
-      {"last_mode", "Depth, last mode", kDepth, "last_mode.exr", "", "", "", false},
-      {"behind_normal", "Normal behind glass", kNormal, "", "", "behind_normal", ""},
-      // The surfaces along the straight ray in their order; the first one's are the rows above.
-      // Behind a mirror the ray is the mirrored one: depth and normal are those of the mirror
-      // image, where it appears to stand.
-      {"layer_1_mirror", "Mirror", kMask, "", "", "layer_1_mirror", ""},
-      {"layer_2_depth", "Depth of layer 2", kDepth, "layer_2_depth.exr", "", "layer_2_depth", ""},
-      {"layer_2_normal",
-       "Normal of layer 2",
-       kNormal,
-       "layer_2_normal.exr",
-       "",
-       "layer_2_normal",
-       ""},
-      {"layer_2_glass", "Layer 2 is glass", kMask, "", "", "layer_2_glass", ""},
-      {"layer_2_mirror", "Layer 2 is a mirror", kMask, "", "", "layer_2_mirror", ""},
-      {"layer_2_transparency",
-       "Transparency t of layer 2",
-       kShare,
-       "layer_2_transparency.exr",
-       "",
-       "",
-       ""},
-      {"layer_3_depth", "Depth of layer 3", kDepth, "layer_3_depth.exr", "", "layer_3_depth", ""},
-      {"layer_3_normal",
-       "Normal of layer 3",
-       kNormal,
-       "layer_3_normal.exr",
-       "",
-       "layer_3_normal",
-       ""},
-      {"layer_3_glass", "Layer 3 is glass", kMask, "", "", "layer_3_glass", ""},
-      {"layer_3_mirror", "Layer 3 is a mirror", kMask, "", "", "layer_3_mirror", ""},
-      {"layer_3_transparency",
-       "Transparency t of layer 3",
-       kShare,
-       "layer_3_transparency.exr",
-       "",
-       "",
-       ""},
-      {"layer_4_depth", "Depth of layer 4", kDepth, "layer_4_depth.exr", "", "layer_4_depth", ""},
-      {"layer_4_normal",
-       "Normal of layer 4",
-       kNormal,
-       "layer_4_normal.exr",
-       "",
-       "layer_4_normal",
-       ""},
-      {"layer_4_glass", "Layer 4 is glass", kMask, "", "", "layer_4_glass", ""},
-      {"layer_4_mirror", "Layer 4 is a mirror", kMask, "", "", "layer_4_mirror", ""},
-      {"layer_4_transparency",
-       "Transparency t of layer 4",
-       kShare,
-       "layer_4_transparency.exr",
-       "",
-       "",
-       ""},
-      // Radiance of each surfel set on its own.
-      {"interface", "Interface", kColor, "", "interface.png", "", ""},
-      {"transmission", "Transmission", kColor, "", "transmission.png", "", ""},
-      {"reflection", "Reflection", kColor, "", "reflection.png", "", ""},
-      // What came through the glass and what it mirrored.
-      {"transmitted", "Transmitted part", kPart, "transmitted.exr", "", "transmitted", ""},
-      {"reflected", "Reflected part", kPart, "reflected.exr", "", "reflected", ""},
-      // The same by the first two panes or mirrors on the way, seen from the camera: through one
-      // and no other (T), through two (TT), mirrored once (R), through one and mirrored by the next
-      // (TR), mirrored and then through one (RT), mirrored twice (rest).
-      {"path_t", "Part T", kPart, "path_t.exr", "", "path_t", ""},
-      {"path_tt", "Part TT", kPart, "path_tt.exr", "", "path_tt", ""},
-      {"path_r", "Part R", kPart, "path_r.exr", "", "path_r", ""},
-      {"path_tr", "Part TR", kPart, "path_tr.exr", "", "path_tr", ""},
-      {"path_rt", "Part RT", kPart, "path_rt.exr", "", "path_rt", ""},
-      {"path_rest", "Other paths", kPart, "", "", "path_rest", ""},
-      // Of the material at the first surface; true albedo is linear, priors are as displayed.
-      {"albedo", "Albedo", kColor, "", "", "albedo", "diffuse_albedo"},
-      {"basecolor", "Base colour", kColor, "", "", "", "basecolor"},
-      // The photo without highlights and mirror images.
-      {"delighted", "De-lighted image", kColor, "", "", "", "delight"},
-  });
-}();
+namespace map_rows {
+using enum MapKind;
+
+inline constexpr MapRow kSurfaces[] = {
+    // The true image is no file of gt/ but the view itself.
+    {"rgb", "Image", kColor, "rgb.exr", "rgb.png", "", ""},
+    {"depth", "Depth", kDepth, "depth.exr", "", "depth", "depth"},
+    {"normal", "Normal", kNormal, "normal.exr", "", "normal", "normal"},
+    {"glass", "Glass", kMask, "", "", "glass", "glass"},
+    {"transparency", "Transparency t", kShare, "transparency.exr", "", "", ""},
+    {"specularity", "Specularity k_s", kShare, "specularity.exr", "", "", ""},
+    // The first surface that is not glass along the straight ray.
+    {"behind_depth", "Depth behind glass", kDepth, "behind_depth.exr", "", "behind_depth", ""},
+    // The same of every method by one rule each, for fair scores: of the set that stands for what
+    // is behind glass, or of the only one. Holes stay holes. See add_depth_estimates().
+    {"behind_expected",
+     "Depth behind glass, expected",
+     kDepth,
+     "behind_expected.exr",
+     "",
+     "",
+     "",
+     false},
+    {"behind_median", "Depth behind glass, median", kDepth, "behind_median.exr", "", "", "", false},
+    // First and last mode of the weights along a ray, by one rule for every method, of the set
+    // whose depth it reports. Holes stay holes. See add_depth_modes().
+    {"first_mode", "Depth, first mode", kDepth, "first_mode.exr", "", "", "", false},
+    {"last_mode", "Depth, last mode", kDepth, "last_mode.exr", "", "", "", false},
+    {"behind_normal", "Normal behind glass", kNormal, "", "", "behind_normal", ""},
+};
+// The surfaces along the straight ray in their order; the first one's are the rows above. Behind a
+// mirror the ray is the mirrored one: depth and normal are those of the mirror image, where it
+// appears to stand.
+inline constexpr MapRow kLayers[] = {
+    {"layer_1_mirror", "Mirror", kMask, "", "", "layer_1_mirror", ""},
+    {"layer_2_depth", "Depth of layer 2", kDepth, "layer_2_depth.exr", "", "layer_2_depth", ""},
+    {"layer_2_normal",
+     "Normal of layer 2",
+     kNormal,
+     "layer_2_normal.exr",
+     "",
+     "layer_2_normal",
+     ""},
+    {"layer_2_glass", "Layer 2 is glass", kMask, "", "", "layer_2_glass", ""},
+    {"layer_2_mirror", "Layer 2 is a mirror", kMask, "", "", "layer_2_mirror", ""},
+    {"layer_2_transparency",
+     "Transparency t of layer 2",
+     kShare,
+     "layer_2_transparency.exr",
+     "",
+     "",
+     ""},
+    {"layer_3_depth", "Depth of layer 3", kDepth, "layer_3_depth.exr", "", "layer_3_depth", ""},
+    {"layer_3_normal",
+     "Normal of layer 3",
+     kNormal,
+     "layer_3_normal.exr",
+     "",
+     "layer_3_normal",
+     ""},
+    {"layer_3_glass", "Layer 3 is glass", kMask, "", "", "layer_3_glass", ""},
+    {"layer_3_mirror", "Layer 3 is a mirror", kMask, "", "", "layer_3_mirror", ""},
+    {"layer_3_transparency",
+     "Transparency t of layer 3",
+     kShare,
+     "layer_3_transparency.exr",
+     "",
+     "",
+     ""},
+    {"layer_4_depth", "Depth of layer 4", kDepth, "layer_4_depth.exr", "", "layer_4_depth", ""},
+    {"layer_4_normal",
+     "Normal of layer 4",
+     kNormal,
+     "layer_4_normal.exr",
+     "",
+     "layer_4_normal",
+     ""},
+    {"layer_4_glass", "Layer 4 is glass", kMask, "", "", "layer_4_glass", ""},
+    {"layer_4_mirror", "Layer 4 is a mirror", kMask, "", "", "layer_4_mirror", ""},
+    {"layer_4_transparency",
+     "Transparency t of layer 4",
+     kShare,
+     "layer_4_transparency.exr",
+     "",
+     "",
+     ""},
+};
+inline constexpr MapRow kLight[] = {
+    // Radiance of each surfel set on its own.
+    {"interface", "Interface", kColor, "", "interface.png", "", ""},
+    {"transmission", "Transmission", kColor, "", "transmission.png", "", ""},
+    {"reflection", "Reflection", kColor, "", "reflection.png", "", ""},
+    // What came through the glass and what it mirrored.
+    {"transmitted", "Transmitted part", kPart, "transmitted.exr", "", "transmitted", ""},
+    {"reflected", "Reflected part", kPart, "reflected.exr", "", "reflected", ""},
+    // The same by the first two panes or mirrors on the way, seen from the camera: through one
+    // and no other (T), through two (TT), mirrored once (R), through one and mirrored by the next
+    // (TR), mirrored and then through one (RT), mirrored twice (rest).
+    {"path_t", "Part T", kPart, "path_t.exr", "", "path_t", ""},
+    {"path_tt", "Part TT", kPart, "path_tt.exr", "", "path_tt", ""},
+    {"path_r", "Part R", kPart, "path_r.exr", "", "path_r", ""},
+    {"path_tr", "Part TR", kPart, "path_tr.exr", "", "path_tr", ""},
+    {"path_rt", "Part RT", kPart, "path_rt.exr", "", "path_rt", ""},
+    {"path_rest", "Other paths", kPart, "", "", "path_rest", ""},
+    // Of the material at the first surface; true albedo is linear, priors are as displayed.
+    {"albedo", "Albedo", kColor, "", "", "albedo", "diffuse_albedo"},
+    {"basecolor", "Base colour", kColor, "", "", "", "basecolor"},
+    // The photo without highlights and mirror images.
+    {"delighted", "De-lighted image", kColor, "", "", "", "delight"},
+};
+
+template <std::size_t A, std::size_t B, std::size_t C>
+constexpr auto joined(const MapRow (&a)[A], const MapRow (&b)[B], const MapRow (&c)[C]) {
+  std::array<MapRow, A + B + C> rows;
+  std::copy(a, a + A, rows.begin());
+  std::copy(b, b + B, rows.begin() + A);
+  std::copy(c, c + C, rows.begin() + A + B);
+  return rows;
+}
+}  // namespace map_rows
+
+inline constexpr auto kMaps =
+    map_rows::joined(map_rows::kSurfaces, map_rows::kLayers, map_rows::kLight);
 
 // The rows of kMaps, then those of tests.
 std::span<const MapRow> maps();
