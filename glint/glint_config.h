@@ -37,8 +37,8 @@ struct GlintConfig {
   bool detach_transparency = true;  // no gradient of t to where surfels are and how opaque
   bool oracle = false;              // depth, normal and t of the interface are the true ones
   float secondary_near = 0;
-  int layers = 1;           // surfaces along the straight ray that let light through and mirror it
-  float layer_gap = 0.05f;  // metres behind a layer where the next one may begin
+  int layers = 1;  // surfaces along the straight ray that let light through and mirror it
+  float layer_gap = 0.05f, pane_gap = 0.4f;  // metres, LayersCall
   MirrorCutoffs mirror;
   // Initial sets.
   float initial_transparency = 0.01f, initial_specular = 1e-3f;

@@ -29,12 +29,20 @@ void pass_light(const GlassBuffer& layer, const Image* light, Image& passed) {
   );
 }
 
-void limit_behind(const GlassBuffer& layer, const Image& before, float gap, Image& limit) {
+// is_pane: pixels without a gap; null: none.
+void limit_behind(
+    const GlassBuffer& layer, const Image& before, const Image* is_pane, float gap, Image& limit
+) {
   fit(limit, layer.depth.size(), 1);
   run_kernel(
       limit.num_pixels(),
       kGrain,
-      LimitBehind{layer.depth.on_device(), before.on_device(), gap, limit.on_device()}
+      LimitBehind{
+          layer.depth.on_device(),
+          before.on_device(),
+          is_pane == nullptr ? nullptr : is_pane->array().device_for_reading(),
+          gap,
+          limit.on_device()}
   );
 }
 
@@ -52,7 +60,7 @@ void InnerLayers::see(
   InnerLayer& layer = layers_[m];
   const bool first = m == 0;
   pass_light(before, first ? nullptr : &layers_[m - 1].light, layer.light);
-  limit_behind(before, near_limit, call_.gap, layer.pane_limit);
+  limit_behind(before, near_limit, nullptr, call_.pane_gap, layer.pane_limit);
   RasterPass& interface = sets.interface.pass();
   RasterPass& transmission = sets.transmission.pass();
   layer.others =
@@ -67,6 +75,7 @@ void InnerLayers::see(
       {.channels = channels_,
        .reflection = layer.mirrors,
        .detach_origins = true,
+       .opaque_fresnel = false,
        .linear_light = call_.linear_light}
   );
   const GlassBuffer& buffer = layer.transport.read_interface(call_.camera, surface);
@@ -80,7 +89,7 @@ void InnerLayers::see(
         call_.step,
         layer.radiance.reflection
     );
-  limit_behind(buffer, near_limit, call_.gap, layer.limit);
+  limit_behind(buffer, near_limit, &layer.nearer.is_pane(), call_.gap, layer.limit);
   sets.transmission.forward_again(
       layer.rest, transmission, call_.settings, layer.light, layer.limit
   );

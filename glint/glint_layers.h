@@ -7,8 +7,9 @@
 // L_trans, so that of k layers with weights t_m, k_m [Na26 Eq. 10, applied k times]
 //   L = sum over m <= k of [prod_{j<m} (1-k_j) t_j] {(1-k_m) (1-t_m) I_m + k_m R_m}
 //       + [prod_{j<=k} (1-k_j) t_j] L_rest,
-// whose weights sum to one; L_rest is the transmission set behind the last. The official code's one
-// path of second order is k = 2 with t_2 = 0 and k_2 = s_2.
+// whose weights sum to one; L_rest is the transmission set behind the last. Behind the interface
+// only glass (t > 0.5) has Fresnel's term, an opaque surface has k = s: so the official code's one
+// path of second order is k = 2 where t_2 = 0.
 //
 // Deviations: the first two layers mirror, further ones only let light through; mirrored rays meet
 // the reflection set alone, for in the interface set the pane they come from and the next one are
@@ -38,7 +39,9 @@ struct LayersCall {
   bool reflection = true;
   int reflection_degree = 3;
   std::optional<int> step;  // of training; none: a picture for someone
-  float gap = 0;            // metres behind a layer where the next may begin
+  // Metres behind a layer where the next one of the same set may begin; of panes it is more, for
+  // around a pane there are faint surfels with its t.
+  float gap = 0, pane_gap = 0;
   bool linear_light = false;
 };
 

@@ -66,6 +66,7 @@ void GlintModel::add_inner_layers(const GlintConfig& config) {
       .reflection_degree = phase_.reflection_degree,
       .step = phase_.step,
       .gap = config.layer_gap,
+      .pane_gap = config.pane_gap,
       .linear_light = config.linear_light};
   copy_color(
       inner_.forward(

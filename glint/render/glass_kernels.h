@@ -25,6 +25,7 @@ struct GlassOptions {
   bool reflection = true;       // off: k_s counts as 0
   bool detach_origins = false;  // no gradient from reflections to the interface's depth
   bool fresnel = true;          // off: k_s = s, for methods without it
+  bool opaque_fresnel = true;   // off: so where t is at most 0.5
   bool linear_light = false;    // layers are added as linear values, not as displayed ones
 };
 
@@ -83,10 +84,11 @@ struct ReadInterface {
     const Vec3f n = hit ? (1 / norm) * raw : Vec3f{};
     const PixelRay ray = rays.at(i);
     const float specular = feature_or_zero(feature, options.channels.specular);
-    const float fresnel = keep(options.fresnel, schlick(options.f0, -dot(n, ray.unit())));
+    const float t = feature_or_zero(feature, options.channels.transparency);
+    const bool has_fresnel = options.fresnel && (options.opaque_fresnel || t > 0.5f);
+    const float fresnel = keep(has_fresnel, schlick(options.f0, -dot(n, ray.unit())));
     out.depth[i] = z;
     put3(out.normal, i, n);
-    const float t = feature_or_zero(feature, options.channels.transparency);
     out.transparency[i] = options.transmission ? t : 0.0f;
     out.specular[i] = specular;
     out.fresnel[i] = fresnel;
@@ -164,7 +166,7 @@ struct ReadInterfaceVjp {
     float dL_dfresnel = 0, dL_dspecular = 0;
     mirrored_share_vjp(specular[i], fresnel[i], dL_dmirrored[i], dL_dspecular, dL_dfresnel);
     if (options.channels.specular >= 0) feature[options.channels.specular] += dL_dspecular;
-    dL_dfresnel = keep(options.fresnel, dL_dfresnel);
+    dL_dfresnel = keep(fresnel[i] > 0, dL_dfresnel);  // 0 is none: F is at least f0
     Vec3f dL_dn = -schlick_vjp(options.f0, -dot(n, ray.unit()), dL_dfresnel) * ray.unit();
     if (dL_dorigins != nullptr) through_rays(i, ray, n, dL_dn);
     const float norm = length(map3(raw_normal, i));

@@ -83,13 +83,17 @@ struct PassLight {
   }
 };
 
-// Where the layer behind another one may begin; `before` where that other one is not.
+// Where the layer behind another one may begin, `gap` behind it, or at it where is_pane (null:
+// nowhere) says so; `before` where that other one is not.
 struct LimitBehind {
   const float *depth, *before;  // metres
+  const float* is_pane;
   float gap;
   float* limit;
   GLINT_HD void operator()(std::size_t i) const {
-    limit[i] = depth[i] > 0 && depth[i] + gap > before[i] ? depth[i] + gap : before[i];
+    const bool at = is_pane != nullptr && is_pane[i] > 0;
+    const float behind = depth[i] + (at ? 0.0f : gap);
+    limit[i] = depth[i] > 0 && behind > before[i] ? behind : before[i];
   }
 };
 

@@ -21,7 +21,7 @@ using namespace glint::test;
 namespace {
 
 constexpr ImageSize kSize{18, 10};
-constexpr double kGap = 0.05;
+constexpr double kGap = 0.05, kPaneGap = 0.4;
 
 Camera camera() {
   Camera camera;
@@ -81,6 +81,7 @@ struct Fixture {
   explicit Fixture(int layers, float first_transparency = 0.9f) {
     config.layers = layers;
     config.layer_gap = static_cast<float>(kGap);
+    config.pane_gap = static_cast<float>(kPaneGap);
     config.detach_transparency = false;
     config.mirror.share_below = 0;
     config.mirror.transmittance = kMinTransmittance;
@@ -129,22 +130,25 @@ class Reference {
     double light = 1, limit = 0;
     jump_ = 1;
     radiance = {};
+    bool is_pane = false;
     Surface surface = see(f_.model.interface, x, y, 0), others{};
     for (int m = 1; m <= f_.config.layers; ++m) {
       const Vec3d n = (1 / std::sqrt(dot(surface.normal, surface.normal))) * surface.normal;
       const Vec3d d = direction(x, y);
       const double f = 0.04 + 0.96 * std::pow(1 + dot(n, d), 5);
-      const double k = m <= 2 ? surface.s + (1 - surface.s) * f : 0;
+      const double fresnel = m == 1 || surface.t > 0.5 ? f : 0;
+      const double k = m <= 2 ? surface.s + (1 - surface.s) * fresnel : 0;
       radiance += light * (1 - k) * (1 - surface.t) * surface.color;
       if (k > 0) radiance += light * k * mirrored(surface.depth(), n, d);
       light *= (1 - k) * surface.t;
-      const double pane_limit = surface.depth() + kGap;
-      limit = m == 1 ? surface.depth() : std::max(limit, surface.depth() + kGap);
+      const double pane_limit = std::max(limit, surface.depth() + kPaneGap);
+      limit = m == 1 ? surface.depth() : std::max(limit, surface.depth() + (is_pane ? 0 : kGap));
       others = see(f_.model.transmission, x, y, limit);
       if (m == f_.config.layers) break;
       const Surface pane = see(f_.model.interface, x, y, pane_limit);
       const bool nearer = pane.t > 0.5 && (others.median <= 0 || pane.depth() < others.median);
       surface = nearer ? pane : others;
+      is_pane = nearer;
       panes += nearer;
       if (light < 0.02) surface.t = 0;
       if (light < 0.02) return radiance += light * others.color, jump_ > 2e-4;
