@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "datasets/check_geometry.h"
+#include "datasets/check_layers.h"
 #include "datasets/counted_pixels.h"
 #include "datasets/prior_maps.h"
 #include "datasets/undistort.h"
@@ -98,9 +99,11 @@ struct SizedMap {
   ImageSize size;
 };
 
-// Reads a view's maps and looks at their values; sizes are compared once all are known.
+// Reads a view's maps and looks at their values, and at its layers; sizes are compared once all are
+// known.
 std::vector<SizedMap> check_maps(const ViewSource& view, std::vector<Finding>& findings) {
   std::vector<SizedMap> maps;
+  MapSet layers;
   const auto add = [&](std::string name, const fs::path& path, const Image& map) {
     if (!map.empty()) maps.push_back({std::move(name), path, map.size()});
   };
@@ -114,9 +117,11 @@ std::vector<SizedMap> check_maps(const ViewSource& view, std::vector<Finding>& f
   view.truth.for_each([&](const MapRow& row, const fs::path& path) {
     const Image map = read_or_report(path, row.channels(), findings);
     add(fmt::format("truth.{}", row.id), path, map);
-    if (check_finite_values(path, map, findings))
-      check_values(row.kind, path.string(), map, findings);
+    if (!check_finite_values(path, map, findings)) return;
+    check_values(row.kind, path.string(), map, findings);
+    if (is_of_layers(row)) layers[row] = map;
   });
+  check_layers(view, layers, findings);
   return maps;
 }
 
@@ -451,8 +456,11 @@ std::vector<Finding> check_view_files(const ViewSource& view) {
 
 void check_agreement(const SceneIndex& index, std::vector<Finding>& findings) {
   DepthKinds kinds;
+  // Which surface is the second along a ray changes between views: only first ones are carried.
   for (const MapRow& row : maps())
-    if (row.kind == MapKind::kDepth) kinds[row.id] = check_depth(index, row, findings);
+    if (row.kind == MapKind::kDepth)
+      kinds[row.id] =
+          row.id.starts_with("layer_") ? kinds["depth"] : check_depth(index, row, findings);
   for (const auto files : {&ViewSource::truth, &ViewSource::priors})
     for (const MapRow& row : maps())
       if (row.kind == MapKind::kNormal) check_normals(index, files, row, kinds, findings);

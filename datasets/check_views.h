@@ -10,7 +10,7 @@ namespace glint {
 
 // Missing and unreadable files, sizes that differ, values that are not finite or out of range,
 // camera values. Checks: missing-file, unreadable-file, wrong-size, non-finite, depth-values,
-// normal-length, intrinsics-size, intrinsics, pose.
+// normal-length, intrinsics-size, intrinsics, pose, and those of check_layers.h.
 std::vector<Finding> check_view_files(const ViewSource& view);
 
 // Depth and normals against the cameras, over a sample of views. Checks: ray-length-depth,

@@ -17,10 +17,17 @@ bool counts_on_glass(const MapRow& row) {
   return row.kind == MapKind::kPart || row.id == "behind_depth";
 }
 
-void clear_off_glass(const Image& glass, Image& map) {
+// Where the first surface is glass; for parts by path also where it is a mirror.
+bool is_counted(const MapSet& truth, const MapRow& row, std::size_t pixel) {
+  const Image& mirror = truth["layer_1_mirror"];
+  const bool by_path = row.id.starts_with("path_") && !mirror.empty();
+  return truth["glass"].data()[pixel] != 0 || (by_path && mirror.data()[pixel] != 0);
+}
+
+void clear_what_does_not_count(const MapSet& truth, const MapRow& row, Image& map) {
   const auto channels = static_cast<std::size_t>(map.channels());
   for (std::size_t i = 0; i < map.values().size(); ++i)
-    if (glass.data()[i / channels] == 0) map.data()[i] = 0;
+    if (!is_counted(truth, row, i / channels)) map.data()[i] = 0;
 }
 
 MapSet compact_truth(const MapSet& truth) {
@@ -28,7 +35,7 @@ MapSet compact_truth(const MapSet& truth) {
   truth.for_each([&](const MapRow& row, const Image& map) {
     if (!is_scored(row)) return;
     Image& copy = kept[row] = map;
-    if (counts_on_glass(row) && truth.has("glass")) clear_off_glass(truth["glass"], copy);
+    if (counts_on_glass(row) && truth.has("glass")) clear_what_does_not_count(truth, row, copy);
     round_truth(row.kind, copy);
   });
   return kept;

@@ -26,7 +26,7 @@ Json vector_json(Vec3<T> v) {
 std::string texture_file(int texture) { return fmt::format("textures/{}.exr", texture); }
 
 const char* kind_name(MaterialKind kind) {
-  constexpr const char* kNames[] = {"diffuse", "conductor", "plastic", "thin dielectric"};
+  constexpr const char* kNames[] = {"diffuse", "conductor", "plastic", "thin dielectric", "mirror"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -52,7 +52,7 @@ Json material_json(const Material& m, std::size_t index) {
   if (m.kind == MaterialKind::kThinDielectric) {
     json["ior"] = m.ior;
     json["tint"] = vector_json(m.tint);
-  } else if (m.kind != MaterialKind::kDiffuse) {
+  } else if (m.kind != MaterialKind::kDiffuse && m.kind != MaterialKind::kMirror) {
     const path_tracing::MaterialModel model = path_tracing::prepare_material(m);
     json["roughness"] = m.roughness;
     json["alpha"] = model.alpha;

@@ -67,7 +67,8 @@ float AlbedoTable::operator()(float cosine) const {
 
 MaterialModel prepare_material(const Material& material) {
   MaterialModel model{material.kind, 1, material.ior, {}};
-  if (material.kind == MaterialKind::kDiffuse || material.kind == MaterialKind::kThinDielectric)
+  if (material.kind != MaterialKind::kRoughConductor &&
+      material.kind != MaterialKind::kRoughPlastic)
     return model;
   model.alpha = std::max(kMinAlpha, material.roughness * material.roughness);
   const bool conductor = material.kind == MaterialKind::kRoughConductor;
@@ -87,6 +88,7 @@ BsdfValue Bsdf::evaluate(Vec3f wo, Vec3f wi) const {
     case MaterialKind::kRoughPlastic:
       return plastic(wo, wi);
     case MaterialKind::kThinDielectric:
+    case MaterialKind::kMirror:
       return {};
   }
   return {};

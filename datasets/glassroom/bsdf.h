@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Scattering at opaque surfaces, in the local frame (shading normal = +z); the thin dielectric is
-// specular and lives in the integrator. Energy: with albedo 1 every model here reflects what
-// arrives.
+// Scattering at rough surfaces, in the local frame (shading normal = +z); thin dielectric and
+// mirror are specular and live in the integrator. Energy: with albedo 1 every model here reflects
+// what arrives.
 //   diffuse    albedo / pi
 //   conductor  GGX, Schlick with F0 = albedo, times 1 + F0 (1 / E(o) - 1): the energy that single
 //              scattering loses comes back with the lobe's shape, [Turquin19] Eq. 16. Not

@@ -88,11 +88,9 @@ void ContactSheet::add(
   for (const bool is_truth : {true, false})
     for (const MapRow& entry : maps()) {
       const Image& map = (is_truth ? truth.maps : priors)[entry];
-      if (!is_shown(entry, is_truth) || (!is_truth && map.empty())) continue;  // not simulated
+      if (!is_shown(entry, is_truth) || map.empty()) continue;  // not made
       const float far_depth = is_truth ? kFarDepth : kFarPrior;
-      add_row(
-          title_of(entry, is_truth), map.empty() ? Image() : pictures.of(entry.kind, map, far_depth)
-      );
+      add_row(title_of(entry, is_truth), pictures.of(entry.kind, map, far_depth));
     }
 }
 

@@ -176,6 +176,25 @@ Material object_material(
   return material;
 }
 
+// A material for each tint.
+std::array<int, 6> add_glass(TraceScene& scene, const ContainerShape& shape) {
+  std::array<int, 6> glass{};
+  for (std::size_t i = 0; i < glass.size(); ++i) {
+    std::size_t same = 0;
+    while (same < i && length2(shape.tints[same] - shape.tints[i]) > 0) ++same;
+    glass[i] = same < i ? glass[same]
+                        : add_material(
+                              scene,
+                              {.name = "glass",
+                               .kind = MaterialKind::kThinDielectric,
+                               .albedo = {1, 1, 1},
+                               .ior = shape.glass_ior,
+                               .tint = shape.tints[i]}
+                          );
+  }
+  return glass;
+}
+
 }  // namespace
 
 ContainerShape random_container(Rng& rng) {
@@ -185,6 +204,24 @@ ContainerShape random_container(Rng& rng) {
       0.4f * rng.uniform(2.2f, 2.6f),
       0.6f * rng.uniform(2.1f, 2.5f)};
   return shape;
+}
+
+InnerCase random_inner_case(const ContainerShape& outer, int count, Rng& rng) {
+  InnerCase inner;
+  inner.shape.size = {
+      0.55f * rng.uniform(0.95f, 1.08f),
+      0.5f * rng.uniform(0.95f, 1.08f),
+      0.72f * rng.uniform(0.9f, 1.1f)};
+  inner.shape.beam = 0.018f;
+  inner.objects = random_objects(inner.shape, count, rng);
+  constexpr float kGap = 0.03f;  // to the outer frame
+  const float reach = 0.5f * std::hypot(inner.shape.size.x, inner.shape.size.y);
+  const float side = rng.uniform() < 0.5f ? -1.0f : 1.0f;
+  const float x = 0.5f * outer.size.x - outer.beam - kGap - reach;
+  const float floor = 0.5f * (outer.beam + outer.pane_thickness);
+  inner.start =
+      yawed(rng.uniform(-0.35f, 0.35f), {side * x, rng.uniform(-0.06f, 0.06f), floor + 0.003f});
+  return inner;
 }
 
 std::array<Pane, 6> container_panes(const ContainerShape& shape) {
@@ -250,14 +287,7 @@ std::vector<ContainerObject> random_objects(const ContainerShape& shape, int cou
 }
 
 void add_container(TraceScene& scene, const ContainerShape& shape, const Pose& pose) {
-  const int glass = add_material(
-      scene,
-      {.name = "glass",
-       .kind = MaterialKind::kThinDielectric,
-       .albedo = {1, 1, 1},
-       .ior = shape.glass_ior,
-       .tint = {0.985f, 0.995f, 0.988f}}
-  );
+  const std::array<int, 6> glass = add_glass(scene, shape);
   const int black = add_material(
       scene,
       {.name = "frame",
@@ -269,13 +299,15 @@ void add_container(TraceScene& scene, const ContainerShape& shape, const Pose& p
   for (const Bounds& beam : container_beams(shape))
     append(frame, box_mesh(beam.low, beam.high), pose);
   add_mesh(scene, std::move(frame), "frame", black);
-  for (const Pane& pane : container_panes(shape)) {
+  const auto panes = container_panes(shape);
+  for (std::size_t i = 0; i < panes.size(); ++i) {
+    const Pane& pane = panes[i];
     Vec3f u{}, v{};
     u[(pane.axis + 1) % 3] = 2 * pane.half_size[(pane.axis + 1) % 3];
     v[(pane.axis + 2) % 3] = 2 * pane.half_size[(pane.axis + 2) % 3];
     TraceMesh quad = quad_mesh(pane.center - 0.5f * u - 0.5f * v, u, v);
     transform(quad, pose);
-    add_mesh(scene, std::move(quad), "pane", glass);
+    add_mesh(scene, std::move(quad), "pane", glass[i]);
   }
 }
 

@@ -17,6 +17,10 @@ struct ContainerShape {
   float beam = 0.025f;            // square beams
   float pane_thickness = 0.005f;  // of the slab that each pane stands for
   float glass_ior = 1.52f;
+  // Of container_panes(): what each lets pass of what enters it.
+  std::array<Vec3f, 6> tints = same_tint({0.985f, 0.995f, 0.988f});
+
+  static constexpr std::array<Vec3f, 6> same_tint(Vec3f t) { return {t, t, t, t, t, t}; }
 };
 
 // Sizes of the recipe: (0.6, 0.4, 0.6) m times a factor per axis.
@@ -39,6 +43,15 @@ struct ContainerObject {
 };
 // `count` different objects that fit side by side into the container.
 std::vector<ContainerObject> random_objects(const ContainerShape& shape, int count, Rng& rng);
+
+// A case that stands in another one.
+struct InnerCase {
+  ContainerShape shape;
+  std::vector<ContainerObject> objects;
+  Pose start;  // in the outer one's frame
+};
+// Beside one of the narrow ends of `outer`, with `count` objects.
+InnerCase random_inner_case(const ContainerShape& outer, int count, Rng& rng);
 
 // Adds panes (one quad each, thin dielectric) and frame to the scene.
 void add_container(TraceScene& scene, const ContainerShape& shape, const Pose& pose);

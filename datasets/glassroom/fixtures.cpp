@@ -86,6 +86,33 @@ Furniture make_picture(const Palette& p, int canvas, float x, float z) {
   return f;
 }
 
+Furniture make_mirror(const Palette& p, int mirror, float x, float low, float high) {
+  constexpr float kRim = 0.05f, kDepth = 0.04f;
+  Furniture f;
+  f.push_back({quad_mesh({x, 0.025f, low}, {-2 * x, 0, 0}, {0, 0, high - low}), mirror});
+  TraceMesh frame;
+  for (const float side : {-x - kRim, x})
+    append(frame, box_mesh({side, 0.001f, low - kRim}, {side + kRim, kDepth, high + kRim}));
+  for (const float side : {low - kRim, high})
+    append(frame, box_mesh({-x, 0.001f, side}, {x, kDepth, side + kRim}));
+  append(frame, box_mesh({-x, 0.001f, low}, {x, 0.02f, high}));  // its back
+  put(f, std::move(frame), p.brass);
+  return f;
+}
+
+Furniture make_shop_window(const Palette& p, int glass, float x, float height) {
+  constexpr float kBeam = kShopWindowBeam, kHalf = 0.5f * kBeam;
+  Furniture f;
+  f.push_back({quad_mesh({-x, 0, kBeam}, {2 * x, 0, 0}, {0, 0, height - 2 * kBeam}), glass});
+  TraceMesh frame;
+  for (const float side : {-x - kBeam, x})
+    append(frame, box_mesh({side, -kHalf, 0}, {side + kBeam, kHalf, height}));
+  for (const float side : {0.0f, height - kBeam})
+    append(frame, box_mesh({-x, -kHalf, side}, {x, kHalf, side + kBeam}));
+  put(f, std::move(frame), p.black);
+  return f;
+}
+
 Furniture make_ceiling_light(const Palette& p, const FixturePalette& fixtures, float half) {
   const float outer = half + 0.04f, depth = 0.04f;
   TraceMesh frame;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What is fixed to walls and ceiling: windows that glow, doors, pictures, lights. Local frame of a
-// wall as in furniture.h: the wall is the plane y = 0, y points into the room, the floor is z = 0.
+// What is fixed to walls and ceiling: windows that glow, doors, pictures, mirrors, lights; and a
+// shop window. Local frame of a wall as in furniture.h: the wall is the plane y = 0, y points into
+// the room, the floor is z = 0.
 #pragma once
 
 #include <array>
@@ -28,6 +29,11 @@ Furniture make_window(const Palette& palette, const FixturePalette& fixtures, Rn
 Furniture make_door(const Palette& palette);
 // Canvas with texture coordinates over [0, 1]^2, v up, u to the right as seen from the room.
 Furniture make_picture(const Palette& palette, int canvas, float half_width, float half_height);
+// A mirror that hangs from z = low to z = high, with a frame around it.
+Furniture make_mirror(const Palette& palette, int mirror, float half_width, float low, float high);
+// A pane of `glass` (one layer, in the plane y = 0) in a frame that stands on the floor.
+inline constexpr float kShopWindowBeam = 0.05f;  // of its frame, metres
+Furniture make_shop_window(const Palette& palette, int glass, float half_width, float height);
 // Panel of the given half size that shines down from just under the ceiling, in a frame; centred at
 // the origin of the ceiling plane z = 0.
 Furniture make_ceiling_light(const Palette& palette, const FixturePalette& fixtures, float half);

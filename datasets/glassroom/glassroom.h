@@ -14,7 +14,9 @@
 namespace glint {
 
 struct GlassRoomOptions {
-  std::string scene = "room_1";  // "room_1" ... "room_5"; the name seeds the layout
+  // "room_1" ... "room_5", and those beyond first order: "nested_1", "window_1", "mirror_1",
+  // "tinted_1". The name seeds the layout.
+  std::string scene = "room_1";
   int width = 160, height = 90;  // pixels
   int views = 64;                // along the camera path; every 8th is a test view
   // Samples a pixel of a training view. Test views get four times as many: noise in training views
@@ -23,10 +25,11 @@ struct GlassRoomOptions {
   std::uint64_t seed = 0;  // varies the layout of the same recipe
   std::string assets;      // empty: furniture from files is gone, but keys name the field
   std::string priors = kDefaultPriorLevel;  // how good the simulated priors are (priors.h)
+  bool layers = false;  // the maps of every layer and path, of the five rooms; others have them
 
   template <class V>
   void visit(V&& v) {
-    v("scene", scene, "room_1 ... room_5");
+    v("scene", scene, "room_1 ... room_5, nested_1, window_1, mirror_1, tinted_1");
     v("width", width, "pixels");
     v("height", height, "pixels");
     v("views", views, "views along the camera path");
@@ -34,17 +37,22 @@ struct GlassRoomOptions {
     v("seed", seed, "varies the layout");
     v("assets", assets, "empty; earlier versions: folder with glTF furniture");
     v("priors", priors, "perfect, good, default, poor, bad: how good the simulated priors are");
+    v("layers", layers, "true maps of every layer and path, which other scenes than rooms have");
   }
 };
 
 inline constexpr const char* kGlassRoomElsewhere =
     "make and pack the scene with the full build (glint-bench dataset make, dataset pack)";
 
+// Scenes beyond first order have the maps of every layer and path by themselves.
+inline bool always_has_layers(const std::string& scene) { return !scene.starts_with("room_"); }
+
 // The options as keys and scene.json have them. Default priors are not named, as before there were
-// others.
+// others, nor layers where they are off or always there.
 inline Json glassroom_json(const GlassRoomOptions& options) {
   Json json = config_to_json(options);
   if (options.priors == kDefaultPriorLevel) json.erase("priors");
+  if (!options.layers || always_has_layers(options.scene)) json.erase("layers");
   return json;
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "datasets/glassroom/check_panes.h"
+#include "datasets/glassroom/scene_programs.h"
 #include "glint/core/error.h"
 #include "glint/core/progress.h"
 
@@ -12,8 +14,9 @@ namespace {
 
 constexpr int kLayoutTries = 16;
 constexpr int kObjects = 6;
-constexpr float kMiddle = 0.2f;       // linear luminance that the median pixel gets
-constexpr double kMaxClipped = 0.04;  // share of pixels
+constexpr int kNestedObjects = 4, kInnerObjects = 3;  // where there is a case in the container
+constexpr float kMiddle = 0.2f;                       // linear luminance that the median pixel gets
+constexpr double kMaxClipped = 0.04;                  // share of pixels
 constexpr ImageSize kProbeSize{64, 36};
 
 Bounds container_bounds(const ContainerShape& shape, const Pose& pose) {
@@ -42,6 +45,37 @@ double mean_glass_share(const PathTracer& tracer, const std::vector<Camera>& cam
   return static_cast<double>(glass) / static_cast<double>(total);
 }
 
+// Objects for what of the container an inner case leaves free.
+std::vector<ContainerObject> objects_beside(const ContainerShape& shape, Rng& rng) {
+  ContainerShape half = shape;
+  half.size = 0.55f * half.size;
+  return random_objects(half, kNestedObjects, rng);
+}
+
+// Container, what is in it and how all that came to rest, into the room.
+void fill_room(const LayoutRecipe& recipe, GlassRoomScene& scene, Rng& rng) {
+  RoomModel& room = scene.room;
+  scene.container = recipe.container(room, rng);
+  std::vector<ContainerObject> objects = recipe.nested
+                                             ? objects_beside(scene.container, rng)
+                                             : random_objects(scene.container, kObjects, rng);
+  InnerCase inner;
+  if (recipe.nested) inner = random_inner_case(scene.container, kInnerObjects, rng);
+  for (const ContainerObject& object : objects) scene.objects.push_back(object.name);
+  const SettleOptions drop{
+      .support_height = room.support_height,
+      .place = room.container_place,
+      .yaw = room.container_yaw + rng.uniform(-room.yaw_range, room.yaw_range)};
+  scene.settled = settle(scene.container, objects, drop, rng, recipe.nested ? &inner : nullptr);
+  GLINT_CHECK(scene.settled.at_rest, kEnvironment, "settle: not at rest in time");
+  add_container(room.scene, scene.container, scene.settled.container);
+  add_objects(room.scene, std::move(objects), scene.settled.objects, rng);
+  if (!recipe.nested) return;
+  scene.inner = inner.shape;
+  add_container(room.scene, inner.shape, scene.settled.inner_case);
+  add_objects(room.scene, std::move(inner.objects), scene.settled.inner_objects, rng);
+}
+
 std::unique_ptr<GlassRoomScene> try_layout(
     const LayoutRecipe& recipe, const ShotOptions& shots, std::uint64_t seed
 ) {
@@ -49,18 +83,9 @@ std::unique_ptr<GlassRoomScene> try_layout(
   scene->layout_seed = seed;
   RoomModel& room = scene->room = recipe.room(seed);
   Rng rng(seed, hash_name(recipe.name + "/container"));
-  scene->container = recipe.container(room, rng);
-  std::vector<ContainerObject> objects = random_objects(scene->container, kObjects, rng);
-  for (const ContainerObject& object : objects) scene->objects.push_back(object.name);
-  const SettleOptions drop{
-      .support_height = room.support_height,
-      .place = room.container_place,
-      .yaw = room.container_yaw + rng.uniform(-room.yaw_range, room.yaw_range)};
-  scene->settled = settle(scene->container, objects, drop, rng);
-  GLINT_CHECK(scene->settled.at_rest, kEnvironment, "settle: not at rest in time");
+  fill_room(recipe, *scene, rng);
   scene->container_bounds = container_bounds(scene->container, scene->settled.container);
-  add_container(room.scene, scene->container, scene->settled.container);
-  add_objects(room.scene, std::move(objects), scene->settled.objects, rng);
+  if (shots.layers) check_panes(room.scene);
   scene->tracer = std::make_unique<PathTracer>(room.scene);
   CameraPathOptions path = recipe.path ? recipe.path(room, scene->container) : CameraPathOptions();
   path.size = {shots.width, shots.height};
@@ -121,13 +146,24 @@ std::unique_ptr<GlassRoomScene> build_layout(const LayoutRecipe& recipe, const S
 
 std::unique_ptr<GlassRoomScene> build_glassroom_scene(const GlassRoomOptions& options) {
   check_shots(shots_of(options), "glassroom");
-  const RoomProgram& program = room_program(options.scene);
+  const SceneProgram& program = scene_program(options.scene);
   const LayoutRecipe recipe{
       .generator = "glassroom",
       .name = options.scene,
-      .room = [&](std::uint64_t seed) { return build_room(program, seed); },
-      .container = [](const RoomModel&, Rng& rng) { return random_container(rng); },
-      .path = {},
+      .room = [&](std::uint64_t seed) { return build_room(program.room, seed); },
+      .container =
+          [&](const RoomModel&, Rng& rng) {
+            ContainerShape shape = random_container(rng);
+            shape.tints = program.tints.value_or(shape.tints);
+            return shape;
+          },
+      .path =
+          [&](const RoomModel&, const ContainerShape&) {
+            return CameraPathOptions{.max_radius = program.max_radius};
+          },
+      .nested = program.nested,
+      .min_glass = program.min_glass,
+      .max_glass = program.max_glass,
       .seed = options.seed};
   return build_layout(recipe, shots_of(options));
 }

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace glint {
 struct GlassRoomScene {
   RoomModel room;  // with container and objects in its TraceScene
   ContainerShape container;
-  std::vector<std::string> objects;  // names of what is in the container, as in settled.objects
+  std::vector<std::string> objects;     // names of what is in the container, as in settled.objects
+  std::optional<ContainerShape> inner;  // of the case in the container
   SettleResult settled;
   Bounds container_bounds;             // of the settled container, world
   std::unique_ptr<PathTracer> tracer;  // of room.scene
@@ -30,11 +32,15 @@ struct GlassRoomScene {
 struct ShotOptions {
   int width = 160, height = 90;  // pixels
   int views = 64, spp = 64;
-  std::string priors;  // level
+  std::string priors;   // level
+  bool layers = false;  // maps of every layer and path
 };
 template <class Options>
 ShotOptions shots_of(const Options& o) {
-  return {.width = o.width, .height = o.height, .views = o.views, .spp = o.spp, .priors = o.priors};
+  ShotOptions shots{
+      .width = o.width, .height = o.height, .views = o.views, .spp = o.spp, .priors = o.priors};
+  if constexpr (requires { o.layers; }) shots.layers = o.layers || always_has_layers(o.scene);
+  return shots;
 }
 // Errors (kUsage): out of range; `generator` opens the message.
 void check_shots(const ShotOptions& shots, const std::string& generator);
@@ -46,13 +52,15 @@ struct LayoutRecipe {
   std::function<ContainerShape(const RoomModel& room, Rng& rng)> container;
   // Of the cameras round a container; `views` and `size` are those of the shots.
   std::function<CameraPathOptions(const RoomModel& room, const ContainerShape& shape)> path;
+  bool nested = false;                        // a smaller case in the container
   double min_glass = 0.15, max_glass = 0.40;  // limits of the mean share of glass in the images
   std::uint64_t seed = 0;
 };
 
 // Layouts are tried one after the other, each from its own seed, until one settles upright and
 // gives a camera path with a glass share within the limits. The scene is built in place because the
-// tracer refers to it. Errors (kEnvironment): no layout in 16 worked; those of the recipe.
+// tracer refers to it. Errors (kEnvironment): no layout in 16 worked; (kBadReference): panes touch;
+// those of the recipe.
 std::unique_ptr<GlassRoomScene> build_layout(const LayoutRecipe& recipe, const ShotOptions& shots);
 
 // Errors (kUsage): unknown scene name or prior level, sizes out of range; (kEnvironment): those of

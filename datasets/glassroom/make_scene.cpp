@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "datasets/glassroom/contact_sheet.h"
+#include "datasets/glassroom/noise_floor.h"
 #include "datasets/glassroom/priors.h"
 #include "datasets/glassroom/replace_scene.h"
 #include "datasets/glassroom/sfm_points.h"
@@ -97,15 +98,14 @@ Image albedo_behind(const PathTracer& tracer, const Camera& camera) {
   return albedo;
 }
 
-Json container_json(const GlassRoomScene& scene) {
-  const ContainerShape& shape = scene.container;
+Json container_json(const ContainerShape& shape, const Pose& pose, int settling_steps) {
   Json panes = Json::array();
   for (const Pane& pane : container_panes(shape)) {
     Vec3f normal{};
     normal[pane.axis] = 1;
     panes.push_back(
-        {{"center", vector_json(scene.settled.container.apply(pane.center))},
-         {"normal", vector_json(scene.settled.container.rotation * normal)},
+        {{"center", vector_json(pose.apply(pane.center))},
+         {"normal", vector_json(pose.rotation * normal)},
          {"half_size_in_container", vector_json(pane.half_size)}}
     );
   }
@@ -114,19 +114,33 @@ Json container_json(const GlassRoomScene& scene) {
       {"beam", shape.beam},
       {"pane_thickness", shape.pane_thickness},
       {"ior", shape.glass_ior},
-      {"pose", pose_json(scene.settled.container)},
+      {"pose", pose_json(pose)},
       {"panes", panes},
-      {"settling_steps", scene.settled.num_steps}};
+      {"settling_steps", settling_steps}};
+}
+
+// Every pane and mirror: what is of layers.
+Json smooth_json(const TraceScene& scene) {
+  Json surfaces = Json::array();
+  for (const TraceMesh& mesh : scene.meshes) {
+    const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    const bool mirror = material.kind == MaterialKind::kMirror;
+    if (!mirror && material.kind != MaterialKind::kThinDielectric) continue;
+    Json corners = Json::array();
+    for (const Vec3f vertex : mesh.vertices) corners.push_back(vector_json(vertex));
+    Json surface{{"name", material.name}, {"kind", name_of(material.kind)}, {"corners", corners}};
+    surface[mirror ? "albedo" : "tint"] = vector_json(mirror ? material.albedo : material.tint);
+    surfaces.push_back(surface);
+  }
+  return surfaces;
 }
 
 Json materials_json(const TraceScene& scene) {
-  constexpr const char* kKinds[] = {
-      "diffuse", "rough conductor", "rough plastic", "thin dielectric"};
   Json materials = Json::array();
   for (const Material& m : scene.materials)
     materials.push_back(
         {{"name", m.name},
-         {"kind", kKinds[static_cast<int>(m.kind)]},
+         {"kind", name_of(m.kind)},
          {"albedo", vector_json(m.albedo)},
          {"textured", m.texture >= 0},
          {"roughness", m.roughness},
@@ -223,8 +237,10 @@ class SceneMaker {
     const Camera& camera = scene_->cameras[static_cast<std::size_t>(view)];
     const auto stream = static_cast<std::uint64_t>(view);
     const int spp = options_.spp * (is_test_view(view) ? kTestSampleFactor : 1);
-    const PathTracerOutput truth =
-        scene_->tracer->render(camera, {.spp = spp, .seed = seed_, .view = stream});
+    const PathTracerOutput truth = scene_->tracer->render(
+        camera, {.spp = spp, .seed = seed_, .view = stream, .layers = options_.layers}
+    );
+    if (is_test_view(view)) noise_.add(truth, exposure_);
     const MapSet priors = priors_of(view, truth);
     write_view(folder_, view, truth, priors, exposure_);
     sheet_.add(view, truth, priors, exposure_);
@@ -269,11 +285,22 @@ class SceneMaker {
         {"split", {{"train", train}, {"test", test}}},
         {"glass_share", scene_->glass_share},
         {"room_size", vector_json(scene_->room.size)},
-        {"container", container_json(*scene_)},
+        {"container",
+         container_json(scene_->container, scene_->settled.container, scene_->settled.num_steps)},
         {"items", items_json(scene_->room)},
         {"materials", materials_json(scene_->room.scene)}};
+    if (options_.layers) json.update(of_layers());
     if (recipe_.more) json.update(recipe_.more(*scene_));
     json["files"] = file_hashes(folder_);
+    return json;
+  }
+
+  Json of_layers() const {
+    Json json{{"layers", true}, {"panes_and_mirrors", smooth_json(scene_->room.scene)}};
+    if (const Json floor = noise_.json(); !floor.is_null()) json["noise_floor"] = floor;
+    if (scene_->inner)
+      json["inner_container"] =
+          container_json(*scene_->inner, scene_->settled.inner_case, scene_->settled.num_steps);
     return json;
   }
 
@@ -284,6 +311,7 @@ class SceneMaker {
   std::unique_ptr<GlassRoomScene> scene_;
   float exposure_;
   ContactSheet sheet_;
+  NoiseFloor noise_;
   PriorModel prior_model_;
   SfmModel sfm_model_;
   std::vector<int> train_views_;

@@ -21,10 +21,6 @@ float power_heuristic(float pdf, float other) {
   return p2 / (p2 + q2);
 }
 
-Vec3f mirror(Vec3f direction, Vec3f normal) {
-  return direction - 2 * dot(direction, normal) * normal;
-}
-
 float max_component(Vec3f v) { return std::max({v.x, v.y, v.z}); }
 
 }  // namespace
@@ -42,7 +38,7 @@ struct PathIntegrator::Path {
     return max_component(throughput) > 0 && bounces <= max_bounces && panes < kMaxPanes;
   }
   void reflect(const Surface& surface) {
-    direction = mirror(direction, surface.normal);
+    direction = mirrored(direction, surface.normal);
     origin = RayScene::leave(surface.position, surface.normal, direction);
     pdf = 0;
     ++bounces;
@@ -77,46 +73,92 @@ struct PathIntegrator::Illumination {
   float pdf = 0;     // of the sample, per solid angle
 };
 
+PathKind PathIntegrator::kind_after(Event next, PathKind none, PathKind passed, PathKind mirrored) {
+  if (next == Event::kNone) return none;
+  return next == Event::kPassed ? passed : mirrored;
+}
+
+PathIntegrator::Split PathIntegrator::of_reflection(const Followed& followed) {
+  Split split;
+  split.reflected = followed.radiance;
+  split.reflected_kind = kind_after(followed.first, PathKind::kR, PathKind::kRT, PathKind::kRest);
+  return split;
+}
+
 PathIntegrator::Split PathIntegrator::radiance(
     Vec3f origin, Vec3f direction, Sampler& sampler, Sampler& reflection_sampler
 ) const {
   Path path{origin, direction};
   const std::optional<Surface> first = scene_.intersect(origin, direction, RayMask::kAll);
-  if (!first) return {scene_.scene().environment, {}, false};
-  if (!scene_.is_glass(*first)) return {follow(path, sampler, first), {}, false};
-  const Material& glass = scene_.material(*first);
-  const float mirrored = thin_slab_reflectance(-dot(direction, first->normal), glass.ior);
-  Path reflection = path;
-  path.throughput = (1 - mirrored) * glass.tint;
-  path.pass(*first);
-  reflection.throughput = {mirrored, mirrored, mirrored};
-  reflection.reflect(*first);
-  return {follow(path, sampler), follow(reflection, reflection_sampler), true};
+  if (!first) return {scene_.scene().environment, {}};
+  if (scene_.is_glass(*first)) return split_at_glass(path, *first, sampler, reflection_sampler);
+  if (!scene_.is_mirror(*first)) return {follow(path, sampler, first).radiance, {}};
+  meet_mirror(path, *first);
+  return of_reflection(follow(path, sampler));
 }
 
-Vec3f PathIntegrator::follow(Path path, Sampler& sampler, std::optional<Surface> next) const {
-  Vec3f sum{};
+PathIntegrator::Split PathIntegrator::split_at_glass(
+    Path path, const Surface& pane, Sampler& sampler, Sampler& reflection_sampler
+) const {
+  const Material& glass = scene_.material(pane);
+  const float share = thin_slab_reflectance(-dot(path.direction, pane.normal), glass.ior);
+  Path reflection = path;
+  path.throughput = (1 - share) * glass.tint;
+  path.pass(pane);
+  reflection.throughput = {share, share, share};
+  reflection.reflect(pane);
+  const Followed behind = follow(path, sampler);
+  Split split = of_reflection(follow(reflection, reflection_sampler));
+  split.transmitted = behind.radiance;
+  split.transmitted_kind = kind_after(behind.first, PathKind::kT, PathKind::kTT, PathKind::kTR);
+  return split;
+}
+
+PathIntegrator::Followed PathIntegrator::follow(
+    Path path, Sampler& sampler, std::optional<Surface> next
+) const {
+  Followed followed;
+  Vec3f& sum = followed.radiance;
+  bool smooth = true;  // nothing met, or nothing but panes and mirrors
   while (path.alive(settings_.max_bounces)) {
     if (!next) next = scene_.intersect(path.origin, path.direction, RayMask::kAll);
-    if (!next) return sum + hadamard(path.throughput, scene_.scene().environment);
-    if (scene_.is_glass(*next)) {
-      cross_glass(path, *next, sampler);
+    if (!next) {
+      sum += hadamard(path.throughput, scene_.scene().environment);
+      return followed;
+    }
+    const bool glass = scene_.is_glass(*next);
+    if (glass || scene_.is_mirror(*next)) {
+      const Event event = glass ? cross_glass(path, *next, sampler) : meet_mirror(path, *next);
+      if (smooth && followed.first == Event::kNone) followed.first = event;
     } else {
       sum += emitted(path, *next);
       sum += scatter(path, *next, sampler);
+      smooth = false;
     }
     next.reset();
   }
-  return sum;
+  return followed;
 }
 
 // Reflects with probability R, otherwise passes straight through.
-void PathIntegrator::cross_glass(Path& path, const Surface& surface, Sampler& sampler) const {
+PathIntegrator::Event PathIntegrator::cross_glass(
+    Path& path, const Surface& surface, Sampler& sampler
+) const {
   const Material& glass = scene_.material(surface);
-  const float mirrored = thin_slab_reflectance(-dot(path.direction, surface.normal), glass.ior);
-  if (sampler.next_1d() < mirrored) return path.reflect(surface);
+  const float share = thin_slab_reflectance(-dot(path.direction, surface.normal), glass.ior);
+  if (sampler.next_1d() < share) {
+    path.reflect(surface);
+    return Event::kMirrored;
+  }
   path.throughput = hadamard(path.throughput, glass.tint);
   path.pass(surface);
+  return Event::kPassed;
+}
+
+PathIntegrator::Event PathIntegrator::meet_mirror(Path& path, const Surface& surface) const {
+  path.throughput = hadamard(path.throughput, scene_.albedo(surface));
+  path.reflect(surface);
+  return Event::kMirrored;
 }
 
 Vec3f PathIntegrator::emitted(const Path& path, const Surface& surface) const {

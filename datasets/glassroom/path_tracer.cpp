@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "datasets/glassroom/fresnel.h"
+#include "datasets/glassroom/layers.h"
 #include "datasets/glassroom/path_integrator.h"
 #include "glint/core/error.h"
 #include "glint/core/interrupt.h"
@@ -28,6 +29,31 @@ void store(Image& image, int x, int y, Vec3d value) {
   float* out = image.pixel(x, y);
   for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(value[c]);
 }
+
+// In the order of PathKind.
+constexpr std::array<MapId, kNumPathKinds> kPathMaps{
+    "path_t", "path_tt", "path_r", "path_tr", "path_rt", "path_rest"};
+
+struct LayerMaps {
+  MapId depth, normal, glass, mirror;
+};
+constexpr std::array<LayerMaps, kMaxLayers - 1> kLayerMaps{
+    {{"layer_2_depth", "layer_2_normal", "layer_2_glass", "layer_2_mirror"},
+     {"layer_3_depth", "layer_3_normal", "layer_3_glass", "layer_3_mirror"},
+     {"layer_4_depth", "layer_4_normal", "layer_4_glass", "layer_4_mirror"}}};
+
+// Of the samples of a pixel.
+struct RadianceSums {
+  Vec3d transmitted{}, reflected{};
+  std::array<Vec3d, kNumPathKinds> kinds{};
+
+  void add(const PathIntegrator::Split& sample) {
+    transmitted += cast<double>(sample.transmitted);
+    reflected += cast<double>(sample.reflected);
+    kinds[static_cast<std::size_t>(sample.transmitted_kind)] += cast<double>(sample.transmitted);
+    kinds[static_cast<std::size_t>(sample.reflected_kind)] += cast<double>(sample.reflected);
+  }
+};
 
 // One image in the making: its pixels are independent.
 class Rendering {
@@ -64,13 +90,28 @@ class Rendering {
     if (!first) return;
     write_layer(*first, x, y, out_.maps["depth"], out_.maps["normal"]);
     const bool glass = rays_.is_glass(*first);
-    const bool conductor = rays_.material(*first).kind == MaterialKind::kRoughConductor;
+    const MaterialKind kind = rays_.material(*first).kind;
+    const bool metal = kind == MaterialKind::kRoughConductor || kind == MaterialKind::kMirror;
     out_.maps["glass"].at(x, y) = glass ? 1.0f : 0.0f;
     const Vec3f color = glass ? rays_.material(*first).tint : rays_.albedo(*first);
     store(out_.maps["basecolor"], x, y, cast<double>(color));
-    if (!glass && !conductor) store(out_.maps["albedo"], x, y, cast<double>(color));
+    if (!glass && !metal) store(out_.maps["albedo"], x, y, cast<double>(color));
     const auto behind = glass ? rays_.intersect(origin_, direction, RayMask::kOpaque) : first;
     if (behind) write_layer(*behind, x, y, out_.maps["behind_depth"], out_.maps["behind_normal"]);
+    if (settings_.layers) further_layers(x, y, direction);
+  }
+
+  void further_layers(int x, int y, Vec3f direction) const {
+    const auto [layers, count] = layers_along(rays_, origin_, direction);
+    out_.maps["layer_1_mirror"].at(x, y) = layers[0].mirror ? 1.0f : 0.0f;
+    for (std::size_t k = 1; k < count; ++k) {
+      const LayerMaps& maps = kLayerMaps[k - 1];
+      const Vec3d n = camera_.rotation_cam_from_world * layers[k].normal;
+      out_.maps[maps.depth].at(x, y) = static_cast<float>(camera_.to_cam(layers[k].position).z);
+      store(out_.maps[maps.normal], x, y, normalize(n));
+      out_.maps[maps.glass].at(x, y) = layers[k].glass ? 1.0f : 0.0f;
+      out_.maps[maps.mirror].at(x, y) = layers[k].mirror ? 1.0f : 0.0f;
+    }
   }
 
   void write_layer(const Surface& surface, int x, int y, Image& depth, Image& normal) const {
@@ -84,25 +125,46 @@ class Rendering {
     const std::uint64_t key = pixel_key(settings_.seed, settings_.view, pixel, kCameraBranch);
     const std::uint64_t mirror_key =
         pixel_key(settings_.seed, settings_.view, pixel, kReflectionBranch);
-    Vec3d transmitted{}, reflected{};
+    RadianceSums total;
+    std::array<RadianceSums, 2> halves;
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(settings_.spp); ++i) {
       Sampler sampler(key, i), mirror_sampler(mirror_key, i);
       const Vec2f u = sampler.next_2d();
       const Vec3f direction = normalize(ray_direction(x + double(u.x), y + double(u.y)));
       const auto sample = integrator_.radiance(origin_, direction, sampler, mirror_sampler);
-      transmitted += cast<double>(sample.transmitted);
-      reflected += cast<double>(sample.reflected);
+      total.add(sample);
+      halves[i < first_half() ? 0 : 1].add(sample);
     }
-    write_radiance(x, y, (1.0 / settings_.spp) * transmitted, (1.0 / settings_.spp) * reflected);
+    write_radiance(x, y, total, settings_.spp, out_.radiance, out_.maps);
+    if (out_.halves[0].empty()) return;
+    const int first = static_cast<int>(first_half());
+    for (const std::size_t h : {0u, 1u})
+      write_radiance(
+          x,
+          y,
+          halves[h],
+          h == 0 ? first : settings_.spp - first,
+          out_.halves[h]["rgb"],
+          out_.halves[h]
+      );
   }
+  std::uint32_t first_half() const { return static_cast<std::uint32_t>(settings_.spp) / 2; }
 
   // The sum is taken in float, so that it holds exactly between the images.
-  void write_radiance(int x, int y, Vec3d transmitted, Vec3d reflected) const {
-    const Vec3f t = cast<float>(transmitted), r = cast<float>(reflected);
-    store(out_.radiance, x, y, cast<double>(t + r));
-    if (out_.maps["glass"].at(x, y) == 0) return;
-    store(out_.maps["transmitted"], x, y, cast<double>(t));
-    store(out_.maps["reflected"], x, y, cast<double>(r));
+  void write_radiance(
+      int x, int y, const RadianceSums& sums, int count, Image& radiance, MapSet& maps
+  ) const {
+    const double share = 1.0 / count;
+    const Vec3f t = cast<float>(share * sums.transmitted), r = cast<float>(share * sums.reflected);
+    store(radiance, x, y, cast<double>(t + r));
+    const bool glass = out_.maps["glass"].at(x, y) != 0;
+    if (glass) {
+      store(maps["transmitted"], x, y, cast<double>(t));
+      store(maps["reflected"], x, y, cast<double>(r));
+    }
+    if (!settings_.layers || !(glass || out_.maps["layer_1_mirror"].at(x, y) != 0)) return;
+    for (std::size_t k = 0; k < kPathMaps.size(); ++k)
+      store(maps[kPathMaps[k]], x, y, share * sums.kinds[k]);
   }
 
   const RayScene& rays_;
@@ -124,9 +186,25 @@ constexpr MapId kTracedMaps[] = {
     "albedo",
     "basecolor"};
 
-PathTracerOutput empty_output(int w, int h) {
-  PathTracerOutput out{Image(w, h, 3), {}};
+void add_layer_maps(PathTracerOutput& out, const PathTracerSettings& settings) {
+  const int w = out.radiance.width(), h = out.radiance.height();
+  const auto add = [&](MapSet& maps, MapId id) { maps[id] = Image(w, h, id.row().channels()); };
+  add(out.maps, "layer_1_mirror");
+  for (const LayerMaps& layer : kLayerMaps)
+    for (const MapId id : {layer.depth, layer.normal, layer.glass, layer.mirror}) add(out.maps, id);
+  for (const MapId id : kPathMaps) add(out.maps, id);
+  if (settings.spp < 2) return;
+  for (MapSet& half : out.halves) {
+    for (const MapId id : {MapId("rgb"), MapId("transmitted"), MapId("reflected")}) add(half, id);
+    for (const MapId id : kPathMaps) add(half, id);
+  }
+}
+
+PathTracerOutput empty_output(const Camera& camera, const PathTracerSettings& settings) {
+  const int w = camera.width, h = camera.height;
+  PathTracerOutput out{Image(w, h, 3), {}, {}};
   for (const MapId id : kTracedMaps) out.maps[id] = Image(w, h, id.row().channels());
+  if (settings.layers) add_layer_maps(out, settings);
   return out;
 }
 
@@ -150,7 +228,7 @@ PathTracerOutput PathTracer::render(const Camera& camera, const PathTracerSettin
   GLINT_CHECK(
       settings.max_bounces >= 0, kUsage, "path tracer: max_bounces is {}", settings.max_bounces
   );
-  PathTracerOutput out = empty_output(camera.width, camera.height);
+  PathTracerOutput out = empty_output(camera, settings);
   const Rendering rendering(state_->rays, state_->lights, camera, settings, out);
   parallel_for(static_cast<std::size_t>(camera.height), 1, [&](std::size_t row) {
     throw_if_interrupted();
@@ -172,7 +250,8 @@ PathTracer::FirstHit PathTracer::first_hit(Vec3f origin, Vec3f direction, bool s
       surface->normal,
       glass ? Vec3f{} : rays.albedo(*surface),
       surface->mesh,
-      glass};
+      glass,
+      rays.is_mirror(*surface)};
 }
 
 bool PathTracer::occluded(Vec3f from, Vec3f to) const { return state_->rays.occluded(from, to); }

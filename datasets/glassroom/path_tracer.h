@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Path tracer on Embree: next-event estimation with multiple importance sampling, Russian roulette
-// (up to 200 bounces), thin dielectrics as specular slabs; shadow rays go straight through thin
-// glass with its transmittance. Deterministic: the random numbers of a pixel depend on (seed, view,
-// pixel, sample) only.
+// (up to 200 bounces), thin dielectrics as specular slabs, mirrors; shadow rays go straight through
+// thin glass with its transmittance. Deterministic: the random numbers of a pixel depend on (seed,
+// view, pixel, sample) only.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -23,17 +24,26 @@ struct PathTracerSettings {
   std::uint64_t seed = 0;
   std::uint64_t view = 0;             // stream of this view
   bool next_event_estimation = true;  // off: BSDF sampling alone (noisy; for checks)
+  bool layers = false;                // also the maps of each layer and path
 };
 
 // Geometry maps are of the ray through the pixel centre (no anti-aliasing).
 struct PathTracerOutput {
   Image radiance;  // [H][W][3] linear
   // depth, normal (shading normal), glass, behind_depth, behind_normal; albedo (diffuse, linear, of
-  // the first surface; glass and conductors: 0); basecolor (glass: its near-white tint); where the
+  // the first surface; glass, conductors and mirrors: 0); basecolor (glass: its tint); where the
   // first surface is glass (0 elsewhere) transmitted and reflected: the part of radiance that
   // passed it, and the part that it mirrored, which add up exactly. Only the first pane splits.
   // Samples of a border pixel that miss the pane count as transmitted.
+  //
+  // With layers: layer_1_mirror, layer_<2..4>_{depth, normal, glass, mirror} (layers.h; 0: no such
+  // surface, and a fifth one is in no map); where the first surface is glass or a mirror (0
+  // elsewhere) path_t ... path_rest, radiance by what its path did at the first two panes or
+  // mirrors (PathKind). They add up to the radiance; at glass T + TT + TR is transmitted.
   MapSet maps;
+  // With layers and two samples or more: "rgb" (linear) and the parts from the first and from the
+  // second half of the samples, for the noise of their mean.
+  std::array<MapSet, 2> halves;
 };
 
 class PathTracer {
@@ -50,7 +60,7 @@ class PathTracer {
     Vec3f position{}, normal{};  // geometric normal facing the origin
     Vec3f albedo{};              // linear, textured; 0 for glass
     int mesh = -1;
-    bool glass = false;
+    bool glass = false, mirror = false;
   };
   FirstHit first_hit(Vec3f origin, Vec3f direction, bool skip_glass) const;
   bool occluded(Vec3f from, Vec3f to) const;  // by opaque surfaces only

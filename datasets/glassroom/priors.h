@@ -24,6 +24,9 @@
 //               (`dark_leak` of it), glass is as bright as an opaque pane, 0.3 to 0.8
 //               (`bright_leak` of the glass that does not fail).
 //   missing     views of which nothing was predicted (`missing_rate` of them).
+// At a mirror all four describe its surface, and never fail: its plane, an albedo as black as a
+// metal's (as glass, it is 0 before the noise), the base colour that it mirrors with. Networks
+// often see the mirrored room instead.
 // Colours are stored as sRGB-encoded values. Leaks and missing views draw random numbers of their
 // own, so that models without them give the same bytes as before there were any.
 //

@@ -30,6 +30,11 @@ static_assert(sizeof(Triangle) == 128);
 
 enum class RayMask : unsigned { kOpaque = 1, kGlass = 2, kAll = 3 };
 
+// Of a smooth surface.
+inline Vec3f mirrored(Vec3f direction, Vec3f normal) {
+  return direction - 2 * dot(direction, normal) * normal;
+}
+
 // What a ray met. Both normals are on the side of the ray's origin.
 struct Surface {
   Vec3f position;  // on the triangle's plane
@@ -67,6 +72,9 @@ class RayScene {
   }
   bool is_glass(const Surface& surface) const {
     return material(surface).kind == MaterialKind::kThinDielectric;
+  }
+  bool is_mirror(const Surface& surface) const {
+    return material(surface).kind == MaterialKind::kMirror;
   }
   const MaterialModel& model(const Surface& surface) const {
     return models_[static_cast<std::size_t>(surface.material)];

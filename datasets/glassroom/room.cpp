@@ -19,6 +19,9 @@ constexpr float kItemGap = 0.04f;    // between neighbours
 constexpr float kCornerGap = 0.08f;  // from the corners of the room
 constexpr float kBaseboardHeight = 0.09f, kBaseboardDepth = 0.016f;
 constexpr int kWallTries = 300, kPictureTries = 200;
+constexpr Vec3f kSilver{0.93f, 0.94f, 0.93f};  // share that a mirror gives back
+// Of the shop window: from the container's middle, its half width and its height, metres.
+constexpr float kShopWindowAway = 1.15f, kShopWindowHalf = 1.5f, kShopWindowHeight = 2.0f;
 
 constexpr Vec3f kLampLight{6.0f, 4.4f, 2.6f};  // as in fixtures.h
 
@@ -35,6 +38,9 @@ class RoomBuilder {
       : program_(program), rng_(seed, hash_name(program.name)), seed_(seed) {
     room_.size = {rng_.uniform(4.9f, 5.6f), rng_.uniform(4.8f, 5.4f), rng_.uniform(2.6f, 2.85f)};
     room_.container_place = {rng_.uniform(-0.15f, 0.15f), rng_.uniform(-0.15f, 0.15f)};
+    room_.size.y += program.extra_depth;
+    room_.container_place.x += program.case_shift.x;
+    room_.container_place.y += program.case_shift.y;
     make_palette();
   }
 
@@ -42,6 +48,7 @@ class RoomBuilder {
     add_shell();
     add_ceiling_lights();
     add_rug();
+    if (program_.shop_window) add_shop_window();
     for (int wall = 0; wall < 4; ++wall) furnish(wall);
     for (int wall = 0; wall < 4; ++wall)
       for (int i = 0; i < program(wall).pictures; ++i) hang_picture(wall, i);
@@ -162,6 +169,30 @@ class RoomBuilder {
     room_.support_height = kThickness;
   }
 
+  // Before the furniture, which keeps clear of it.
+  void add_shop_window() {
+    const int glass = add_material(
+        room_.scene,
+        {.name = "shop window",
+         .kind = MaterialKind::kThinDielectric,
+         .albedo = {1, 1, 1},
+         .ior = 1.52f,
+         .tint = {0.975f, 0.985f, 0.98f}}
+    );
+    Furniture window = make_shop_window(palette_, glass, kShopWindowHalf, kShopWindowHeight);
+    const Vec2f at = room_.container_place;
+    const Pose pose = translated({at.x, at.y - kShopWindowAway, 0});
+    room_.items.push_back({"shop window", -1, placed(bounds_of(window), pose)});
+    add(std::move(window), "shop window", pose);
+  }
+
+  Furniture wall_mirror() {
+    const int silver = add_material(
+        room_.scene, {.name = "mirror", .kind = MaterialKind::kMirror, .albedo = kSilver}
+    );
+    return make_mirror(palette_, silver, 1.7f, 0.18f, 2.25f);
+  }
+
   bool is_free(const Bounds& bounds) const {
     if (!room_.bounds().contains(bounds)) return false;
     return std::none_of(room_.items.begin(), room_.items.end(), [&](const PlacedItem& item) {
@@ -190,6 +221,8 @@ class RoomBuilder {
       pieces.push_back(make_piece("window", make_window(palette_, fixtures_, rng_), 0.001f));
     for (int i = 0; i < program(wall).doors; ++i)
       pieces.push_back(make_piece("door", make_door(palette_), 0.001f));
+    for (int i = 0; i < program(wall).mirrors; ++i)
+      pieces.push_back(make_piece("mirror", wall_mirror(), 0.001f));
     for (const FurnitureKind kind : program(wall).furniture)
       pieces.push_back(make_piece(
           std::string(furniture_name(kind)), make_furniture(kind, palette_, rng_), kWallGap

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/glassroom/room_programs.h"
 
-#include <string>
-
-#include "glint/core/error.h"
-
 namespace glint {
 
 namespace {
@@ -150,16 +146,6 @@ const std::vector<RoomProgram>& room_programs() {
   static const std::vector<RoomProgram> programs{
       living_room(), study(), loft(), gallery(), lounge()};
   return programs;
-}
-
-const RoomProgram& room_program(std::string_view name) {
-  std::string known;
-  for (const RoomProgram& program : room_programs()) {
-    if (program.name == name) return program;
-    known += (known.empty() ? "" : ", ") + std::string(program.name);
-  }
-  GLINT_CHECK(false, kUsage, "glassroom: no scene '{}'; known scenes: {}", name, known);
-  return room_programs().front();
 }
 
 }  // namespace glint

@@ -15,7 +15,7 @@ namespace glint {
 struct WallProgram {
   PatternSpec finish;
   std::vector<FurnitureKind> furniture;
-  int windows = 0, doors = 0, pictures = 0;
+  int windows = 0, doors = 0, pictures = 0, mirrors = 0;
 };
 
 struct RoomProgram {
@@ -23,10 +23,11 @@ struct RoomProgram {
   PatternSpec floor, rug, wood, dark_wood, fabric, cushion, books;
   Vec3f paint, ceramic, pot, curtain;  // linear colours
   std::array<WallProgram, 4> walls;    // facing +y, -x, -y, +x; neighbours share a corner
+  bool shop_window = false;            // a framed pane between the container and the first wall
+  float extra_depth = 0;               // metres, along y
+  Vec2f case_shift{};                  // of the container's place off the middle
 };
 
-// Errors (kUsage): no such room; the known ones are listed.
-const RoomProgram& room_program(std::string_view name);
 const std::vector<RoomProgram>& room_programs();
 
 }  // namespace glint

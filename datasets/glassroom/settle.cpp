@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "glint/core/error.h"
 #include "glint/scene/camera.h"
@@ -17,8 +18,9 @@ namespace {
 
 constexpr float kMargin = 0.001f;  // metres, of collision hulls
 constexpr float kWallThickness =
-    0.06f;                            // panes collide as thick walls, grown outwards: no tunnelling
-constexpr float kContainerMass = 40;  // kg
+    0.06f;  // panes collide as thick walls, grown outwards: no tunnelling
+constexpr float kInnerWallThickness = 0.012f;          // thin: what lies beside the case touches it
+constexpr float kContainerMass = 40, kInnerMass = 10;  // kg
 
 btVector3 to_bullet(Vec3f v) { return {v.x, v.y, v.z}; }
 Vec3f from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -97,7 +99,7 @@ class World {
 btTransform at(Vec3f translation) { return to_bullet(translated(translation)); }
 
 // Bullet wants the origin at the centre of mass: the middle of the box.
-btCollisionShape* container_shape(World& world, const ContainerShape& shape) {
+btCollisionShape* container_shape(World& world, const ContainerShape& shape, float wall) {
   auto* compound = world.shape<btCompoundShape>();
   const Vec3f middle{0, 0, 0.5f * shape.size.z};
   for (const Bounds& beam : container_beams(shape))
@@ -112,8 +114,8 @@ btCollisionShape* container_shape(World& world, const ContainerShape& shape) {
       half.z = 0.5f * (top - bottom);
       center.z = 0.5f * (top + bottom);
     } else {
-      center[pane.axis] += std::copysign(kWallThickness - half[pane.axis], center[pane.axis]);
-      half[pane.axis] = kWallThickness;
+      center[pane.axis] += std::copysign(wall - half[pane.axis], center[pane.axis]);
+      half[pane.axis] = wall;
     }
     compound->addChildShape(at(center), world.shape<btBoxShape>(to_bullet(half)));
   }
@@ -148,10 +150,24 @@ Mat3f random_upright(Rng& rng) {
   return cast<float>(rotation_from_quaternion({q.w / norm, q.x / norm, q.y / norm, q.z / norm}));
 }
 
+// From a point of the outer case's frame to the inner case.
+float distance_to(const InnerCase& inner, Vec3f point) {
+  const Vec3f local = transpose_times(inner.start.rotation, point - inner.start.translation);
+  const Vec3f half = 0.5f * inner.shape.size;
+  const auto beyond = [](float value, float low, float high) {
+    return std::max({low - value, value - high, 0.0f});
+  };
+  return length(Vec3f{
+      beyond(local.x, -half.x, half.x),
+      beyond(local.y, -half.y, half.y),
+      beyond(local.z, 0, inner.shape.size.z)});
+}
+
 // The lowest of many random places where the object's bounding sphere touches neither the container
-// nor the spheres placed before.
+// nor the case in it (if any) nor the spheres placed before.
 bool find_start(
     const ContainerShape& shape,
+    const InnerCase* inner,
     const std::vector<Vec4f>& placed,
     float radius,
     Rng& rng,
@@ -166,6 +182,7 @@ bool find_start(
     const float x = rng.uniform(-reach.x, reach.x), y = rng.uniform(-reach.y, reach.y);
     const Vec3f trial{x, y, rng.uniform(rim, reach.z)};
     if (found && trial.z >= place.z) continue;
+    if (inner != nullptr && distance_to(*inner, trial) < radius + 0.02f) continue;
     const bool free = std::all_of(placed.begin(), placed.end(), [&](Vec4f other) {
       return length(trial - Vec3f{other.x, other.y, other.z}) > radius + other.w;
     });
@@ -177,7 +194,10 @@ bool find_start(
 
 // The largest are placed first.
 std::vector<Pose> start_poses(
-    const ContainerShape& shape, const std::vector<ContainerObject>& objects, Rng& rng
+    const ContainerShape& shape,
+    const std::vector<ContainerObject>& objects,
+    const InnerCase* inner,
+    Rng& rng
 ) {
   std::vector<std::size_t> order(objects.size());
   std::vector<float> radii;
@@ -191,7 +211,7 @@ std::vector<Pose> start_poses(
   for (const std::size_t i : order) {
     Vec3f place{};
     GLINT_CHECK(
-        find_start(shape, placed, radii[i], rng, place),
+        find_start(shape, inner, placed, radii[i], rng, place),
         kEnvironment,
         "settle: no space in the container for the {} after {} objects",
         objects[i].name,
@@ -203,18 +223,83 @@ std::vector<Pose> start_poses(
   return poses;
 }
 
-// Object origins within the container's inside, container upright.
-void check_result(const ContainerShape& shape, const SettleResult& result) {
-  GLINT_CHECK(
-      result.container.rotation.rows[2].z > 0.999f, kEnvironment, "settle: the container fell over"
-  );
+// Object origins within the case, which is upright.
+void check_case(
+    const ContainerShape& shape,
+    const Pose& pose,
+    const std::vector<Pose>& objects,
+    const char* name
+) {
+  GLINT_CHECK(pose.rotation.rows[2].z > 0.999f, kEnvironment, "settle: the {} fell over", name);
   const Vec3f half = 0.5f * shape.size;
-  for (const Pose& pose : result.objects) {
-    const Vec3f local =
-        transpose_times(result.container.rotation, pose.translation - result.container.translation);
-    const Bounds inside{.low = {-half.x, -half.y, 0}, .high = {half.x, half.y, shape.size.z}};
-    GLINT_CHECK(inside.contains(local), kEnvironment, "settle: an object left the container");
+  const Bounds inside{.low = {-half.x, -half.y, 0}, .high = {half.x, half.y, shape.size.z}};
+  for (const Pose& object : objects)
+    GLINT_CHECK(
+        inside.contains(transpose_times(pose.rotation, object.translation - pose.translation)),
+        kEnvironment,
+        "settle: an object left the {}",
+        name
+    );
+}
+
+// A case in the world and what is in it.
+class Case {
+ public:
+  Case(
+      World& world,
+      const ContainerShape& shape,
+      const Pose& start,
+      float mass,
+      float wall,
+      float friction
+  )
+      : start_(start), middle_{0, 0, 0.5f * shape.size.z}, friction_(friction) {
+    box_ = world.add(
+        container_shape(world, shape, wall),
+        mass,
+        to_bullet(compose(start, translated(middle_))),
+        friction
+    );
   }
+
+  // `places`: in the case.
+  void fill(
+      World& world, const std::vector<ContainerObject>& objects, const std::vector<Pose>& places
+  ) {
+    for (std::size_t i = 0; i < objects.size(); ++i)
+      bodies_.push_back(world.add(
+          object_shape(world, objects[i]),
+          objects[i].mass,
+          to_bullet(compose(start_, places[i])),
+          friction_
+      ));
+  }
+
+  Pose pose() const {
+    return compose(from_bullet(box_->getWorldTransform()), translated(-middle_));
+  }
+  std::vector<Pose> objects() const {
+    std::vector<Pose> poses;
+    for (const btRigidBody* body : bodies_) poses.push_back(from_bullet(body->getWorldTransform()));
+    return poses;
+  }
+
+ private:
+  Pose start_;
+  Vec3f middle_;
+  float friction_;
+  btRigidBody* box_ = nullptr;
+  std::vector<btRigidBody*> bodies_;
+};
+
+void add_floor(World& world, const SettleOptions& options) {
+  constexpr float kFloor = 5;
+  world.add(
+      world.shape<btBoxShape>(btVector3(kFloor, kFloor, 0.5f)),
+      0,
+      at({0, 0, options.support_height - 0.5f}),
+      options.floor_friction
+  );
 }
 
 }  // namespace
@@ -223,45 +308,39 @@ SettleResult settle(
     const ContainerShape& shape,
     const std::vector<ContainerObject>& objects,
     const SettleOptions& options,
-    Rng& rng
+    Rng& rng,
+    const InnerCase* inner
 ) {
   World world;
-  constexpr float kFloor = 5;
-  world.add(
-      world.shape<btBoxShape>(btVector3(kFloor, kFloor, 0.5f)),
-      0,
-      at({0, 0, options.support_height - 0.5f}),
-      options.floor_friction
-  );
+  add_floor(world, options);
   const Pose start = yawed(
       options.yaw, {options.place.x, options.place.y, options.support_height + options.drop_height}
   );
-  const Vec3f middle{0, 0, 0.5f * shape.size.z};
-  btRigidBody* box = world.add(
-      container_shape(world, shape),
-      kContainerMass,
-      to_bullet(compose(start, translated(middle))),
-      options.body_friction
-  );
-  std::vector<btRigidBody*> bodies;
-  const std::vector<Pose> places = start_poses(shape, objects, rng);
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    bodies.push_back(world.add(
-        object_shape(world, objects[i]),
-        objects[i].mass,
-        to_bullet(compose(start, places[i])),
-        options.body_friction
-    ));
+  Case outer(world, shape, start, kContainerMass, kWallThickness, options.body_friction);
+  outer.fill(world, objects, start_poses(shape, objects, inner, rng));
+  std::optional<Case> in;
+  if (inner != nullptr) {
+    const Pose inner_start = compose(start, inner->start);
+    in.emplace(
+        world, inner->shape, inner_start, kInnerMass, kInnerWallThickness, options.body_friction
+    );
+    in->fill(world, inner->objects, start_poses(inner->shape, inner->objects, nullptr, rng));
+  }
   SettleResult result;
   const int max_steps = static_cast<int>(options.max_seconds * options.step_hz);
   while (result.num_steps < max_steps && !(result.at_rest = world.asleep())) {
     world.step(1 / options.step_hz);
     ++result.num_steps;
   }
-  result.container = compose(from_bullet(box->getWorldTransform()), translated(-middle));
-  for (const btRigidBody* body : bodies)
-    result.objects.push_back(from_bullet(body->getWorldTransform()));
-  check_result(shape, result);
+  result.container = outer.pose();
+  result.objects = outer.objects();
+  check_case(shape, result.container, result.objects, "container");
+  if (in) {
+    result.inner_case = in->pose();
+    result.inner_objects = in->objects();
+    check_case(shape, result.container, {result.inner_case}, "container");
+    check_case(inner->shape, result.inner_case, result.inner_objects, "inner case");
+  }
   return result;
 }
 

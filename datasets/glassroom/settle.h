@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rigid-body settling (Bullet): the container falls onto the floor and the objects inside it come
-// to rest. One thread, fixed step: the same input gives the same poses.
+// to rest, and so does a case inside it with its own. One thread, fixed step: the same input gives
+// the same poses.
 #pragma once
 
 #include <vector>
@@ -22,18 +23,21 @@ struct SettleOptions {
 struct SettleResult {
   Pose container;
   std::vector<Pose> objects;
+  Pose inner_case;  // where there is one
+  std::vector<Pose> inner_objects;
   bool at_rest = false;  // everything fell asleep within max_seconds
   int num_steps = 0;
 };
 
 // Objects start apart from each other inside the container, as low as they fit, turned at random.
-// Errors (kEnvironment): objects do not fit, an object left the container, or the container fell
-// over.
+// `inner`: the case in the container, or null.
+// Errors (kEnvironment): objects do not fit, an object left its case, or a case fell over.
 SettleResult settle(
     const ContainerShape& shape,
     const std::vector<ContainerObject>& objects,
     const SettleOptions& options,
-    Rng& rng
+    Rng& rng,
+    const InnerCase* inner = nullptr
 );
 
 }  // namespace glint

@@ -35,7 +35,7 @@ class PointFinder {
     point.x = static_cast<int>(rng.below(static_cast<std::uint32_t>(camera.width)));
     point.y = static_cast<int>(rng.below(static_cast<std::uint32_t>(camera.height)));
     const auto hit = shoot(camera, point.x + 0.5, point.y + 0.5, true);
-    if (!hit.hit || rng.uniform() > keep_rate(camera, point, hit)) return false;
+    if (!hit.hit || hit.mirror || rng.uniform() > keep_rate(camera, point, hit)) return false;
     const Sighting sighting = sightings(hit.position, hit.normal);
     if (sighting.count < model_.min_views) return false;
     point.true_position = hit.position;

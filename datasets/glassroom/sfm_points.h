@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Simulated structure-from-motion points: on textured opaque surfaces that at least three training
-// views see, with the error of triangulation; fewer behind glass and none on it.
+// views see, with the error of triangulation; fewer behind glass, none on it nor on mirrors, and
+// none of what is seen in those.
 #pragma once
 
 #include <cstdint>

@@ -58,10 +58,12 @@ void check_material(const Material& m, std::size_t num_textures) {
   );
   const bool emits = m.emission.x > 0 || m.emission.y > 0 || m.emission.z > 0;
   GLINT_CHECK(
-      !(emits && m.kind == MaterialKind::kThinDielectric),
+      !(emits && (m.kind == MaterialKind::kThinDielectric || m.kind == MaterialKind::kMirror)),
       kBadReference,
-      "material '{}': a thin dielectric cannot emit; put a light behind it",
-      m.name
+      "material '{}': a {} cannot emit; put a light {} it",
+      m.name,
+      name_of(m.kind),
+      m.kind == MaterialKind::kMirror ? "before" : "behind"
   );
 }
 

@@ -79,6 +79,11 @@ int run_make(const CommonOptions& common, MakeOptions options, bool out_given) {
       options.dataset
   );
   if (options.dataset == "glassroom") check_no_front3d_options(options.front3d);
+  GLINT_CHECK(
+      options.dataset == "glassroom" || !options.room.layers,
+      kUsage,
+      "dataset make front3d: --layers is of glassroom alone"
+  );
   install_interrupt_handler();
   options.room.seed = common.seed.value_or(0);
   if (options.dataset == "front3d") options.scenes.resize(1);
@@ -245,7 +250,11 @@ void add_make(CommandLine& line, CLI::App& dataset) {
   describe_out(make, "folder of the scene, or of several; else DATA/glassroom or DATA/front3d");
   GlassRoomOptions& room = options->room;
   make.add_option("dataset", options->dataset, "glassroom or front3d")->required();
-  make.add_option("--scene", options->scenes, "room_1 ... room_5; several make several")
+  make.add_option(
+          "--scene",
+          options->scenes,
+          "room_1 ... room_5, nested_1, window_1, mirror_1, tinted_1; several make several"
+  )
       ->capture_default_str();
   make.add_option("--width", room.width, "pixels")->capture_default_str();
   make.add_option("--height", room.height, "pixels")->capture_default_str();
@@ -258,6 +267,11 @@ void add_make(CommandLine& line, CLI::App& dataset) {
               "; the last ones may be joined by +"
   )
       ->capture_default_str();
+  make.add_flag(
+      "--layers",
+      room.layers,
+      "also true maps of every layer and path, of rooms; the scenes with other names have them"
+  );
   add_front3d_options(make, options->front3d);
   make.add_option(
       "--write-scene",

@@ -6,6 +6,7 @@ conductor        GGX, F0 = albedo, with what single scattering loses given back:
 plastic          dielectric GGX coat, scattered once: Principled with a black base; below it Lambert, weighted by 1 - E(o),
                  the coat's own albedo. Ours has the factor (1 - E(i)) / (1 - E_mean) besides, whose mean over diffuse
                  light is 1
+mirror           Glossy without roughness, the albedo its colour at any angle
 thin dielectric  straight on or mirrored, by the reflectance of a thin slab; shadow rays go straight on
 """
 import bpy
@@ -138,18 +139,21 @@ def slab_reflectance(nodes, ior):
     return nodes.math("ADD", *halves)
 
 
+def mirror(nodes, color):
+    return nodes.add("ShaderNodeBsdfGlossy", Color=color, Roughness=0).outputs[0]
+
+
 def thin_dielectric(nodes, spec):
     through = nodes.add("ShaderNodeBsdfTransparent", Color=rgba(spec["tint"])).outputs[0]
-    mirror = nodes.add("ShaderNodeBsdfGlossy", Color=rgba((1, 1, 1)), Roughness=0).outputs[0]
-    return nodes.mixed(slab_reflectance(nodes, spec["ior"]), through, mirror)
+    return nodes.mixed(slab_reflectance(nodes, spec["ior"]), through, mirror(nodes, rgba((1, 1, 1))))
 
 
 def surface(nodes, spec, folder):
     if spec["kind"] == "thin dielectric":
         return thin_dielectric(nodes, spec)
     color = albedo_color(nodes, spec, folder)
-    if spec["kind"] == "diffuse":
-        return diffuse(nodes, color)
+    if spec["kind"] in ("diffuse", "mirror"):
+        return {"diffuse": diffuse, "mirror": mirror}[spec["kind"]](nodes, color)
     return {"conductor": conductor, "plastic": plastic}[spec["kind"]](nodes, spec, color)
 
 

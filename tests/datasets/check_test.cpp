@@ -9,6 +9,7 @@
 
 #include "datasets/check_geometry.h"
 #include "datasets/dataset.h"
+#include "datasets/map_files.h"
 #include "datasets/scene_index.h"
 #include "glint/core/config.h"
 #include "glint/core/rng.h"
@@ -75,6 +76,33 @@ void to_ray_length(std::vector<View>& views) {
 void flip_axis(Image& normal, int axis) {
   for (std::size_t i = 0; i < normal.num_pixels(); ++i)
     normal.data()[3 * i + static_cast<std::size_t>(axis)] *= -1;
+}
+
+// Two layers: all of the first is glass, and the second lies at `factor` times its depth; in the
+// fourth view as `spoil` leaves its maps.
+std::vector<Finding> findings_of_layers(
+    const std::function<void(Image& glass, Image& second)>& spoil
+) {
+  std::vector<View> views;
+  return findings_after(
+      [&](std::vector<View>& all) { views = all; },
+      [&](const fs::path& folder) {
+        for (std::size_t i = 0; i < views.size(); ++i) {
+          Image second = views[i].truth["depth"], glass(kSize.width, kSize.height, 1, 1.0f);
+          for (float& z : second.values()) z *= 1.5f;
+          if (i == 3) spoil(glass, second);
+          const fs::path gt = folder / "gt";
+          write_true_map(
+              gt / true_map_file(MapId("glass").row(), views[i].name), MapKind::kMask, glass
+          );
+          write_true_map(
+              gt / true_map_file(MapId("layer_2_depth").row(), views[i].name),
+              MapKind::kDepth,
+              second
+          );
+        }
+      }
+  );
 }
 
 }  // namespace
@@ -499,4 +527,23 @@ TEST_CASE("a split that leaves no train view or no test view is told with the wa
       }),
       "no-test-views"
   );
+}
+
+TEST_CASE("Layers lie behind each other, and only behind glass and mirrors") {
+  CHECK(list(findings_of_layers([](Image&, Image&) {})).empty());
+  const Finding order = only(
+      findings_of_layers([](Image&, Image& second) {
+        for (float& z : second.values()) z *= 0.5f;
+      }),
+      "layer-order"
+  );
+  CHECK_THAT(order.where, Contains("layer_2_depth"));
+  CHECK_THAT(order.message, Contains("layer 2 are nearer than layer 1"));
+  const Finding behind = only(
+      findings_of_layers([](Image& glass, Image&) {
+        for (float& value : glass.values()) value = 0;
+      }),
+      "layer-behind-opaque"
+  );
+  CHECK_THAT(behind.message, Contains("neither glass nor a mirror"));
 }

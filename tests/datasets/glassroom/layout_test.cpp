@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Layouts of the five rooms: nothing stands in anything else, cameras see the container.
+// Layouts of the five rooms and of the scenes beyond first order: nothing stands in anything else,
+// cameras see the container, and what the scene is for.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
+#include "datasets/glassroom/check_panes.h"
 #include "datasets/glassroom/glassroom_scene.h"
+#include "datasets/glassroom/scene_programs.h"
 #include "glint/core/error.h"
 #include "glint/core/progress.h"
 
@@ -64,6 +69,49 @@ void check_cameras(const GlassRoomScene& scene) {
   }
 }
 
+void check_layout(const GlassRoomScene& scene) {
+  check_items(scene.room);
+  check_meshes(scene.room);
+  check_cameras(scene);
+  check_panes(scene.room.scene);
+  CHECK(scene.room.bounds().contains(scene.container_bounds));
+  for (const PlacedItem& item : scene.room.items)
+    CHECK_FALSE(scene.container_bounds.overlaps(item.bounds));
+}
+
+// Vertices of a mesh in a case's frame.
+Bounds bounds_in(const Pose& pose, const TraceMesh& mesh) {
+  Bounds bounds;
+  for (const Vec3f vertex : mesh.vertices)
+    bounds.include(transpose_times(pose.rotation, vertex - pose.translation));
+  return bounds;
+}
+
+Bounds inside_of(const ContainerShape& shape) {
+  const Vec3f half = 0.5f * shape.size;
+  return {.low = {-half.x, -half.y, 0}, .high = {half.x, half.y, shape.size.z}};
+}
+
+// Share of the views' pixels whose first surface, or what is behind panes, is a mirror.
+std::vector<double> mirror_shares(const GlassRoomScene& scene) {
+  std::vector<double> shares;
+  for (const Camera& full : scene.cameras) {
+    const Camera camera = resized(full, {32, 18});
+    int mirrors = 0;
+    for (int y = 0; y < 18; ++y)
+      for (int x = 0; x < 32; ++x)
+        mirrors += scene.tracer
+                       ->first_hit(
+                           cast<float>(camera.center()),
+                           cast<float>(camera.ray_in_world(x + 0.5, y + 0.5)),
+                           true
+                       )
+                       .mirror;
+    shares.push_back(mirrors / (32.0 * 18));
+  }
+  return shares;
+}
+
 }  // namespace
 
 TEST_CASE("All five rooms have valid layouts, cameras and contents") {
@@ -84,6 +132,79 @@ TEST_CASE("All five rooms have valid layouts, cameras and contents") {
     widths.insert(scene->room.size.x);
   }
   CHECK(widths.size() == 5);
+}
+
+TEST_CASE("A case stands in a case, with things in both and nothing in anything else") {
+  const auto scene = build_glassroom_scene(small("nested_1"));
+  check_layout(*scene);
+  REQUIRE(scene->inner);
+  const Pose &outer = scene->settled.container, &inner = scene->settled.inner_case;
+  CHECK(scene->settled.objects.size() >= 3);
+  CHECK(scene->settled.inner_objects.size() == 3);
+  std::size_t frames = 0, things = 0, inside = 0;
+  const Bounds within = inside_of(scene->container), within_inner = inside_of(*scene->inner);
+  const std::size_t first_object =
+      scene->room.scene.meshes.size() - 7 - 3 - 7 - scene->settled.objects.size();
+  for (std::size_t i = first_object; i < scene->room.scene.meshes.size(); ++i) {
+    const TraceMesh& mesh = scene->room.scene.meshes[i];
+    INFO(mesh.name);
+    if (mesh.name == "pane") continue;
+    CHECK(within.grown(1e-3f).contains(bounds_in(outer, mesh)));
+    frames += mesh.name == "frame";
+    if (mesh.name == "frame") continue;
+    ++things;
+    // All of it in the inner case, or all of it outside.
+    std::size_t in = 0;
+    for (const Vec3f vertex : mesh.vertices)
+      in += within_inner.grown(-0.004f).contains(
+          transpose_times(inner.rotation, vertex - inner.translation)
+      );
+    CHECK((in == 0 || in == mesh.vertices.size()));
+    inside += in > 0;
+  }
+  CHECK(frames == 2);
+  CHECK(things == 3 + scene->settled.objects.size());
+  CHECK(inside == 3);
+}
+
+TEST_CASE("Cameras see the case from before and from behind the shop window, and keep off it") {
+  GlassRoomOptions options = small("window_1");
+  options.views = 64;
+  const auto scene = build_glassroom_scene(options);
+  check_layout(*scene);
+  const auto window =
+      std::find_if(scene->room.items.begin(), scene->room.items.end(), [](const PlacedItem& item) {
+        return item.kind == "shop window";
+      });
+  REQUIRE(window != scene->room.items.end());
+  CHECK(window->bounds.size().x == Approx(3.1f));
+  CHECK(window->bounds.size().z == Approx(2));
+  int before = 0;
+  for (const Camera& camera : scene->cameras) {
+    const Vec3f eye = cast<float>(camera.center());
+    before += eye.y < window->bounds.low.y;
+    CHECK_FALSE(window->bounds.grown(0.1f).contains(eye));
+  }
+  CHECK(before >= 8);
+  CHECK(before <= 48);
+}
+
+TEST_CASE("The mirror is well visible from a good share of the views") {
+  const auto scene = build_glassroom_scene(small("mirror_1"));
+  check_layout(*scene);
+  const std::vector<double> shares = mirror_shares(*scene);
+  const auto good = std::ranges::count_if(shares, [](double share) { return share > 0.1; });
+  CHECK(2 * good >= static_cast<std::ptrdiff_t>(shares.size()));
+}
+
+TEST_CASE("Tints differ from pane to pane") {
+  const auto scene = build_glassroom_scene(small("tinted_1"));
+  check_layout(*scene);
+  std::set<std::array<float, 3>> tints;
+  for (const Material& material : scene->room.scene.materials)
+    if (material.kind == MaterialKind::kThinDielectric)
+      tints.insert({material.tint.x, material.tint.y, material.tint.z});
+  CHECK(tints.size() == 6);
 }
 
 TEST_CASE("The camera path is continuous and goes round the container") {
@@ -120,7 +241,7 @@ TEST_CASE("The exposure leaves few pixels clipped") {
 TEST_CASE("Unknown rooms and absurd sizes are usage errors") {
   CHECK_THROWS_WITH(
       build_glassroom_scene({.scene = "room_9"}),
-      Catch::Contains("room_9") && Catch::Contains("room_5")
+      Catch::Contains("room_9") && Catch::Contains("room_5") && Catch::Contains("tinted_1")
   );
   CHECK_THROWS_WITH(build_glassroom_scene({.width = 0}), Catch::Contains("width"));
   CHECK_THROWS_WITH(build_glassroom_scene({.views = 1}), Catch::Contains("views"));
