@@ -63,8 +63,7 @@ void warn_without_points(
 }
 
 int ReflectionGrid::cells_for(ImageSize size) const {
-  const double wanted =
-      static_cast<double>(kPointsPerPixel) * static_cast<double>(size.num_pixels());
+  const double wanted = kPointsPerPixel * static_cast<double>(size.num_pixels());
   const double along_axis = std::cbrt(wanted / std::max(points_per_cell, 1));
   return std::clamp(static_cast<int>(std::lround(along_axis)), 1, std::max(cells, 1));
 }

@@ -25,7 +25,7 @@ struct ReflectionGrid {
   int cells = 32, points_per_cell = 5;
   // Deviation: 32^3 cells are meant for images of 480x270; smaller ones start with as many points a
   // pixel, for more could not be told apart by so few rays. Larger images keep `cells`.
-  static constexpr float kPointsPerPixel = 1.264f;
+  static constexpr double kPointsPerPixel = 1.264;
   // Deviation: the official codes draw colours up to 1/255, black but for that, and in runs as
   // short as ours GLINT's stays dark (docs/GLINT_NOTES.md). EnvGS starts as there.
   float brightness = 1;
