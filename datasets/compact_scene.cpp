@@ -7,9 +7,9 @@
 namespace glint {
 namespace {
 
-// True maps that are compared with a run's files, and glass.
+// True maps that are compared with a run's files, or that those are a share of, and masks.
 bool is_scored(const MapRow& row) {
-  return row.kind == MapKind::kMask || !row.stored_file().empty();
+  return row.kind == MapKind::kMask || row.kind == MapKind::kPart || !row.stored_file().empty();
 }
 
 // What they say of what is seen through glass and in it counts on glass alone (metrics/view/).

@@ -48,4 +48,25 @@ Image displayed_component(ImageView displayed, ImageView component, ImageView ot
   return result;
 }
 
+std::vector<MapId> other_parts(const MapRow& part) {
+  const auto is_by_path = [](const MapRow& row) { return row.id.starts_with("path_"); };
+  std::vector<MapId> others;
+  for (const MapRow& row : maps())
+    if (row.kind == MapKind::kPart && !row.truth.empty() && row.id != part.id &&
+        is_by_path(row) == is_by_path(part))
+      others.emplace_back(row);
+  return others;
+}
+
+Image displayed_part(ImageView displayed, const MapViews& truth, MapId part) {
+  Image others(displayed.width, displayed.height, displayed.channels);
+  if (!truth.has(part)) return {};
+  for (const MapId id : other_parts(part.row())) {
+    if (!truth.has(id)) return {};
+    check_radiance(displayed, truth[id]);
+    for (std::size_t i = 0; i < others.values().size(); ++i) others.data()[i] += truth[id].data[i];
+  }
+  return displayed_component(displayed, truth[part], others);
+}
+
 }  // namespace glint

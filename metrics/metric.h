@@ -77,8 +77,8 @@ struct MetricFiles {
 // Metrics that come out of one pass over the maps.
 struct MetricFamily {
   std::vector<Metric> metrics;
-  // One entry per region, in their order; none where the view lacks a map. Errors: those of the
-  // metric's function.
+  // One entry per region, in their order, or one of the whole image alone; none where the view
+  // lacks a map. Errors: those of the metric's function.
   std::function<std::vector<MetricValues>(const ViewPair&, std::span<const Region>)> evaluate;
   std::function<MetricFiles(const Metric&)> files = nullptr;  // null: it needs none
 };

@@ -42,7 +42,9 @@ std::vector<Table> result_tables(
     if (!ids.empty() && std::find(ids.begin(), ids.end(), definition.id) == ids.end()) continue;
     if (!filter.methods.empty()) definition.leave_out.clear();  // they were asked for
     if (!filter.empty()) keep_rows_with_records(definition, records);
-    tables.push_back(build_table(definition, records));
+    Table table = build_table(definition, records);
+    if (ids.empty() && definition.where_measured && !has_measurement(table)) continue;
+    tables.push_back(std::move(table));
   }
   return tables;
 }

@@ -251,6 +251,19 @@ TEST_CASE("a compact scene trains and scores as before with what is left") {
   CHECK(fs::file_size(folder / "x") < fs::file_size(folder / "whole") / 2);
 }
 
+TEST_CASE("a compact scene keeps all parts of what is seen at panes, also those no method renders"
+) {
+  Scene scene = small_room();
+  MapSet& truth = scene.test.at(0).truth;
+  const Image glass = truth["glass"];
+  for (const MapId id : {MapId("path_t"), MapId("path_rest")})
+    truth[id] = Image(glass.width(), glass.height(), 3, 0.5f);
+  make_compact(scene);
+  for (const MapId id : {MapId("path_t"), MapId("path_rest")})
+    for (std::size_t i = 0; i < glass.num_pixels(); ++i)
+      CHECK(truth[id].data()[3 * i] == (glass.data()[i] != 0 ? 0.5f : 0.0f));
+}
+
 TEST_CASE("priors are left out by name") {
   Scene scene = small_room();
   leave_out_prior("basecolor", scene);

@@ -75,6 +75,24 @@ TEST_CASE("the two components add up to the displayed image") {
     );
 }
 
+TEST_CASE("a true part is one of those of its kind: the two components, or the paths") {
+  const Maps maps;
+  MapViews truth = maps.pair().truth;
+  const auto part = [&](const char* id) {
+    return displayed_part(maps.displayed, truth, *find_map(id));
+  };
+  CHECK(part("transmitted").at(1, 1, 1) == Approx(0.6f));
+  CHECK(part("path_t").empty());
+  for (const char* id : {"path_t", "path_tt", "path_r", "path_tr", "path_rt"})
+    truth[*find_map(id)] = maps.true_reflected;
+  CHECK(part("path_t").empty());  // how much came by other paths is not known
+  truth["path_rest"] = maps.true_transmitted;
+  CHECK(part("path_t").at(1, 1, 1) == Approx(0.8f * 2 / 16));
+  CHECK(part("transmitted").at(1, 1, 1) == Approx(0.6f));
+  truth["reflected"] = {};
+  CHECK(part("transmitted").empty());
+}
+
 TEST_CASE("components are scored on glass pixels in closed form") {
   // Truth 0.6 and 0.2, prediction 0.4 twice: an error of 0.2, that is -20 log10(0.2) dB.
   Maps maps;

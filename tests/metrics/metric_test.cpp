@@ -118,7 +118,15 @@ TEST_CASE("every metric of the protocol is registered once, with direction and p
         "behind-absrel-beyond",
         "normal-mae-background",
         "trans-psnr",
-        "refl-psnr"})
+        "refl-psnr",
+        "layer-1-absrel",
+        "layer-4-coverage",
+        "layer-last-absrel",
+        "layer-last-coverage",
+        "layer-4-mae",
+        "layer-3-t-iou",
+        "path-t-psnr",
+        "path-rt-psnr"})
     CHECK(ids.count(id) == 1);
   CHECK(find_metric("normal-mae@glass")->direction == Direction::kLowerIsBetter);
   CHECK(find_metric("no-such-metric") == nullptr);

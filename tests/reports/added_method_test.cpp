@@ -71,6 +71,7 @@ TEST_CASE("a method in a file of its own is trained, tabulated, drawn and shown"
 
   for (const TableDefinition& definition : table_definitions()) {
     INFO(definition.id);
+    if (definition.where_measured) continue;  // of data that has more than rooms
     const std::string table = read_file(results / "tables" / (definition.id + ".md"));
     CHECK(table.find(fmt::format("| {} |", kTitle)) != std::string::npos);
   }

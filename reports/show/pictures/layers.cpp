@@ -52,19 +52,6 @@ LayerStyle style_of(MapKind kind) {
   }
 }
 
-// Its share of the displayed image; empty where the truth lacks the other parts.
-Image displayed_part(const View& view, const MapRow& part) {
-  Image others;
-  for (const MapRow& row : maps()) {
-    if (row.kind != MapKind::kPart || row.truth.empty() || row.id == part.id) continue;
-    const Image& other = view.truth[row];
-    if (other.empty()) return {};
-    if (others.empty()) others = Image(other.width(), other.height(), other.channels());
-    for (std::size_t i = 0; i < other.values().size(); ++i) others.values()[i] += other.values()[i];
-  }
-  return others.empty() ? Image() : displayed_component(view.rgb, view.truth[part], others);
-}
-
 // Empty where there is no file or none that can be read.
 Image read_layer(const fs::path& view_folder, const MapRow& row) {
   try {
@@ -202,7 +189,10 @@ LayerMaps true_layers(const View& view) {
   layers.add("rgb", view.rgb);
   view.truth.for_each([&](const MapRow& row, const Image& map) {
     if (row.shown_file().empty()) return;
-    layers.add(row.id, row.kind == MapKind::kPart ? displayed_part(view, row) : map);
+    layers.add(
+        row.id,
+        row.kind == MapKind::kPart ? displayed_part(view.rgb, views_of(view.truth), row) : map
+    );
   });
   return layers.take();
 }

@@ -57,6 +57,7 @@ struct TableKeys {
     v("dataset_title", table.dataset_title, "its name as printed");
     v("paper_table", table.paper_table, "number of the paper's table");
     v("paper_datasets", table.paper_datasets, "published column groups");
+    v("where_measured", table.where_measured, "only where a record has one of its columns");
     v("leave_out", table.leave_out, "globs of methods that other tables show; all others have rows"
     );
     v("rows", rows, "methods");

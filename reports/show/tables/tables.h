@@ -47,6 +47,7 @@ struct TableDefinition {
   std::string dataset, dataset_title;       // "glassroom", "GlassRoom"
   std::string paper_table;                  // "1"; empty: the paper has no such table
   std::vector<std::string> paper_datasets;  // published columns, one group each
+  bool where_measured = false;  // shown where a record has one of its columns, or asked for
   // Globs of methods without a row although they have records: those that stand in other tables.
   std::vector<std::string> leave_out;
   std::vector<TableRowDefinition> rows;

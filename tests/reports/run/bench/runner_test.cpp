@@ -377,3 +377,22 @@ TEST_CASE("tables of a whole run are written in four formats") {
       CHECK(fs::exists(folder.path() / "tables" / (std::string(table) + extension)));
   CHECK_THROWS_AS(result_tables(folder.path(), {"table9"}), Error);
 }
+
+TEST_CASE("a table of what only some data has is there where it was measured, and where asked for"
+) {
+  const test::TempFolder folder;
+  Record record;
+  record.dataset = "glassroom";
+  record.cell = {"room_1", "glint", 0};
+  record.metrics = {{"psnr", 30}};
+  append_record(folder / "records.jsonl", record);
+  const auto has_layers = [&](const std::vector<std::string>& ids) {
+    const auto tables = result_tables(folder.path(), ids);
+    return std::ranges::any_of(tables, [](const Table& table) { return table.id == "layers"; });
+  };
+  CHECK_FALSE(has_layers({}));
+  CHECK(has_layers({"layers"}));
+  record.metrics["layer-last-absrel"] = 0.1;
+  append_record(folder / "records.jsonl", record);
+  CHECK(has_layers({}));
+}
