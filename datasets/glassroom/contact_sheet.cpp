@@ -12,7 +12,6 @@ namespace glint {
 
 namespace {
 
-constexpr float kFarDepth = 6;  // metres, end of the depth colours
 constexpr float kFarPrior = 1;  // priors are relative
 
 // A row of the sheet: what is true, or what a simulated prior says.
@@ -56,12 +55,12 @@ struct ViewPictures {
 
 }  // namespace
 
-ContactSheet::ContactSheet(int views, int columns, ImageSize tile)
-    : views_(views), columns_(std::min(views, columns)), tile_(tile) {
+ContactSheet::ContactSheet(int views, int columns, ImageSize tile, float far_depth)
+    : views_(views), columns_(std::min(views, columns)), tile_(tile), far_depth_(far_depth) {
   for (int column = 0; column < columns_; ++column)
     grid_.titles.push_back("view " + view_name(column * views_ / columns_));
   grid_.legend = {
-      {"true depth: 0 m", LegendBar::kDepth, fmt::format("{:g} m, black: nothing", kFarDepth)},
+      {"true depth: 0 m", LegendBar::kDepth, fmt::format("{:g} m, black: nothing", far_depth)},
       {"simulated depth prior: 0",
        LegendBar::kDepth,
        fmt::format("{:g}, without unit", kFarPrior)}};
@@ -89,7 +88,7 @@ void ContactSheet::add(
     for (const MapRow& entry : maps()) {
       const Image& map = (is_truth ? truth.maps : priors)[entry];
       if (!is_shown(entry, is_truth) || map.empty()) continue;  // not made
-      const float far_depth = is_truth ? kFarDepth : kFarPrior;
+      const float far_depth = is_truth ? far_depth_ : kFarPrior;
       add_row(title_of(entry, is_truth), pictures.of(entry.kind, map, far_depth));
     }
 }

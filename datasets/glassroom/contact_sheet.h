@@ -12,7 +12,8 @@ namespace glint {
 class ContactSheet {
  public:
   // Up to `columns` of `views` views are shown, evenly chosen; tiles are `tile` pixels.
-  ContactSheet(int views, int columns, ImageSize tile);
+  // `far_depth`: metres, end of the depth colours.
+  ContactSheet(int views, int columns, ImageSize tile, float far_depth);
   // Keeps the view if it is one of those shown.
   void add(int view, const PathTracerOutput& truth, const MapSet& priors, float exposure);
   // With titles of rows and columns. A view that was not added is "missing".
@@ -21,6 +22,7 @@ class ContactSheet {
  private:
   int views_, columns_;
   ImageSize tile_;
+  float far_depth_;
   PictureGrid grid_;
 };
 

@@ -29,6 +29,7 @@ constexpr int kTestEvery = 8;
 // Noise in training views averages out over the views; in a test view it bounds the score.
 constexpr int kTestSampleFactor = 4;
 constexpr int kSheetColumns = 8, kSheetTileWidth = 240;
+constexpr float kFarInRoom = 6, kFarInMirror = 10;  // metres, of the sheet's depth colours
 
 // Of a folder whose scene.json is damaged: what is left of it says so, or the key of the data.
 bool was_a_scene(
@@ -179,7 +180,8 @@ class SceneMaker {
         sheet_(
             options_.views,
             kSheetColumns,
-            {kSheetTileWidth, std::max(1, kSheetTileWidth * options_.height / options_.width)}
+            {kSheetTileWidth, std::max(1, kSheetTileWidth * options_.height / options_.width)},
+            options_.layers ? kFarInMirror : kFarInRoom
         ),
         prior_model_(prior_level(options_.priors)) {
     std::vector<Camera> train;

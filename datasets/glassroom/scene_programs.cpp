@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/glassroom/scene_programs.h"
 
+#include <algorithm>
 #include <string>
 
 #include "glint/core/error.h"
@@ -13,12 +14,10 @@ using enum FurnitureKind;
 
 // The room's finishes for a scene of another name, which seeds another layout.
 RoomProgram room_like(std::string_view room, std::string_view name) {
-  for (RoomProgram program : room_programs())
-    if (program.name == room) {
-      program.name = name;
-      return program;
-    }
-  GLINT_CHECK(false, kUsage, "glassroom: no room '{}'", room);
+  const std::vector<RoomProgram>& rooms = room_programs();
+  RoomProgram program = *std::ranges::find(rooms, room, &RoomProgram::name);
+  program.name = name;
+  return program;
 }
 
 SceneProgram nested() { return {.room = room_like("room_1", "nested_1"), .nested = true}; }

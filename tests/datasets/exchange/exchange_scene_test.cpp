@@ -85,6 +85,18 @@ TEST_CASE("Meshes as OBJ count vertices through the file, and turn textures to i
   CHECK_THAT(text, Contains("vn 0 0 1\nusemtl material_1\ns 1\nf 5//1 6//2 7//3\n"));
 }
 
+TEST_CASE("A mirror is exchanged by what it mirrors, a pane by its index and tint") {
+  const TempFolder folder;
+  ExchangeScene room = box_room();
+  room.scene.materials[0] = {.kind = MaterialKind::kMirror, .albedo = {0.9f, 0.8f, 0.7f}};
+  write_exchange_scene(room, folder / "out");
+  const Json json = Json::parse(read_file(folder / "out" / "exchange.json"));
+  const Json& mirror = json["materials"][0];
+  CHECK(mirror["kind"] == "mirror");
+  CHECK(mirror["albedo"][1] == 0.8f);
+  for (const char* none : {"ior", "tint", "roughness"}) CHECK_FALSE(mirror.contains(none));
+}
+
 TEST_CASE("An exchange scene takes the place of nothing that is there") {
   const TempFolder folder;
   const ExchangeScene room = box_room();

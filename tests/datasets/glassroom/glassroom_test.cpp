@@ -186,6 +186,57 @@ TEST_CASE("Priors count in the cache key, but for those that there have always b
   CHECK(glassroom_json(options).at("priors") == "poor");
 }
 
+TEST_CASE("Layers count in the cache key where they are not there by themselves") {
+  GlassRoomOptions options = kTiny;
+  const std::string plain = glassroom_hash(options);
+  options.layers = true;
+  CHECK(glassroom_hash(options) != plain);
+  CHECK(glassroom_json(options).at("layers") == true);
+  options.scene = "nested_1";
+  CHECK_FALSE(glassroom_json(options).contains("layers"));
+}
+
+TEST_CASE("A room with layers is the same room and has their maps besides") {
+  const QuietFolder temporary;
+  const fs::path usual = temporary.path() / "usual", layered = temporary.path() / "layered";
+  GlassRoomOptions options = kTiny;
+  make_glassroom(options, usual, false);
+  options.layers = true;
+  make_glassroom(options, layered, false);
+  CHECK(check_dataset(layered).empty());
+  const Json before = file_hashes(usual), after = file_hashes(layered);
+  for (const auto& [name, hash] : before.items())
+    if (name != "scene.json" && name != "contact_sheet.png") CHECK(after.at(name) == hash);
+  for (const char* name : {"layer_1_mirror/0000.png", "layer_4_depth/0007.exr", "path_tr/0003.exr"})
+    CHECK(after.contains(std::string("gt/") + name));
+  CHECK_FALSE(before.contains("gt/layer_1_mirror/0000.png"));
+  const Json json = Json::parse(read_file(layered / "scene.json"));
+  CHECK(json["layers"] == true);
+  CHECK(json["panes_and_mirrors"].size() == 6);
+  CHECK(json["noise_floor"]["views"] == 1);
+  CHECK(json["noise_floor"]["path_tt"]["standard_error"].get<float>() > 0);
+  CHECK_FALSE(Json::parse(read_file(usual / "scene.json")).contains("noise_floor"));
+}
+
+TEST_CASE("A scene beyond first order is made alike twice, and loads with its layers") {
+  const QuietFolder temporary;
+  const fs::path a = temporary.path() / "a", b = temporary.path() / "b";
+  GlassRoomOptions options = kTiny;
+  options.scene = "mirror_1";
+  make_glassroom(options, a, false);
+  make_glassroom(options, b, false);
+  CHECK(file_hashes(a) == file_hashes(b));
+  CHECK(check_dataset(a).empty());
+  const Scene scene = load_scene(a, {});
+  double mirrors = 0;
+  for (const View& view : scene.train) {
+    CHECK(view.truth.has("layer_4_normal"));
+    for (const float value : view.truth["layer_1_mirror"].values())
+      mirrors += static_cast<double>(value);
+  }
+  CHECK(mirrors > 100);
+}
+
 TEST_CASE("A room with worse priors is the same room, and loads without those that are missing") {
   const QuietFolder temporary;
   const fs::path usual = temporary.path() / "usual", bad = temporary.path() / "bad";
