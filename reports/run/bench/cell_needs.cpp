@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "datasets/glassroom/glassroom.h"
 #include "glint/core/error.h"
 #include "glint/method.h"
 #include "glint/train/initial_points.h"
@@ -140,9 +141,13 @@ SceneSize size_of(const Scene& scene) {
 }
 
 SceneSize size_of(const SceneSource& room) {
+  const bool with_layers = always_has_layers(room.room.empty() ? room.scene : room.room);
   int channels = 3;  // of the photo
-  for (const MapRow& row : maps())
+  for (const MapRow& row : maps()) {
+    const bool of_layers = row.id.starts_with("layer_") || row.id.starts_with("path_");
+    if (of_layers && !with_layers) continue;
     channels += row.channels() * (int(!row.prior.empty()) + int(!row.truth.empty()));
+  }
   const double pixels = pixels_of(room);
   return {
       pixels,

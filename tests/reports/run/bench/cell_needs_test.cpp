@@ -21,11 +21,14 @@ TEST_CASE("the images of a scene count as they lie in memory") {
 
 TEST_CASE("a room that is not made yet counts as it will be loaded") {
   SceneSource source;
+  source.scene = "room_1";
   source.width = 64, source.height = 36, source.views = 16;
   const SceneSize expected = size_of(source), loaded = size_of(test::small_room());
   CHECK(expected.image_bytes == Approx(loaded.image_bytes).epsilon(0.15));  // not all maps are kept
   CHECK(expected.view_pixels == loaded.view_pixels);
   CHECK(expected.resolution == loaded.resolution);
+  source.scene = "nested_1";  // with maps of every layer and path
+  CHECK(size_of(source).image_bytes > 2 * loaded.image_bytes);
 }
 
 TEST_CASE("what cells of a method took goes before what images and surfels say") {

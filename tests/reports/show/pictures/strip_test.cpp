@@ -60,11 +60,22 @@ TEST_CASE("a strip shows every map of a decomposition, beside its truth where th
           "Specularity k_s",
           "Depth behind glass",
           "Depth behind glass, truth",
+          "Depth of layer 2",
+          "Transparency t of layer 2",
+          "Depth of layer 3",
+          "Transparency t of layer 3",
+          "Depth of layer 4",
+          "Transparency t of layer 4",
           "Interface",
           "Transmission",
           "Reflection",
           "Transmitted part",
-          "Reflected part"}
+          "Reflected part",
+          "Part T",
+          "Part TT",
+          "Part R",
+          "Part TR",
+          "Part RT"}
   );
 }
 
