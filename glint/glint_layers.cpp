@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "glint/core/error.h"
 #include "glint/render/map_ops.h"
 #include "glint/render/nearer_surface_kernels.h"
+#include "glint/scene/layer_maps.h"
 
 namespace glint {
 
@@ -157,52 +157,53 @@ void InnerLayers::backward(GlassSets sets, const Image& dL_dradiance, bool inter
 
 namespace {
 
-// Of the map "layer_K_x"; null: the table ends before.
-const MapRow* layer_map(std::size_t layer, const char* of) {
-  return find_map(fmt::format("layer_{}_{}", layer, of));
+// A layer as it is told.
+struct SeenLayer {
+  Image depth, normal, transparency;
+
+  // Behind a surface that lets little through: that surface again.
+  void fill_behind_opaque(const SeenLayer& before) {
+    for (std::size_t i = 0; i < depth.num_pixels(); ++i) {
+      if (before.transparency.data()[i] > 0.5f) continue;
+      depth.data()[i] = before.depth.data()[i];
+      put3(normal.data(), i, get3(before.normal.data(), i));
+      transparency.data()[i] = 0;
+    }
+  }
+};
+
+// With the median depth of what was picked.
+SeenLayer seen_at(const InnerLayer& layer) {
+  const GlassBuffer& buffer = layer.transport.buffer();
+  SeenLayer seen{layer.others->depth_median, buffer.normal, buffer.transparency};
+  const Image& is_pane = layer.nearer.is_pane();
+  const Image& panes = layer.panes.rasterizer.output().depth_median;
+  for (std::size_t i = 0; i < seen.depth.num_pixels(); ++i)
+    if (is_pane.data()[i] > 0) seen.depth.data()[i] = panes.data()[i];
+  return seen;
 }
 
-// Median depth of what was picked.
-Image picked_depth(const InnerLayer& layer) {
-  Image depth = layer.others->depth_median;
-  const Image &is_pane = layer.nearer.is_pane(),
-              &panes = layer.panes.rasterizer.output().depth_median;
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
-    if (is_pane.data()[i] > 0) depth.data()[i] = panes.data()[i];
-  return depth;
-}
-
-// Behind a surface that lets little through: that surface again.
-void fill_behind_opaque(const Image& transparency, const Image& before, Image& map) {
-  const auto channels = static_cast<std::size_t>(map.channels());
-  for (std::size_t i = 0; i < map.values().size(); ++i)
-    if (transparency.data()[i / channels] <= 0.5f) map.values()[i] = before.values()[i];
+SeenLayer seen_behind(const InnerLayer& last) {
+  const RasterOutput& rest = last.rest.rasterizer.output();
+  const ImageSize size = rest.alpha.size();
+  return {rest.depth_median, unit_normals(rest.normal), Image(size.width, size.height, 1)};
 }
 
 }  // namespace
 
 void InnerLayers::add_maps(const GlassBuffer& interface, MapSet& out) const {
-  Image depth, normal, transparency;  // of the layer before
+  SeenLayer before;
   for (std::size_t m = 0; m <= layers_.size(); ++m) {
-    const bool rest = m == layers_.size();
-    const RasterOutput& behind = layers_.back().rest.rasterizer.output();
-    Image next_depth = rest ? behind.depth_median : picked_depth(layers_[m]);
-    Image next_normal = rest ? unit_normals(behind.normal) : layers_[m].transport.buffer().normal;
-    Image next_t =
-        rest ? Image(depth.width(), depth.height(), 1) : layers_[m].transport.buffer().transparency;
-    if (m > 0) {
-      fill_behind_opaque(transparency, depth, next_depth);
-      fill_behind_opaque(transparency, normal, next_normal);
-      fill_behind_opaque(transparency, Image(depth.width(), depth.height(), 1), next_t);
-    }
-    depth = std::move(next_depth), normal = std::move(next_normal),
-    transparency = std::move(next_t);
-    if (const MapRow* row = layer_map(m + 2, "depth")) out[*row] = depth;
-    if (const MapRow* row = layer_map(m + 2, "normal")) out[*row] = normal;
-    if (const MapRow* row = layer_map(m + 2, "transparency"); row != nullptr && !rest)
-      out[*row] = transparency;
+    const bool is_rest = m == layers_.size();
+    SeenLayer seen = is_rest ? seen_behind(layers_.back()) : seen_at(layers_[m]);
+    if (m > 0) seen.fill_behind_opaque(before);
+    before = std::move(seen);
+    if (m + 1 == kMaxLayers) continue;  // the fifth has no map
+    out[kLayerDepth[m + 1]] = before.depth;
+    out[kLayerNormal[m + 1]] = before.normal;
+    if (!is_rest) out[kLayerTransparency[m + 1]] = before.transparency;
   }
-  out["behind_depth"] = depth;
+  out["behind_depth"] = before.depth;
   add_parts(interface, out);
 }
 

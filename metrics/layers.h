@@ -1,26 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The surfaces along a ray in their order, of the truth and of a method (glint/scene/maps.h). Layer
-// 1 is the first one; the others lie behind a pane or, where they appear to stand, in a mirror.
+// The surfaces along a ray in their order, of the truth and of a method.
 #pragma once
 
 #include "glint/core/image.h"
-#include "glint/scene/maps.h"
+#include "glint/scene/layer_maps.h"
 
 namespace glint {
-
-inline constexpr int kMaxLayers = 4;  // that are told apart
-
-// Of layer 1 first.
-inline constexpr MapId kLayerDepth[kMaxLayers] = {
-    "depth", "layer_2_depth", "layer_3_depth", "layer_4_depth"};
-inline constexpr MapId kLayerNormal[kMaxLayers] = {
-    "normal", "layer_2_normal", "layer_3_normal", "layer_4_normal"};
-inline constexpr MapId kLayerGlass[kMaxLayers] = {
-    "glass", "layer_2_glass", "layer_3_glass", "layer_4_glass"};
-inline constexpr MapId kLayerMirror[kMaxLayers] = {
-    "layer_1_mirror", "layer_2_mirror", "layer_3_mirror", "layer_4_mirror"};
-inline constexpr MapId kLayerTransparency[kMaxLayers] = {
-    "transparency", "layer_2_transparency", "layer_3_transparency", "layer_4_transparency"};
 
 // True layers 1 .. kMaxLayers. The maps outlive it; one that is absent says that no pixel has it.
 class TrueLayers {

@@ -88,6 +88,7 @@ const std::vector<Layer>& layers() {
         {"glint/drawing/", {"glint/core/", "glint/scene/", "glint/drawing/"}},
         {"metrics/",
          {"glint/core/",
+          "glint/scene/layer_maps.h",
           "glint/scene/maps.h",
           "glint/scene/safetensors.h",
           "glint/render/ssim_formula.h",

@@ -7,11 +7,9 @@
 #include <cstddef>
 
 #include "datasets/glassroom/ray_scene.h"
+#include "glint/scene/layer_maps.h"
 
 namespace glint::path_tracing {
-
-// What lies beyond so many is not told apart.
-inline constexpr std::size_t kMaxLayers = 4;
 
 struct Layer {
   Vec3d position{}, normal{};  // world, unfolded; the shading normal, on the ray's side

@@ -34,14 +34,6 @@ void store(Image& image, int x, int y, Vec3d value) {
 constexpr std::array<MapId, kNumPathKinds> kPathMaps{
     "path_t", "path_tt", "path_r", "path_tr", "path_rt", "path_rest"};
 
-struct LayerMaps {
-  MapId depth, normal, glass, mirror;
-};
-constexpr std::array<LayerMaps, kMaxLayers - 1> kLayerMaps{
-    {{"layer_2_depth", "layer_2_normal", "layer_2_glass", "layer_2_mirror"},
-     {"layer_3_depth", "layer_3_normal", "layer_3_glass", "layer_3_mirror"},
-     {"layer_4_depth", "layer_4_normal", "layer_4_glass", "layer_4_mirror"}}};
-
 // Of the samples of a pixel.
 struct RadianceSums {
   Vec3d transmitted{}, reflected{};
@@ -105,12 +97,11 @@ class Rendering {
     const auto [layers, count] = layers_along(rays_, origin_, direction);
     out_.maps["layer_1_mirror"].at(x, y) = layers[0].mirror ? 1.0f : 0.0f;
     for (std::size_t k = 1; k < count; ++k) {
-      const LayerMaps& maps = kLayerMaps[k - 1];
       const Vec3d n = camera_.rotation_cam_from_world * layers[k].normal;
-      out_.maps[maps.depth].at(x, y) = static_cast<float>(camera_.to_cam(layers[k].position).z);
-      store(out_.maps[maps.normal], x, y, normalize(n));
-      out_.maps[maps.glass].at(x, y) = layers[k].glass ? 1.0f : 0.0f;
-      out_.maps[maps.mirror].at(x, y) = layers[k].mirror ? 1.0f : 0.0f;
+      out_.maps[kLayerDepth[k]].at(x, y) = static_cast<float>(camera_.to_cam(layers[k].position).z);
+      store(out_.maps[kLayerNormal[k]], x, y, normalize(n));
+      out_.maps[kLayerGlass[k]].at(x, y) = layers[k].glass ? 1.0f : 0.0f;
+      out_.maps[kLayerMirror[k]].at(x, y) = layers[k].mirror ? 1.0f : 0.0f;
     }
   }
 
@@ -190,8 +181,9 @@ void add_layer_maps(PathTracerOutput& out, const PathTracerSettings& settings) {
   const int w = out.radiance.width(), h = out.radiance.height();
   const auto add = [&](MapSet& maps, MapId id) { maps[id] = Image(w, h, id.row().channels()); };
   add(out.maps, "layer_1_mirror");
-  for (const LayerMaps& layer : kLayerMaps)
-    for (const MapId id : {layer.depth, layer.normal, layer.glass, layer.mirror}) add(out.maps, id);
+  for (std::size_t k = 1; k < kMaxLayers; ++k)
+    for (const MapId id : {kLayerDepth[k], kLayerNormal[k], kLayerGlass[k], kLayerMirror[k]})
+      add(out.maps, id);
   for (const MapId id : kPathMaps) add(out.maps, id);
   if (settings.spp < 2) return;
   for (MapSet& half : out.halves) {
