@@ -19,6 +19,7 @@ from scipy.ndimage import correlate1d, maximum_filter
 from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 from conformance_files import ROOT, write_cameras, write_exr, write_npy, write_ply, write_png
+from conformance_layers import HEIGHT as LAYERS_HEIGHT, WIDTH as LAYERS_WIDTH, layer_vectors
 from conformance_lpips import alex_lpips, read_weights
 
 NUMPY = f"NumPy {np.__version__}"
@@ -419,8 +420,8 @@ def mesh_vectors():
 
 # --- a scene with glass, for the metrics of both layers --------------------------------------------
 
-def bounded(salt, low, high, channels=1):
-    x, y, c = grid(WIDTH, HEIGHT, channels)
+def bounded(salt, low, high, channels=1, size=(WIDTH, HEIGHT)):
+    x, y, c = grid(*size, channels)
     value = low + (high - low) * (hashed(x, y, c, salt) % 1001) / 1000.0
     return value.astype(np.float32) if channels > 1 else value.astype(np.float32)[:, :, 0]
 
@@ -584,6 +585,7 @@ def main():
     normal_vectors()
     mesh_vectors()
     glass_vectors()
+    layer_vectors(lambda *of: bounded(*of, size=(LAYERS_WIDTH, LAYERS_HEIGHT)), depth_values, add, NUMPY)
     lpips_vectors(options.weights)
     document = {"made_by": "scripts/make_conformance.py", "vectors": vectors}
     (ROOT / "vectors.json").write_text(json.dumps(document, indent=1) + "\n")

@@ -185,6 +185,6 @@ TEST_CASE("a profile file of the user's is read, and its mistakes are named") {
   write_file(file, "scenes = [\n");
   CHECK_THROWS_WITH(load_profile(file.string()), Catch::Contains("mine.toml:"));
   CHECK_THROWS_WITH(
-      load_profile("nope"), Catch::Contains("ci, paper, prior_flaws, priors, small, smoke")
+      load_profile("nope"), Catch::Contains("ci, layers, paper, prior_flaws, priors, small, smoke")
   );
 }
