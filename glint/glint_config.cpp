@@ -115,12 +115,11 @@ void GlintConfig::check() const {
       freeze
   );
   GLINT_CHECK(
-      layers == 1 || (with_transmission && transmission == "raster"),
+      layers == 1 || !with_transmission || transmission == "raster",
       kUsage,
-      "glint: layers is {}, and {}; more than one layer needs a transmission set that is "
-      "rasterised",
+      "glint: layers is {}, and transmission is {}; more than one layer needs raster",
       layers,
-      with_transmission ? "transmission is trace" : "with_transmission is off"
+      transmission
   );
   transmission_losses.check("glint");
 }

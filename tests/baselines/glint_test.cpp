@@ -348,7 +348,7 @@ TEST_CASE("With more than one layer the transmission set has t and s of its own,
   );
   CHECK_THROWS_WITH(
       create_method("glint/nested", Json{{"transmission", "trace"}}),
-      Catch::Contains("layers is 2") && Catch::Contains("rasterised")
+      Catch::Contains("layers is 2") && Catch::Contains("needs raster")
   );
   CHECK_THROWS_WITH(create_method("glint", Json{{"layers", 5}}), Catch::Contains("at most 4"));
 }
