@@ -147,12 +147,16 @@ void add_columns(const MapRow& map, float gain, std::vector<FigureColumn>& colum
     columns.push_back({title + ", truth" + times, id, true, gain});
 }
 
-// Columns of the image and of every map of these kinds that methods render.
-std::vector<FigureColumn> columns_of(std::initializer_list<MapKind> kinds) {
+// Columns of the image and of every map of these kinds that one of the methods has rendered.
+std::vector<FigureColumn> columns_of(
+    const std::vector<FigureScene>& scenes, std::initializer_list<MapKind> kinds
+) {
   std::vector<FigureColumn> columns;
-  for (const MapRow& row : maps())
-    if (!row.shown_file().empty() && std::find(kinds.begin(), kinds.end(), row.kind) != kinds.end())
+  for (const MapRow& row : maps()) {
+    const bool wanted = std::find(kinds.begin(), kinds.end(), row.kind) != kinds.end();
+    if (wanted && !row.shown_file().empty() && !methods_with(scenes, std::string(row.id)).empty())
       add_columns(row, row.id == "reflected" ? kReflectedGain : 1, columns);
+  }
   return columns;
 }
 
@@ -217,7 +221,8 @@ PictureGrid qualitative_figure(const std::vector<FigureScene>& scenes) {
 
 PictureGrid depth_figure(const std::vector<FigureScene>& scenes) {
   std::vector<FigureColumn> columns{{"Image", "rgb"}};
-  for (FigureColumn& column : columns_of({MapKind::kDepth})) columns.push_back(std::move(column));
+  for (FigureColumn& column : columns_of(scenes, {MapKind::kDepth}))
+    columns.push_back(std::move(column));
   PictureGrid grid = method_rows(scenes, columns, "behind_depth");
   grid.legend = legend_of(scenes, true);
   return grid;
@@ -252,7 +257,7 @@ PictureGrid transparency_figure(const std::vector<FigureScene>& scenes) {
 
 PictureGrid radiance_figure(const std::vector<FigureScene>& scenes) {
   PictureGrid grid =
-      method_rows(scenes, columns_of({MapKind::kColor, MapKind::kPart}), "transmitted");
+      method_rows(scenes, columns_of(scenes, {MapKind::kColor, MapKind::kPart}), "transmitted");
   grid.legend = legend_of(scenes, false);
   return grid;
 }
