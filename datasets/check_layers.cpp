@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/check_layers.h"
 
-#include <array>
+#include "glint/scene/layer_maps.h"
 
 namespace glint {
 namespace {
 
+// Of one layer; 0 is the first.
 struct LayerRows {
+  explicit LayerRows(std::size_t k)
+      : depth(kLayerDepth[k]), glass(kLayerGlass[k]), mirror(kLayerMirror[k]) {}
   MapId depth, glass, mirror;
 };
-constexpr std::array<LayerRows, 4> kLayers{
-    {{"depth", "glass", "layer_1_mirror"},
-     {"layer_2_depth", "layer_2_glass", "layer_2_mirror"},
-     {"layer_3_depth", "layer_3_glass", "layer_3_mirror"},
-     {"layer_4_depth", "layer_4_glass", "layer_4_mirror"}}};
 
 // Edges of anti-aliased truth leave a few.
 constexpr std::size_t kFewest = 200;  // as a part of the pixels
@@ -56,15 +54,12 @@ bool are_comparable(const MapSet& truth, const LayerRows& before, const LayerRow
 }  // namespace
 
 bool is_of_layers(const MapRow& row) {
-  for (const LayerRows& layer : kLayers)
-    for (const MapId id : {layer.depth, layer.glass, layer.mirror})
-      if (id == MapId(row)) return true;
-  return false;
+  return is_layer_map(row) || MapId(row) == kLayerDepth[0] || MapId(row) == kLayerGlass[0];
 }
 
 void check_layers(const ViewSource& view, const MapSet& truth, std::vector<Finding>& findings) {
-  for (std::size_t k = 1; k < kLayers.size(); ++k) {
-    const LayerRows &before = kLayers[k - 1], &layer = kLayers[k];
+  for (std::size_t k = 1; k < kMaxLayers; ++k) {
+    const LayerRows before(k - 1), layer(k);
     if (!are_comparable(truth, before, layer)) continue;
     const Misfits misfits = count_misfits(truth, before, layer);
     const std::size_t most = truth[layer.depth].num_pixels() / kFewest;

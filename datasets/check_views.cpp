@@ -14,6 +14,7 @@
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/layer_maps.h"
 
 namespace glint {
 namespace {
@@ -459,8 +460,7 @@ void check_agreement(const SceneIndex& index, std::vector<Finding>& findings) {
   // Which surface is the second along a ray changes between views: only first ones are carried.
   for (const MapRow& row : maps())
     if (row.kind == MapKind::kDepth)
-      kinds[row.id] =
-          row.id.starts_with("layer_") ? kinds["depth"] : check_depth(index, row, findings);
+      kinds[row.id] = is_layer_map(row) ? kinds["depth"] : check_depth(index, row, findings);
   for (const auto files : {&ViewSource::truth, &ViewSource::priors})
     for (const MapRow& row : maps())
       if (row.kind == MapKind::kNormal) check_normals(index, files, row, kinds, findings);

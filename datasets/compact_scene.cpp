@@ -3,6 +3,7 @@
 #include "datasets/packed_scene.h"
 #include "glint/core/error.h"
 #include "glint/core/nearest.h"
+#include "glint/scene/layer_maps.h"
 
 namespace glint {
 namespace {
@@ -20,7 +21,7 @@ bool counts_on_glass(const MapRow& row) {
 // Where the first surface is glass; for parts by path also where it is a mirror.
 bool is_counted(const MapSet& truth, const MapRow& row, std::size_t pixel) {
   const Image& mirror = truth["layer_1_mirror"];
-  const bool by_path = row.id.starts_with("path_") && !mirror.empty();
+  const bool by_path = is_path_map(row) && !mirror.empty();
   return truth["glass"].data()[pixel] != 0 || (by_path && mirror.data()[pixel] != 0);
 }
 

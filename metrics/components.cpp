@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "glint/core/error.h"
+#include "glint/scene/layer_maps.h"
 
 namespace glint {
 namespace {
@@ -49,11 +50,10 @@ Image displayed_component(ImageView displayed, ImageView component, ImageView ot
 }
 
 std::vector<MapId> other_parts(const MapRow& part) {
-  const auto is_by_path = [](const MapRow& row) { return row.id.starts_with("path_"); };
   std::vector<MapId> others;
   for (const MapRow& row : maps())
     if (row.kind == MapKind::kPart && !row.truth.empty() && row.id != part.id &&
-        is_by_path(row) == is_by_path(part))
+        is_path_map(row) == is_path_map(part))
       others.emplace_back(row);
   return others;
 }

@@ -21,4 +21,9 @@ inline constexpr MapId kLayerMirror[kMaxLayers] = {
 inline constexpr MapId kLayerTransparency[kMaxLayers] = {
     "transparency", "layer_2_transparency", "layer_3_transparency", "layer_4_transparency"};
 
+// Of the second surface and further ones, and of what is a mirror.
+inline bool is_layer_map(const MapRow& row) { return row.id.starts_with("layer_"); }
+// Of radiance by what its path met.
+inline bool is_path_map(const MapRow& row) { return row.id.starts_with("path_"); }
+
 }  // namespace glint

@@ -117,7 +117,7 @@ struct Fixture {
 // What a set has in a pixel behind a depth, in double.
 struct Surface {
   Vec3d color{}, normal{};
-  double t = 0, s = 0, alpha = 0, depth_sum = 0, median = 0, jump = 0;
+  double t = 0, s = 0, alpha = 0, depth_sum = 0, median = 0;
   double depth() const { return alpha > 0 ? depth_sum / alpha : 0; }
 };
 
@@ -144,14 +144,12 @@ class Reference {
       const double pane_limit = std::max(limit, surface.depth() + kPaneGap);
       limit = m == 1 ? surface.depth() : std::max(limit, surface.depth() + (is_pane ? 0 : kGap));
       others = see(f_.model.transmission, x, y, limit);
-      if (m == f_.config.layers) break;
+      if (m == f_.config.layers || light < 0.02) break;
       const Surface pane = see(f_.model.interface, x, y, pane_limit);
       const bool nearer = pane.t > 0.5 && (others.median <= 0 || pane.depth() < others.median);
       surface = nearer ? pane : others;
       is_pane = nearer;
       panes += nearer;
-      if (light < 0.02) surface.t = 0;
-      if (light < 0.02) return radiance += light * others.color, jump_ > 2e-4;
     }
     radiance += light * others.color;
     return jump_ > 2e-4;
@@ -172,7 +170,7 @@ class Reference {
     const ReferencePixel p = ReferenceRenderer(input, camera(), {}).pixel(x, y);
     jump_ = std::min(jump_, p.cutoffs.nearest_jump_or_median());
     const auto& c = p.features;
-    return {{c[0], c[1], c[2]}, p.normal, c[3], c[4], p.alpha, p.depth_sum, p.depth_median, 0};
+    return {{c[0], c[1], c[2]}, p.normal, c[3], c[4], p.alpha, p.depth_sum, p.depth_median};
   }
   Vec3d mirrored(double depth, Vec3d n, Vec3d d) {
     const Vec3d w = d - 2 * dot(n, d) * n;
@@ -297,6 +295,8 @@ TEST_CASE("Maps of layers stand where the walls do, and the parts add up") {
   // Right: a thing in front of the far pane.
   CHECK(depth("layer_2_depth", 16) == Approx(3).margin(0.15));
   CHECK(depth("layer_3_depth", 16) == depth("layer_2_depth", 16));
+  CHECK(maps.has("layer_4_depth"));
+  CHECK_FALSE(maps.has("layer_4_transparency"));  // of what is behind the last layer
   for (int x = 0; x < kSize.width; ++x)
     for (int c = 0; c < 3; ++c) {
       const float through =

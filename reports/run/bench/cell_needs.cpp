@@ -8,6 +8,7 @@
 #include "datasets/glassroom/glassroom.h"
 #include "glint/core/error.h"
 #include "glint/method.h"
+#include "glint/scene/layer_maps.h"
 #include "glint/train/initial_points.h"
 #include "reports/run/records/earlier_run.h"
 #include "reports/run/records/run_folder.h"
@@ -144,8 +145,7 @@ SceneSize size_of(const SceneSource& room) {
   const bool with_layers = always_has_layers(room.room.empty() ? room.scene : room.room);
   int channels = 3;  // of the photo
   for (const MapRow& row : maps()) {
-    const bool of_layers = row.id.starts_with("layer_") || row.id.starts_with("path_");
-    if (of_layers && !with_layers) continue;
+    if ((is_layer_map(row) || is_path_map(row)) && !with_layers) continue;
     channels += row.channels() * (int(!row.prior.empty()) + int(!row.truth.empty()));
   }
   const double pixels = pixels_of(room);
