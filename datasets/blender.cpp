@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Folders as Blender's NeRF exports are: transforms_train.json and transforms_test.json
 // (transforms_json.h), mostly with camera_angle_x alone; transforms_val.json is not read.
-// points3d.ply is read where 3DGS keeps it. Alpha is dropped, so transparent pictures lie on their
-// own colour.
+// points3d.ply is read where 3DGS keeps it. Transparent pictures lie on white, as by custom.
 #include "datasets/dataset.h"
 #include "datasets/transforms_json.h"
 #include "glint/core/error.h"
@@ -29,6 +28,7 @@ std::string add_views(const fs::path& file, bool is_test, SceneIndex& index) {
   for (std::size_t i = first; i < index.views.size(); ++i) {
     index.views[i].is_test = is_test;
     index.views[i].is_train = !is_test;
+    index.views[i].alpha = AlphaUse::kWhite;  // as NeRF and its successors have it
   }
   return json.dump();
 }

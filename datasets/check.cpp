@@ -8,6 +8,7 @@
 #include <set>
 
 #include "datasets/check_views.h"
+#include "datasets/picture_notes.h"
 #include "datasets/recorded_files.h"
 #include "datasets/scene_index.h"
 #include "glint/core/error.h"
@@ -31,6 +32,8 @@ void check_names(const SceneIndex& index, std::vector<Finding>& findings) {
           {"test-in-train", view.where, "listed as train and as test view; remove it from one list"}
       );
   }
+  if (const std::string why = scene_name_problem(index); !why.empty())
+    findings.push_back({"scene-name", index.folder.string(), why});
   if (!has_train) findings.push_back({"no-views", index.name, no_train_views(index)});
   if (has_train && !has_test)
     findings.push_back(
@@ -120,6 +123,39 @@ bool is_seen(Vec3d point, const std::vector<ViewSource>& views) {
   });
 }
 
+// Points a hundred times as far from the cameras as these are from each other, or as near, are
+// mostly in another unit: what a view sees of them is the same.
+void check_point_unit(
+    const SceneIndex& index, const std::vector<Vec3f>& points, std::vector<Finding>& findings
+) {
+  constexpr double kMostRatio = 100;
+  std::vector<double> far, apart;
+  Vec3d middle{};
+  for (const ViewSource& view : index.views)
+    middle += (1.0 / static_cast<double>(index.views.size())) * view.camera.center();
+  for (const ViewSource& view : index.views) apart.push_back(length(view.camera.center() - middle));
+  for (const Vec3f point : points) far.push_back(length(cast<double>(point) - middle));
+  if (points.empty() || index.views.empty()) return;
+  const auto middle_of = [](std::vector<double>& values) {
+    const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), half, values.end());
+    return *half;
+  };
+  const double ratio = middle_of(far) / middle_of(apart);
+  if (!std::isfinite(ratio) || (ratio < kMostRatio && ratio > 1 / kMostRatio)) return;
+  findings.push_back(
+      {"points",
+       index.points.string(),
+       fmt::format(
+           "points lie {:.3g} from the middle of the cameras (median), which lie {:.3g} from it: a "
+           "ratio of {:.3g}; are points and poses in one unit (1000: millimetres and metres)?",
+           middle_of(far),
+           middle_of(apart),
+           ratio
+       )}
+  );
+}
+
 void check_points(const SceneIndex& index, std::vector<Finding>& findings) {
   if (index.points.empty()) return;
   const std::string where = index.points.string();
@@ -135,6 +171,7 @@ void check_points(const SceneIndex& index, std::vector<Finding>& findings) {
   std::size_t seen = 0, all = 0;
   for (std::size_t i = 0; i < points.positions.size(); i += step, ++all)
     if (is_seen(cast<double>(points.positions[i]), index.views)) ++seen;
+  check_point_unit(index, points.positions, findings);
   if (points.positions.size() < kFewestPoints)
     findings.push_back(
         {"points",
@@ -165,9 +202,11 @@ std::vector<Finding> check_indexed(const SceneIndex& index) {
   findings.insert(findings.end(), index.remarks.begin(), index.remarks.end());
   check_names(index, findings);
   std::vector<std::vector<Finding>> of_views(index.views.size());
+  std::vector<ImageSize> stored(index.views.size(), ImageSize{});
   parallel_for(index.views.size(), 1, [&](std::size_t i) {
-    of_views[i] = check_view_files(index.views[i]);
+    of_views[i] = check_view_files(index.views[i], stored[i]);
   });
+  check_picture_sizes(index, stored, findings);
   for (std::vector<Finding>& of_view : of_views)
     std::move(of_view.begin(), of_view.end(), std::back_inserter(findings));
   check_recorded(index.folder, findings);

@@ -14,6 +14,7 @@
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
 #include "glint/scene/layer_maps.h"
 
 namespace glint {
@@ -152,14 +153,15 @@ void report_image_size(
       {"wrong-size",
        view.image.string(),
        fmt::format(
-           "the image has {} x {} pixels, {}its {} maps {} x {}; store {}",
+           "the image has {} x {} pixels, {}its {} maps {} x {}; store {}{}",
            image.width,
            image.height,
            as_stated ? "its camera and " : "",
            num_maps,
            expected.width,
            expected.height,
-           as_stated ? "the image at that size" : "all of them at one size"
+           as_stated ? "the image at that size" : "all of them at one size",
+           orientation_hint(view.image)
        )}
   );
 }
@@ -196,18 +198,19 @@ void check_counted(const fs::path& path, ImageSize image, std::vector<Finding>& 
 }
 
 // Intrinsics that belong to another size show in the principal point when no size is stated.
-void check_camera(const ViewSource& view, ImageSize image, std::vector<Finding>& findings) {
+// False: the camera cannot be brought to the image.
+bool check_camera(const ViewSource& view, ImageSize image, std::vector<Finding>& findings) {
   if (const auto problem = camera_problem(view.camera, view.where)) {
     findings.push_back(*problem);
-    return;
+    return false;
   }
-  if (image.width == 0) return;
+  if (image.width == 0) return false;
   Camera camera;
   try {
     camera = camera_at(view, image);
   } catch (const Error& error) {
     findings.push_back(make_finding("intrinsics-size", view.where, error.what()));
-    return;
+    return false;
   }
   if (is_off_center(camera))
     findings.push_back(
@@ -228,6 +231,7 @@ void check_camera(const ViewSource& view, ImageSize image, std::vector<Finding>&
   } catch (const Error& error) {
     findings.push_back(make_finding("distortion", view.where, error.what()));
   }
+  return true;
 }
 
 // ---------------------------------------------------------------- maps against cameras
@@ -434,7 +438,7 @@ void check_normals(
 
 }  // namespace
 
-std::vector<Finding> check_view_files(const ViewSource& view) {
+std::vector<Finding> check_view_files(const ViewSource& view, ImageSize& stored) {
   std::vector<Finding> findings;
   const Image image = read_or_report(view.image, 3, findings);
   std::vector<Finding> of_maps;
@@ -445,7 +449,8 @@ std::vector<Finding> check_view_files(const ViewSource& view) {
     report_image_size(view, image.size(), expected, maps.size(), findings);
   else
     check_map_sizes(maps, image.size(), of_maps);
-  check_camera(view, image_differs ? ImageSize{} : image.size(), findings);
+  if (check_camera(view, image_differs ? ImageSize{} : image.size(), findings))
+    stored = image.size();
   if (check_finite_values(view.image, image, findings))
     if (const std::string problem = color_range_problem(image); !problem.empty())
       findings.push_back({"color-values", view.image.string(), problem});

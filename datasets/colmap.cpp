@@ -75,7 +75,7 @@ ViewSource make_view(
     const ColmapModel& model, const ColmapImage& image, const fs::path& folder, std::string where
 ) {
   ViewSource view;
-  view.name = fs::path(image.name).lexically_normal().string();
+  view.name = fs::path(with_slashes(image.name)).lexically_normal().string();
   view.where = std::move(where);
   view.image = picture_or_copy(folder / "images" / view.name);
   view.scales_with_image = true;
@@ -99,7 +99,7 @@ std::set<std::string> read_names(const fs::path& path) {
   std::istringstream file(read_file(path));
   for (std::string line; std::getline(file, line);) {
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-    if (!line.empty()) names.insert(fs::path(line).lexically_normal().string());
+    if (!line.empty()) names.insert(fs::path(with_slashes(line)).lexically_normal().string());
   }
   return names;
 }

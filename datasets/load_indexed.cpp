@@ -8,6 +8,7 @@
 #include "datasets/colmap_model.h"
 #include "datasets/counted_pixels.h"
 #include "datasets/map_files.h"
+#include "datasets/picture_notes.h"
 #include "datasets/prior_evidence.h"
 #include "datasets/prior_files.h"
 #include "datasets/prior_maps.h"
@@ -19,6 +20,7 @@
 #include "glint/core/error.h"
 #include "glint/core/parallel.h"
 #include "glint/core/rng.h"
+#include "glint/core/utf8.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/image_files_stored.h"
 #include "glint/scene/ply.h"
@@ -26,16 +28,19 @@
 namespace glint {
 namespace {
 
-void check_size(const fs::path& path, ImageSize found, ImageSize expected) {
+void check_size(
+    const fs::path& path, ImageSize found, const ViewSource& source, ImageSize expected
+) {
   GLINT_CHECK(
       found == expected,
       kBadReference,
-      "{}: {} x {} pixels, its view's image has {} x {}; store both at one size",
+      "{}: {} x {} pixels, its view's image has {} x {}; store both at one size{}",
       path.string(),
       found.width,
       found.height,
       expected.width,
-      expected.height
+      expected.height,
+      orientation_hint(source.image)
   );
 }
 
@@ -43,7 +48,7 @@ MapSet read_truth(const ViewSource& source, ImageSize size) {
   MapSet maps;
   source.truth.for_each([&](const MapRow& row, const fs::path& path) {
     maps[row] = read_true_map(path, row.kind, source.depth_scale);
-    check_size(path, maps[row].size(), size);
+    check_size(path, maps[row].size(), source, size);
   });
   return maps;
 }
@@ -54,7 +59,7 @@ MapSet read_priors(const ViewSource& source, const Camera& camera) {
   source.priors.for_each([&](const MapRow& row, const fs::path& path) {
     Image map = read_stored_prior(source, row);
     if (source.prior_programs.has(row)) map = resize_prior(std::move(map), row.kind, camera.size());
-    check_size(path, map.size(), camera.size());
+    check_size(path, map.size(), source, camera.size());
     convert_prior(row.kind, source.prior_reading, camera, map);
     maps[row] = std::move(map);
   });
@@ -93,8 +98,9 @@ auto at_place(const std::string& place, F&& body) {
   }
 }
 
-View load_view(const ViewSource& source, const LoadOptions& options) {
+View load_view(const ViewSource& source, const LoadOptions& options, ImageSize& stored) {
   View view = read_view(source, options);
+  stored = view.rgb.size();
   if (!source.distortion.empty())
     at_place(source.where, [&] { undistort_view(view, source.distortion); });
   fit_view(view, options);
@@ -105,21 +111,27 @@ View load_view(const ViewSource& source, const LoadOptions& options) {
 // A view of both lists trains.
 bool is_scored(const ViewSource& view) { return view.is_test && !view.is_train; }
 
-// All views in order. Of several failures the first view's is reported, whatever thread met it.
-std::vector<View> load_views(const std::vector<ViewSource>& sources, const LoadOptions& options) {
-  std::vector<View> views(sources.size());
+struct LoadedViews {
+  std::vector<View> views;        // in order of their sources
+  std::vector<ImageSize> stored;  // of their pictures; {0, 0}: not loaded
+};
+
+// Of several failures the first view's is reported, whatever thread met it.
+LoadedViews load_views(const std::vector<ViewSource>& sources, const LoadOptions& options) {
+  LoadedViews loaded{
+      std::vector<View>(sources.size()), std::vector<ImageSize>(sources.size(), ImageSize{})};
   std::vector<std::exception_ptr> failures(sources.size());
   parallel_for(sources.size(), 1, [&](std::size_t i) {
     if (options.test_only && !is_scored(sources[i])) return;
     try {
-      views[i] = load_view(sources[i], options);
+      loaded.views[i] = load_view(sources[i], options, loaded.stored[i]);
     } catch (...) {
       failures[i] = std::current_exception();
     }
   });
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
-  return views;
+  return loaded;
 }
 
 void add_points_and_extent(const SceneIndex& index, Scene& scene) {
@@ -139,26 +151,14 @@ void check_index(const SceneIndex& index) {
   std::map<std::string, std::string> names;
   for (const ViewSource& view : index.views) {
     const std::string problem = view_name_problem(view.name, names);
-    GLINT_CHECK(problem.empty(), kBadReference, "{}: {}", view.where, problem);
+    GLINT_CHECK(problem.empty(), kBadReference, "{}: {}", as_utf8(view.where), problem);
   }
   const bool has_train = std::any_of(
       index.views.begin(), index.views.end(), [](const ViewSource& view) { return view.is_train; }
   );
+  const std::string why = scene_name_problem(index);
+  GLINT_CHECK(why.empty(), kBadReference, "{}: {}", as_utf8(index.folder.string()), why);
   GLINT_CHECK(has_train, kBadReference, "{}: {}", index.folder.string(), no_train_views(index));
-}
-
-// Views whose picture has an alpha channel; empty: none.
-std::string alpha_note(const SceneIndex& index) {
-  const auto count = std::count_if(index.views.begin(), index.views.end(), [](const auto& view) {
-    return has_alpha(view.image);
-  });
-  if (count == 0) return {};
-  return fmt::format(
-      "{} of {} pictures have an alpha channel, which is dropped: what is transparent has the "
-      "colour that the file has there",
-      count,
-      index.views.size()
-  );
 }
 
 // Masks that may be in the channel that is not looked at: they leave nothing out; empty: none.
@@ -196,7 +196,12 @@ std::string off_center_note(const Scene& scene) {
 }
 
 // What was passed over, and how priors are read.
-void note_data(const SceneIndex& index, const LoadOptions& options, Scene& scene) {
+void note_data(
+    const SceneIndex& index,
+    std::span<const ImageSize> stored,
+    const LoadOptions& options,
+    Scene& scene
+) {
   std::vector<std::string>& notes = scene.data_notes;
   const auto both = std::count_if(index.views.begin(), index.views.end(), [](const auto& view) {
     return view.is_train && view.is_test;
@@ -207,16 +212,24 @@ void note_data(const SceneIndex& index, const LoadOptions& options, Scene& scene
     ));
   for (const Finding& remark : index.remarks)
     notes.push_back(fmt::format("{}: {}", remark.where, remark.message));
+  for (std::string& note : picture_notes(index, stored)) notes.push_back(std::move(note));
   for (std::string note :
-       {alpha_note(index),
-        mask_alpha_note(index, scene),
-        counted_note(scene),
-        off_center_note(scene)})
+       {mask_alpha_note(index, scene), counted_note(scene), off_center_note(scene)})
     if (!note.empty()) notes.push_back(std::move(note));
   if (!options.with_priors || index.simulated_priors || index.prior_notes.empty()) return;
   notes.insert(notes.end(), index.prior_notes.begin(), index.prior_notes.end());
   const std::vector<std::string> coverage = prior_coverage(scene);
   notes.insert(notes.end(), coverage.begin(), coverage.end());
+}
+
+}  // namespace
+
+namespace {
+
+Image read_picture(const ViewSource& source) {
+  const bool is_composed = source.alpha == AlphaUse::kBlack || source.alpha == AlphaUse::kWhite;
+  if (!is_composed) return read_image(source.image, 3);
+  return read_composed(source.image, 3, source.alpha == AlphaUse::kWhite ? 1.0f : 0.0f);
 }
 
 }  // namespace
@@ -236,14 +249,14 @@ Camera camera_at(const ViewSource& source, ImageSize image) {
         source.scales_with_image && slack <= std::max(camera.width, camera.height),
         kBadReference,
         "{}: intrinsics for {} x {} pixels, {} has {} x {}; scale the intrinsics or use images of "
-        "the "
-        "stated size",
+        "the stated size{}",
         source.where,
         camera.width,
         camera.height,
         source.image.string(),
         image.width,
-        image.height
+        image.height,
+        orientation_hint(source.image)
     );
     return resized(camera, image);
   }
@@ -255,11 +268,13 @@ Camera camera_at(const ViewSource& source, ImageSize image) {
 View read_view(const ViewSource& source, const LoadOptions& options) {
   View view;
   view.name = source.name;
-  view.rgb = at_place(source.where, [&] { return read_image(source.image, 3); });
+  view.rgb = at_place(source.where, [&] { return read_picture(source); });
   view.camera = camera_at(source, view.rgb.size());
   if (!source.counted.empty())
     view.counted =
         at_place(source.where, [&] { return read_counted(source.counted, view.rgb.size()); });
+  else if (source.alpha == AlphaUse::kMask && has_alpha(source.image))
+    view.counted = map_of_mask(mask_of_map(read_alpha(source.image)));
   if (options.with_priors) view.priors = read_priors(source, view.camera);
   if (options.with_truth) view.truth = read_truth(source, view.rgb.size());
   return view;
@@ -272,12 +287,12 @@ Scene load_indexed(const SceneIndex& index, const LoadOptions& options) {
   scene.dataset = index.dataset;
   scene.spec_hash = index.spec_hash;
   scene.simulated_priors = index.simulated_priors;
-  std::vector<View> views = load_views(index.views, options);
+  auto [views, stored] = load_views(index.views, options);
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (index.views[i].is_train && !options.test_only) scene.train.push_back(std::move(views[i]));
     if (is_scored(index.views[i])) scene.test.push_back(std::move(views[i]));
   }
-  note_data(index, options, scene);
+  note_data(index, stored, options, scene);
   if (options.test_only) return scene;  // nobody starts a training from it
   add_points_and_extent(index, scene);
   return scene;
@@ -374,6 +389,7 @@ LoaderSpec indexed_loader(
     of_folder.folder = folder;
     read_scene_json(folder, of_folder);
     refuse_outside(folder, of_folder);
+    mark_alpha_use(of_folder);
     add_released_truth(folder, of_folder);
     return of_folder;
   };

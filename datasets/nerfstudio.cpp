@@ -17,7 +17,7 @@ std::set<std::string> read_list(const Json& json, const char* key, const std::st
   GLINT_CHECK(json[key].is_array(), kBadReference, "{}: {}: expected a list", where, key);
   for (const Json& path : json[key]) {
     GLINT_CHECK(path.is_string(), kBadReference, "{}: {}: expected texts", where, key);
-    paths.insert(fs::path(path.get<std::string>()).lexically_normal().string());
+    paths.insert(fs::path(with_slashes(path.get<std::string>())).lexically_normal().string());
   }
   return paths;
 }
@@ -88,7 +88,7 @@ SceneIndex index_nerfstudio(const fs::path& folder, const LoadOptions& options) 
         file.string(),
         points->dump()
     );
-    index.points = folder / points->get<std::string>();
+    index.points = folder / with_slashes(points->get<std::string>());
   }
   index.spec_hash = hash_of_files(json.dump(), index.views);
   return index;

@@ -51,7 +51,7 @@ fs::path picture_folder(const fs::path& folder) {
 
 std::string name_of(const Json& frame) {
   const Json name = frame.is_object() ? frame.value("file_path", Json()) : Json();
-  return name.is_string() ? name.get<std::string>() : std::string();
+  return name.is_string() ? with_slashes(name.get<std::string>()) : std::string();
 }
 
 // Names of test frames; of what is no list, none.
@@ -120,7 +120,7 @@ bool take_colmap_poses(const fs::path& folder, SceneIndex& index) {
   if (!is_there(files / "images.txt") && !is_there(files / "images.bin")) return false;
   std::map<std::string, ColmapImage> images;
   for (ColmapImage& image : read_colmap_model(files).images)
-    images.emplace(fs::path(image.name).filename().string(), std::move(image));
+    images.emplace(fs::path(with_slashes(image.name)).filename().string(), std::move(image));
   for (ViewSource& view : index.views) {
     const auto image = images.find(view.image.filename().string());
     if (image == images.end()) {

@@ -8,6 +8,7 @@
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
 #include "glint/core/rng.h"
+#include "glint/core/utf8.h"
 
 namespace glint {
 
@@ -18,6 +19,11 @@ bool file_contains(const fs::path& file, std::string_view part) {
   } catch (const Error&) {
     return false;
   }
+}
+
+std::string with_slashes(std::string path) {
+  std::replace(path.begin(), path.end(), '\\', '/');
+  return path;
 }
 
 fs::path picture_or_copy(const fs::path& path) {
@@ -80,6 +86,14 @@ std::string hash_of_files(const std::string& camera_text, const std::vector<View
     if (!view.counted.empty()) text += fmt::format("/{}", fs::file_size(view.counted, code));
   }
   return fmt::format("{:016x}", hash_name(text));
+}
+
+std::string scene_name_problem(const SceneIndex& index) {
+  if (is_utf8(index.name)) return {};
+  return fmt::format(
+      "the scene's name '{}' is not UTF-8; rename the folder, or give a \"name\" in scene.json",
+      as_utf8(index.name)
+  );
 }
 
 std::string no_train_views(const SceneIndex& index) {

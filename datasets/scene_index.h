@@ -19,6 +19,10 @@ namespace glint {
 // Where the maps of a view lie; empty where the dataset has none of the kind.
 using MapFiles = BasicMapSet<fs::path>;
 
+// What is made of a picture's alpha channel: what lies on black or on white, a mask of the pixels
+// that count, or nothing: colours as the file has them.
+enum class AlphaUse { kBlack, kWhite, kMask, kStored };
+
 struct ViewSource {
   std::string name;
   std::string where;  // the camera's place in its file, for messages
@@ -29,6 +33,7 @@ struct ViewSource {
       false;  // intrinsics follow the image when its size is not the stated one
   std::vector<double> distortion;  // OpenCV's order k1 k2 p1 p2 k3; empty: none
   bool is_train = false, is_test = false;
+  AlphaUse alpha = AlphaUse::kBlack;
   MapFiles priors, truth;
   double depth_scale = 1e-3;  // metres of a step of true depth as 16-bit PNG
   // The program whose file a prior is, in words (prior_files.h): it is resized to the image and
@@ -60,6 +65,10 @@ inline constexpr std::size_t kFewestPoints = 4;
 // leaves the message to load().
 bool file_contains(const fs::path& file, std::string_view part);
 
+// A path as a file names it, by which folders and files are looked for: backslashes, which programs
+// on Windows write, count as slashes.
+std::string with_slashes(std::string path);
+
 // A picture, or its smaller copy where captures ship those alone, or beside it: of DIR_2/, DIR_4/
 // and DIR_8/ the largest that has it. `path` itself where none has.
 fs::path picture_or_copy(const fs::path& path);
@@ -90,6 +99,9 @@ Camera camera_at(const ViewSource& source, ImageSize image);
 // One view as stored: neither undistorted nor resized. Errors (kBadReference): missing or
 // unreadable files, maps of another size than the image, values that are not finite.
 View read_view(const ViewSource& source, const LoadOptions& options);
+
+// Why its name cannot stand in records; empty: it can.
+std::string scene_name_problem(const SceneIndex& index);
 
 // Why a scene cannot be trained on: there is no view, or the split makes all of them test views.
 std::string no_train_views(const SceneIndex& index);

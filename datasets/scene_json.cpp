@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/scene_json.h"
 
+#include <map>
 #include <set>
 
 #include "datasets/side_maps.h"
@@ -61,7 +62,7 @@ PriorOptions read_priors(const Json& json, const fs::path& folder, const std::st
   } catch (const Error& error) {  // of the data, not of who asks
     throw Error(ExitCode::kBadReference, error.what());
   }
-  const fs::path place = fs::path(json.value("prior_folder", "")).lexically_normal();
+  const fs::path place = fs::path(with_slashes(json.value("prior_folder", ""))).lexically_normal();
   if (place.empty()) return priors;
   GLINT_CHECK(
       place.is_relative() && *place.begin() != "..",
@@ -95,6 +96,25 @@ void read_depth_scale(const Json& json, const std::string& where, SceneIndex& in
   for (ViewSource& view : index.views) view.depth_scale = scale;
 }
 
+void read_alpha_use(const Json& json, const std::string& where, SceneIndex& index) {
+  if (!json.contains("alpha")) return;
+  const std::string use = json["alpha"].get<std::string>();
+  const std::map<std::string, AlphaUse> uses{
+      {"black", AlphaUse::kBlack},
+      {"white", AlphaUse::kWhite},
+      {"mask", AlphaUse::kMask},
+      {"stored", AlphaUse::kStored}};
+  GLINT_CHECK(
+      uses.contains(use),
+      kBadReference,
+      "{}: alpha is '{}'; expected black or white (what transparent pictures lie on), mask (what "
+      "is transparent does not count) or stored (colours as in the file)",
+      where,
+      use
+  );
+  for (ViewSource& view : index.views) view.alpha = uses.at(use);
+}
+
 }  // namespace
 
 void read_scene_json(const fs::path& folder, SceneIndex& index) {
@@ -119,6 +139,7 @@ void read_scene_json(const fs::path& folder, SceneIndex& index) {
     index.simulated_priors = json.value("simulated_priors", false);
     if (json.contains("test_views")) split_by_names(json["test_views"], path.string(), index);
     read_depth_scale(json, path.string(), index);
+    read_alpha_use(json, path.string(), index);
     for (ViewSource& view : index.views) find_counted(folder, view);
     if (json.value("side_maps", false))
       for (ViewSource& view : index.views) find_side_maps(folder, view);

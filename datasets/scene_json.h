@@ -9,7 +9,8 @@ namespace glint {
 
 // Name, dataset, hash and whether priors are simulated go into the index; with "side_maps", the
 // maps of side_maps.h that are there go to the views; "test_views" (names) replaces the split;
-// views of "without_priors" (names) may lack files of priors; "prior_folder", "prior_axes",
+// "alpha" (black, white, mask, stored) says what is made of that channel of pictures; views of
+// "without_priors" (names) may lack files of priors; "prior_folder", "prior_axes",
 // "prior_depth", "prior_overlap" and "albedo_from_basecolor" go into stated_priors. Without the
 // file nothing happens. Errors (kBadReference): no JSON object; names of no view.
 void read_scene_json(const fs::path& folder, SceneIndex& index);

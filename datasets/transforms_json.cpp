@@ -40,6 +40,8 @@ struct FrameReader {
     return value->get<double>();
   }
 
+  std::string path(const char* key) const { return with_slashes(text(key)); }
+
   std::string text(const char* key) const {
     const Json* value = find(key);
     GLINT_CHECK(
@@ -212,7 +214,7 @@ fs::path find_image(const fs::path& folder, const std::string& file_path) {
 
 ViewSource make_view(const FrameReader& reader, const fs::path& folder) {
   ViewSource view;
-  const std::string file_path = reader.text("file_path");
+  const std::string file_path = reader.path("file_path");
   view.name = fs::path(file_path).lexically_normal().string();
   view.image = find_image(folder, file_path);
   view.where = fmt::format("{} ({})", reader.where, file_path);
@@ -221,7 +223,7 @@ ViewSource make_view(const FrameReader& reader, const fs::path& folder) {
   read_pose(reader, view.camera);
   view.distortion = read_distortion(reader);
   if (reader.frame.contains("mask_path"))
-    view.counted = picture_or_copy((folder / reader.text("mask_path")).lexically_normal());
+    view.counted = picture_or_copy((folder / reader.path("mask_path")).lexically_normal());
   return view;
 }
 

@@ -24,15 +24,6 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-Image repeat_grey(const Image& grey, int channels) {
-  Image image(grey.width(), grey.height(), channels);
-  for (std::size_t i = 0; i < grey.values().size(); ++i)
-    for (int c = 0; c < channels; ++c)
-      image.data()[i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)] =
-          grey.values()[i];
-  return image;
-}
-
 float largest_channel(const Image& image, std::size_t pixel) {
   const float* values = image.data() + pixel * static_cast<std::size_t>(image.channels());
   return *std::max_element(values, values + image.channels());
@@ -41,6 +32,15 @@ float largest_channel(const Image& image, std::size_t pixel) {
 }  // namespace
 
 namespace detail {
+
+Image repeat_grey(const Image& grey, int channels) {
+  Image image(grey.width(), grey.height(), channels);
+  for (std::size_t i = 0; i < grey.values().size(); ++i)
+    for (int c = 0; c < channels; ++c)
+      image.data()[i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)] =
+          grey.values()[i];
+  return image;
+}
 
 void check_claimed_size(const fs::path& path, ClaimedSize size, std::size_t file_bytes) {
   GLINT_CHECK(
@@ -122,7 +122,7 @@ Image read_image(const fs::path& path, int channels) {
       image.channels(),
       channels
   );
-  return repeat_grey(image, channels);
+  return detail::repeat_grey(image, channels);
 }
 
 std::string color_range_problem(ImageView colors) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,9 +14,13 @@
 
 namespace glint::detail {
 
-Image read_png_or_jpeg(const fs::path& path);
+// `background`: what pixels of a PNG with an alpha channel are laid on; without it, alpha is
+// dropped.
+Image read_png_or_jpeg(const fs::path& path, std::optional<float> background = {});
 Image read_exr(const fs::path& path);
 Image read_npy(const fs::path& path);
+
+Image repeat_grey(const Image& grey, int channels);
 
 // What a file's header claims about the picture inside.
 struct ClaimedSize {
@@ -26,9 +31,9 @@ struct ClaimedSize {
 ClaimedSize png_size(const fs::path& path, std::string_view file);
 
 // The codecs, of files whose claimed size was checked. Integers divided by their maximum, 1 (grey)
-// or 3 channels (R G B); alpha is dropped. Errors (kBadReference): damaged, or colours that are not
-// read; `path` opens the message.
-Image decode_png(const fs::path& path, std::string_view file);
+// or 3 channels (R G B); alpha is dropped, or laid on `background`. Errors (kBadReference):
+// damaged, or colours that are not read; `path` opens the message.
+Image decode_png(const fs::path& path, std::string_view file, std::optional<float> background = {});
 Image decode_jpeg(const fs::path& path, const std::string& file);
 
 // Of PNG and JPEG headers; at most four bytes.

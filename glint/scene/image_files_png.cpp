@@ -76,10 +76,11 @@ T to_step(float value) {
 
 }  // namespace
 
-Image detail::read_png_or_jpeg(const fs::path& path) {
+Image detail::read_png_or_jpeg(const fs::path& path, std::optional<float> background) {
   const std::string file = read_file(path);
   check_claimed_size(path, claimed_size(path, file), file.size());
-  return file.starts_with(kPngSignature) ? decode_png(path, file) : decode_jpeg(path, file);
+  return file.starts_with(kPngSignature) ? decode_png(path, file, background)
+                                         : decode_jpeg(path, file);
 }
 
 ImageSize read_image_size(const fs::path& path) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // PNG, all of it: every depth and colour type, palettes, interlacing (PNG specification). Inflated
 // by libdeflate at once, which is twice as fast as zlib in pieces: scoring pictures is mostly
-// waiting for that (docs/METRICS.md has the times). Alpha and transparent colours are dropped.
+// waiting for that (docs/METRICS.md has the times). Alpha is dropped or laid on a background;
+// transparent colours are dropped.
 #include <libdeflate.h>
 
 #include <algorithm>
@@ -103,7 +104,8 @@ struct FreeDecompressor {
 
 class PngReader {
  public:
-  explicit PngReader(const fs::path& path) : path_(path) {}
+  PngReader(const fs::path& path, std::optional<float> background)
+      : path_(path), background_(background) {}
 
   Image read(std::string_view file) {
     take_chunks(file);
@@ -246,6 +248,17 @@ class PngReader {
       const std::size_t at = i / kept * stored + i % kept;  // without alpha, which is last
       line[i] = detail::unit_value(sample(row, at), range);
     }
+    if (background_ && stored > kept) compose(row, line);
+  }
+
+  // Colours of a PNG are straight: not multiplied by their alpha.
+  void compose(const Byte* row, std::vector<float>& line) const {
+    const std::size_t kept = format().channels();
+    const int range = (1 << format().depth) - 1;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const float alpha = detail::unit_value(sample(row, i / kept * (kept + 1) + kept), range);
+      line[i] = alpha * line[i] + (1 - alpha) * *background_;
+    }
   }
 
   int sample(const Byte* row, std::size_t i) const {
@@ -267,6 +280,7 @@ class PngReader {
   }
 
   const fs::path& path_;
+  std::optional<float> background_;  // none: alpha is dropped
   PngParts parts_;
   std::unique_ptr<Byte[]> rows_;
 };
@@ -278,8 +292,10 @@ detail::ClaimedSize detail::png_size(const fs::path& path, std::string_view file
   return {big_endian(header.substr(0, 4)), big_endian(header.substr(4, 4)), 4};
 }
 
-Image detail::decode_png(const fs::path& path, std::string_view file) {
-  return PngReader(path).read(file);
+Image detail::decode_png(
+    const fs::path& path, std::string_view file, std::optional<float> background
+) {
+  return PngReader(path, background).read(file);
 }
 
 }  // namespace glint

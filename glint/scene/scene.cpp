@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "glint/core/error.h"
+#include "glint/core/utf8.h"
 
 namespace glint {
 namespace {
@@ -68,13 +69,14 @@ std::string why_no_folder_name(std::string_view name) {
   if (name == "." || name == "..") return "names another folder";
   if (std::any_of(name.begin(), name.end(), is_control)) return "holds control characters";
   if (name.find('/') != std::string_view::npos) return "holds a path separator";
+  if (!is_utf8(name)) return "is not UTF-8 (the bytes of Latin-1, perhaps)";
   return name.size() > kLongest ? "is longer than 200 bytes" : "";
 }
 
 std::string view_name_problem(const std::string& name, std::map<std::string, std::string>& before) {
   const std::string flat = flat_view_name(name);
   if (const std::string why = why_no_folder_name(flat); !why.empty())
-    return fmt::format("the view's name '{}' {}; rename the view", name, why);
+    return fmt::format("the view's name '{}' {}; rename the view", as_utf8(name), why);
   const auto [other, is_new] = before.emplace(flat, name);
   if (is_new) return {};
   return other->second == name ? fmt::format("the name {} is used twice; rename one view", name)

@@ -183,3 +183,72 @@ TEST_CASE("a model beside another format's files leaves the folder to that forma
   CHECK(find_loader(folder.path()).name == "nerfstudio");
   CHECK(load_scene(folder.path(), {.loader = "colmap"}).dataset == "colmap");
 }
+
+TEST_CASE("names with the backslashes of Windows are those of files in folders") {
+  ColmapFolder folder;
+  fs::create_directories(folder / "images/left");
+  for (ColmapImage& image : folder.model.images) {
+    fs::rename(folder / "images" / image.name, folder / "images/left" / image.name);
+    image.name = "left\\" + image.name;
+  }
+  folder.store();
+  write_file(folder / "sparse/0/test.txt", "left\\0004.png\r\n");
+  const Scene scene = load_scene(folder.path(), {});
+  REQUIRE(scene.test.size() == 1);
+  CHECK(scene.test[0].name == "0004");
+  CHECK(check_dataset(folder.path()).empty());
+}
+
+TEST_CASE("a picture's name that is not UTF-8 is refused by name, by the check and by loading") {
+  ColmapFolder folder;
+  const std::string name = "caf\xe9.png";  // Latin-1
+  fs::rename(folder / "images" / folder.model.images[3].name, folder / "images" / name);
+  folder.model.images[3].name = name;
+  folder.store();
+  CHECK_THAT(folder.load_error(), Contains("caf\\xe9.png") && Contains("is not UTF-8"));
+  const auto findings = check_dataset(folder.path());
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].check == "view-name");
+  CHECK_THAT(findings[0].where, Contains("images.bin") || Contains("sparse/0"));
+}
+
+TEST_CASE(
+    "pictures of another size than stated are scaled with a note, and found where they are cut"
+) {
+  const ColmapFolder folder;
+  const auto resize_all = [&](ImageSize size, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i)
+      write_png(
+          folder / "images" / folder.model.images[i].name,
+          Image(size.width, size.height, 3, 0.1f * static_cast<float>(i))
+      );
+  };
+  CHECK(load_scene(folder.path(), {}).data_notes.empty());
+  resize_all({24, 18}, 10);  // half of it, all of them
+  const Scene half = load_scene(folder.path(), {});
+  CHECK(half.train[0].camera.fx == Approx(folder.views[1].camera.fx / 2));
+  REQUIRE(half.data_notes.size() == 1);
+  CHECK_THAT(half.data_notes[0], Contains("10 of 10 pictures") && Contains("a ratio of 0.5"));
+  CHECK(check_dataset(folder.path()).empty());
+  resize_all({47, 36}, 10);  // a column is cut off
+  const Scene cut = load_scene(folder.path(), {});
+  REQUIRE(cut.data_notes.size() == 1);
+  CHECK_THAT(cut.data_notes[0], Contains("ratios 0.9792 of the width and 1 of the height"));
+  const auto findings = check_dataset(folder.path());
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].check == "intrinsics-size");
+  CHECK_THAT(findings[0].message, Contains("10 of 10 pictures") && Contains("cut"));
+}
+
+TEST_CASE("some pictures of another size than stated, where others are as stated, are found") {
+  const ColmapFolder folder;
+  for (const std::size_t i : {2u, 5u})
+    write_png(
+        folder / "images" / folder.model.images[i].name,
+        Image(24, 18, 3, 0.1f * static_cast<float>(i))
+    );
+  CHECK_THAT(load_scene(folder.path(), {}).data_notes.at(0), Contains("2 of 10 pictures"));
+  const auto findings = check_dataset(folder.path());
+  REQUIRE(findings.size() == 1);
+  CHECK_THAT(findings[0].message, Contains("2 of 10 pictures are of another size than stated"));
+}

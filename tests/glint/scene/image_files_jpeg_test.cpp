@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
+#include "tests/support/exif.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -98,4 +100,39 @@ TEST_CASE("a JPEG of more scans than any encoder writes is an error before it is
   CHECK_THAT(
       bad_reference([&] { read_image_size(folder / "x.jpg"); }), Contains("scans, expected")
   );
+}
+
+TEST_CASE("the orientation that EXIF states is told, and pixels stay as they are stored") {
+  const TempFolder folder;
+  const std::string plain = jpeg(24, 16, TJPF_RGB, {204, 102, 51});
+  write_file(folder / "x.jpg", plain);
+  write_png(folder / "plain.png", Image(6, 4, 3, 0.5f));
+  CHECK(stated_orientation(folder / "x.jpg") == 1);
+  CHECK(stated_orientation(folder / "plain.png") == 1);
+  const std::string png = read_file(folder / "plain.png");
+  for (const bool big : {false, true})
+    for (const int orientation : {1, 2, 3, 6, 8}) {
+      write_file(folder / "x.jpg", jpeg_with_exif(plain, orientation, big));
+      write_file(folder / "x.png", png_with_exif(png, orientation, big));
+      CHECK(stated_orientation(folder / "x.jpg") == orientation);
+      CHECK(stated_orientation(folder / "x.png") == orientation);
+      CHECK(read_image(folder / "x.jpg").size() == ImageSize{24, 16});
+      CHECK(read_image(folder / "x.png").size() == ImageSize{6, 4});
+    }
+  CHECK(orientation_words(6) == "EXIF orientation 6 (to be shown turned by 90 degrees clockwise)");
+}
+
+TEST_CASE("EXIF that is cut off or makes no sense states nothing") {
+  const TempFolder folder;
+  const std::string file = jpeg_with_exif(jpeg(24, 16, TJPF_RGB, {204, 102, 51}), 6, true);
+  for (std::size_t length = 0; length < 60; ++length) {
+    write_file(folder / "x.jpg", file.substr(0, length));
+    CHECK_NOTHROW(stated_orientation(folder / "x.jpg"));
+    std::string damaged = file;
+    damaged[length] = '\xff';
+    write_file(folder / "x.jpg", damaged);
+    CHECK_NOTHROW(stated_orientation(folder / "x.jpg"));
+  }
+  write_file(folder / "x.jpg", jpeg_with_exif(jpeg(24, 16, TJPF_RGB, {204, 102, 51}), 9, false));
+  CHECK(stated_orientation(folder / "x.jpg") == 1);
 }

@@ -74,3 +74,22 @@ TEST_CASE("A damaged TIFF is refused by name") {
   write_tiff(folder / "double.tiff", 2, values, SAMPLEFORMAT_IEEEFP, COMPRESSION_NONE);
   CHECK_THROWS_WITH(read_image(folder / "double.tiff"), Catch::Contains("TIFF of 64 bits"));
 }
+
+TEST_CASE("The orientation that libtiff writes is told") {
+  const test::TempFolder folder;
+  for (const int orientation : {1, 3, 6, 8}) {
+    TIFF* file = TIFFOpen((folder / "x.tif").c_str(), orientation == 6 ? "wb" : "wl");
+    REQUIRE(file != nullptr);
+    for (const auto& [tag, value] :
+         {std::pair(TIFFTAG_IMAGEWIDTH, 2),
+          {TIFFTAG_IMAGELENGTH, 1},
+          {TIFFTAG_BITSPERSAMPLE, 8},
+          {TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK},
+          {TIFFTAG_ORIENTATION, orientation}})
+      TIFFSetField(file, static_cast<std::uint32_t>(tag), value);
+    std::uint8_t row[] = {1, 2};
+    TIFFWriteScanline(file, row, 0, 0);
+    TIFFClose(file);
+    CHECK(stated_orientation(folder / "x.tif") == orientation);
+  }
+}
