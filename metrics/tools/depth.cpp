@@ -7,6 +7,7 @@
 #include "glint/scene/camera.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/image_files_stored.h"
+#include "metrics/tools/doubts.h"
 #include "metrics/tools/numeric_options.h"
 #include "metrics/tools/tool.h"
 
@@ -80,6 +81,11 @@ class DepthTool final : public MetricTool {
   std::vector<PairMetrics> families() const override {
     const std::string suffix = release_ ? "-release" : alignment_ == "none" ? "" : "-" + alignment_;
     return {depth_metrics(protocol(), suffix)};
+  }
+
+  std::string doubt(const LoadedPair& pair) const override {
+    if (protocol().alignment != DepthAlignment::kNone) return {};
+    return depth_unit_doubt(pair.prediction, pair.reference);
   }
 
   Json protocol_of_options() const override {

@@ -156,6 +156,10 @@ MeshReport load_surfaces(const MeshToolOptions& options) {
   report.prediction = with_exit_code(ExitCode::kBadPrediction, [&] {
     return read_surface(surface_path(options.prediction, "mesh.ply"));
   });
+  if (std::string doubt = unit_doubt(report.prediction, report.reference); !doubt.empty()) {
+    log::warn(doubt);
+    report.warnings.push_back(std::move(doubt));
+  }
   return report;
 }
 

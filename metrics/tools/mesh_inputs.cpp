@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 #include "datasets/dataset.h"
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
+#include "glint/core/progress.h"
 #include "glint/scene/ply.h"
+#include "metrics/length_units.h"
+#include "metrics/reduce.h"
 
 namespace glint {
 namespace {
@@ -52,6 +56,13 @@ void read_mesh(SurfaceInput& input) {
       clean.report.not_finite,
       clean.report.zero_area
   );
+  if (clean.report.not_finite > 0)
+    log::warn(fmt::format(
+        "{}: {} of {} faces have a corner that is not finite, and are dropped",
+        name,
+        clean.report.not_finite,
+        clean.report.faces_before
+    ));
   input.surface = std::move(clean.mesh);
   input.cleaning = clean.report;
 }
@@ -83,6 +94,43 @@ SurfaceInput read_surface(const fs::path& path) {
   else
     read_points(input);
   return input;
+}
+
+namespace {
+
+const std::vector<Vec3f>& positions_of(const Surface& surface) {
+  const auto* points = std::get_if<SurfacePoints>(&surface);
+  return points ? points->positions : std::get<TriangleMesh>(surface).vertices;
+}
+
+// The median distance of its corners from their median: stray ones do not count. Corners that are
+// not finite are no part of any face.
+double extent_of(const Surface& surface) {
+  std::vector<double> axes[3], distances;
+  for (const Vec3f corner : positions_of(surface))
+    if (std::isfinite(corner.x + corner.y + corner.z))
+      for (int c = 0; c < 3; ++c) axes[c].push_back(static_cast<double>(corner[c]));
+  if (axes[0].empty()) return 0;
+  const Vec3d middle{median(axes[0]), median(axes[1]), median(axes[2])};
+  for (const Vec3f corner : positions_of(surface))
+    if (std::isfinite(corner.x + corner.y + corner.z))
+      distances.push_back(length(cast<double>(corner) - middle));
+  return median(distances);
+}
+
+}  // namespace
+
+std::string unit_doubt(const SurfaceInput& prediction, const SurfaceInput& reference) {
+  const double found = extent_of(prediction.surface), expected = extent_of(reference.surface);
+  if (!(found > 0 && expected > 0) || !is_odd_length_ratio(found / expected)) return {};
+  return fmt::format(
+      "{} is {:.3g} times as large as {} (by the median distance from its middle) and is scored as "
+      "metres; is it in {}?",
+      prediction.path.string(),
+      found / expected,
+      reference.path.string(),
+      likely_unit(found / expected)
+  );
 }
 
 fs::path surface_path(const fs::path& path, const fs::path& file_in_folder) {

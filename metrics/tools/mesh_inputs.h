@@ -26,6 +26,9 @@ struct SurfaceInput {
 // another extension, ply.h's, no faces before or after cleaning, no points.
 SurfaceInput read_surface(const fs::path& path);
 
+// Surfaces of so different a size that one is likely in another unit; empty: they are alike.
+std::string unit_doubt(const SurfaceInput& prediction, const SurfaceInput& reference);
+
 // `path`, or, for a folder, the file in it. Errors (kBadReference): nothing there.
 fs::path surface_path(const fs::path& path, const fs::path& file_in_folder);
 

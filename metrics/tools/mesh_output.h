@@ -18,6 +18,7 @@ struct MeshReport {
   SurfaceInput prediction, reference;
   fs::path dataset;  // whose cameras culled; may be empty
   MeshProtocol protocol;
+  std::vector<std::string> warnings;
   MeshScores scores;
   std::vector<ThresholdScores> curve;
   std::optional<double> color_range_m;  // where a coloured surface was written

@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <CLI/CLI.hpp>
 
-#include <array>
-
 #include "glint/core/error.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/image_files_stored.h"
+#include "metrics/tools/doubts.h"
+#include "metrics/tools/normal_axes.h"
 #include "metrics/tools/tool.h"
 
 namespace glint {
 namespace {
-
-// Factors of x, y, z that lead to OpenCV axes (x right, y down, z forward).
-struct Axes {
-  const char* name;
-  std::array<float, 3> to_opencv;
-};
-constexpr std::array<Axes, 3> kAxes = {{
-    {"opencv", {1, 1, 1}},
-    {"opengl", {1, -1, -1}},         // x right, y up, z to the viewer
-    {"stablenormal", {-1, -1, -1}},  // x left, y up, z to the viewer
-}};
 
 // Integer files store (n + 1) / 2; black is no normal.
 void decode_integers(Image& normals) {
@@ -41,10 +30,9 @@ Image load_normals(const fs::path& path, const std::string& axes) {
       normals.channels()
   );
   if (stores_integers(path)) decode_integers(normals);
-  for (const Axes& known : kAxes)
-    if (axes == known.name)
-      for (std::size_t i = 0; i < normals.values().size(); ++i)
-        normals.data()[i] *= known.to_opencv[i % 3];
+  const Axes& known = axes_called(axes);
+  for (std::size_t i = 0; i < normals.values().size(); ++i)
+    normals.data()[i] *= known.to_opencv[i % 3];
   return normals;
 }
 
@@ -78,6 +66,10 @@ class NormalTool final : public MetricTool {
   }
 
   std::vector<PairMetrics> families() const override { return {normal_metrics()}; }
+
+  std::string doubt(const LoadedPair& pair) const override {
+    return normal_axes_doubt(pair.prediction, pair.reference, axes_);
+  }
 
   Json protocol_of_options() const override {
     return {{"prediction_axes", axes_}, {"reference_axes", reference_axes_}};

@@ -16,6 +16,8 @@
 #include "glint/core/process.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
+#include "metrics/tools/doubts.h"
 #include "metrics/tools/numeric_options.h"
 #include "metrics/tools/tool_output.h"
 
@@ -91,21 +93,41 @@ LoadedPair load_pair(const MetricTool& tool, const FilePair& files) {
   GLINT_CHECK(
       pair.prediction.size() == pair.reference.size(),
       kBadPrediction,
-      "{}: {} x {} pixels, but {} has {} x {}; render at the reference's size",
+      "{}: {} x {} pixels, but {} has {} x {}; render at the reference's size{}{}",
       files.prediction.string(),
       pair.prediction.width(),
       pair.prediction.height(),
       files.reference.string(),
       pair.reference.width(),
-      pair.reference.height()
+      pair.reference.height(),
+      orientation_hint(files.prediction),
+      files.view == nullptr ? orientation_hint(files.reference) : ""
   );
   if (tool.reference_map() == "rgb")
     take_reference_where_uncounted(view_of(counted_of(pair)), pair.reference, pair.prediction);
   return pair;
 }
 
-std::vector<std::string> warnings_of(const MetricTool& tool, const LoadedPair& pair) {
+// A side turned by its EXIF is the likely reason of a low score. Views of datasets are told of by
+// what loads them.
+std::vector<std::string> orientation_warnings(const FilePair& files) {
   std::vector<std::string> warnings;
+  const auto add = [&](const fs::path& path) {
+    const int orientation = stated_orientation(path);
+    if (orientation != 1)
+      warnings.push_back(fmt::format(
+          "{}: states {}; its pixels are taken as stored",
+          path.string(),
+          orientation_words(orientation)
+      ));
+  };
+  add(files.prediction);
+  if (files.view == nullptr) add(files.reference);
+  return warnings;
+}
+
+std::vector<std::string> warnings_of(const MetricTool& tool, const LoadedPair& pair) {
+  std::vector<std::string> warnings = orientation_warnings(pair.files);
   if (tool.reference_map() != "rgb") return warnings;
   const auto add = [&](const fs::path& path, const Image& image) {
     if (const std::string problem = color_range_problem(image); !problem.empty())
@@ -237,6 +259,19 @@ class Batches {
   Progress* progress_;
 };
 
+// Of all pairs alike, so the first is looked at; told with its scores. Colours have no conventions
+// that a doubt may be about, and are not read again.
+std::vector<std::string> doubts_of(const MetricTool& tool, std::span<const FilePair> pairs) {
+  std::vector<std::string> doubts;
+  if (tool.reference_map() != "rgb") {
+    const LoadedPair first = load_pair(tool, pairs.front());
+    if (const std::string doubt = tool.doubt(first); !doubt.empty())
+      doubts.push_back(fmt::format("{}: {}", first.files.prediction.string(), doubt));
+  }
+  if (std::string lossy = lossy_doubt(pairs); !lossy.empty()) doubts.push_back(std::move(lossy));
+  return doubts;
+}
+
 ToolReport score_all(const MetricTool& tool, const PairingOptions& options) {
   const Pairing pairing = pair_files(options);
   ToolReport report{
@@ -259,6 +294,9 @@ ToolReport score_all(const MetricTool& tool, const PairingOptions& options) {
     for (ImageScores& image :
          batches.score(files.subspan(begin, std::min(batches.size(), files.size() - begin))))
       report.images.push_back(std::move(image));
+  if (!files.empty())
+    for (std::string& doubt : doubts_of(tool, files))
+      report.images.front().warnings.push_back(std::move(doubt));
   for (const ImageScores& image : report.images)
     for (const std::string& warning : image.warnings) log::warn(warning);
   return report;

@@ -60,6 +60,8 @@ class MetricTool {
   virtual std::size_t family_for(const FilePair&) const { return 0; }
   // Why pictures of that size have no value of the metric; empty: they may have one.
   virtual std::string why_unfit(const std::string& /*metric_id*/, ImageSize) const { return {}; }
+  // What looks like another convention than the one that the options say; empty: nothing does.
+  virtual std::string doubt(const LoadedPair&) const { return {}; }
   // Pairs are scored by several threads otherwise.
   virtual bool one_at_a_time() const { return false; }
   // What the options add to the protocol of every metric.

@@ -234,6 +234,16 @@ class ImportPlace {
   std::optional<FileLock> lock_;
 };
 
+// Why results lie there, in words of what was asked.
+std::string store_words(const CommonOptions& common, const Profile& profile) {
+  if (holds_single_runs(common.out)) return " (beside the runs of --out)";
+  return fmt::format(
+      " (below --out {}, in the store of profile {}; --out DIR or --profile NAME is another)",
+      common.out,
+      profile.name
+  );
+}
+
 int eval_predictions(const CommonOptions& common, const EvalArguments& arguments) {
   GLINT_CHECK(
       !arguments.predictions.empty() && !arguments.dataset.empty(),
@@ -274,7 +284,7 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
   record.warnings = notes;
   append_record(records, record);
   earlier.drop();
-  log::info("recorded in " + records.string());
+  log::info(fmt::format("recorded in {}{}", records.string(), store_words(common, profile)));
   return print_scores(common, spec.folder, means, arguments.all, notes);
 }
 

@@ -4,13 +4,17 @@
 #include <map>
 #include <utility>
 
+#include "glint/core/utf8.h"
+
 namespace glint {
 
 Json findings_json(const std::vector<Finding>& findings) {
   Json json = Json::array();
   for (const Finding& finding : findings)
     json.push_back(
-        {{"check", finding.check}, {"where", finding.where}, {"message", finding.message}}
+        {{"check", finding.check},
+         {"where", as_utf8(finding.where)},
+         {"message", as_utf8(finding.message)}}
     );
   return json;
 }
@@ -24,7 +28,7 @@ std::string findings_text(const std::vector<Finding>& findings) {
   for (const Finding& finding : findings) {
     const std::size_t number = ++told[key(finding)], count = counts[key(finding)];
     if (number > kMostAlike) continue;
-    text += fmt::format("{}: {}: {}", finding.check, finding.where, finding.message);
+    text += as_utf8(fmt::format("{}: {}: {}", finding.check, finding.where, finding.message));
     if (number == kMostAlike && count > kMostAlike)
       text += fmt::format(" (and {} more; --json names all)", count - kMostAlike);
     text += "\n";
@@ -40,7 +44,7 @@ int print_findings(
 ) {
   print_result(
       common,
-      {{"folder", what}, {"findings", findings_json(findings)}},
+      {{"folder", as_utf8(what)}, {"findings", findings_json(findings)}},
       findings.empty() ? fmt::format("{}: {}\n", what, when_none) : findings_text(findings)
   );
   return static_cast<int>(findings.empty() ? ExitCode::kSuccess : ExitCode::kCheckFailed);

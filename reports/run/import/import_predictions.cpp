@@ -189,6 +189,18 @@ bool has_eight_bit_images(const PredictionFiles& found) {
   });
 }
 
+void note_lossy(const PredictionFiles& found, std::vector<std::string>& notes) {
+  const auto count = std::ranges::count_if(found.views, [](const auto& files) {
+    return is_jpeg(files.at("rgb"));
+  });
+  if (count > 0)
+    notes.push_back(fmt::format(
+        "{} of {} pictures are JPEG, which is lossy: scores are of what the compression left",
+        count,
+        found.views.size()
+    ));
+}
+
 void copy_mesh(const fs::path& from, const fs::path& to) {
   GLINT_CHECK(is_file(from), kBadPrediction, "{}: no such mesh", from.string());
   write_file(to, with_exit_code(ExitCode::kBadPrediction, [&] { return read_file(from); }));
@@ -231,6 +243,7 @@ std::vector<std::string> import_predictions(
         "pictures of integers: their PSNR is psnr-8bit, of values rounded to n / 255, which is not "
         "ranked beside psnr"
     );
+  note_lossy(found, notes);
   note_absent(folder, found, scene.test.front(), notes);
   note_conventions(found.views.front(), scene.test.front(), options, notes);
   remove_renders(spec.folder / "renders");

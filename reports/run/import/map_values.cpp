@@ -6,6 +6,7 @@
 
 #include "glint/core/error.h"
 #include "glint/core/vec.h"
+#include "metrics/length_units.h"
 #include "metrics/reduce.h"
 
 namespace glint {
@@ -29,8 +30,6 @@ std::vector<double> lengths_of(const Image& normals) {
 }
 
 std::string odd_depth(const Image& depth, const Image& truth) {
-  // No reconstruction in metres is wrong by as much at half of its pixels.
-  constexpr double kMostRatio = 5;
   if (!has_depth(truth)) return {};
   if (!has_depth(depth))
     return "no pixel has a finite depth above 0, so all of them count as missing";
@@ -39,11 +38,12 @@ std::string odd_depth(const Image& depth, const Image& truth) {
     if (const float z = truth.values()[i]; is_depth(depth.values()[i]) && is_depth(z))
       ratios.push_back(static_cast<double>(depth.values()[i]) / static_cast<double>(z));
   const double ratio = ratios.empty() ? 1 : median(ratios);
-  if (ratio < kMostRatio && ratio > 1 / kMostRatio) return {};
+  if (!is_odd_length_ratio(ratio)) return {};
   return fmt::format(
-      "depth is {:.3g} times the true one (median) and is scored as metres; is it in another unit, "
-      "or disparity?",
-      ratio
+      "depth is {:.3g} times the true one (median) and is scored as metres; is it in {}, or "
+      "disparity?",
+      ratio,
+      likely_unit(ratio)
   );
 }
 

@@ -11,6 +11,7 @@
 #include "metrics/tools/mesh.h"
 #include "tests/metrics/mesh/shapes.h"
 #include "tests/support/box_room.h"
+#include "tests/support/captured.h"
 #include "tests/support/temp_folder.h"
 
 using namespace glint;
@@ -323,4 +324,39 @@ TEST_CASE("glint-mesh writes over nothing that it reads, and asks for no more th
   CHECK(run_mesh_tool({pair.pred, pair.ref, "--quiet", "--samples", "1000000000"}, out, err) == 6);
   CHECK_THAT(err.str(), Contains("--samples 1000000000 needs about 600.0 GB"));
   CHECK(run_mesh_tool({pair.pred, pair.ref, "--samples", "18446744073709551615"}, out, err) == 1);
+}
+
+TEST_CASE("faces with a corner that is not finite are dropped with a count") {
+  const Pair pair;
+  const std::string rows =
+      "0 0 0\n1 0 0\n1 1 0\nnan 1 0\n"
+      "3 0 1 2\n3 0 2 3\n3 1 2 3\n";
+  Json surfaces;
+  const std::string told = captured(2, [&] {
+    write_file(pair / "nan.ply", ascii_mesh(3, rows));
+    surfaces = mesh_tool({pair / "nan.ply", pair.ref, "--json"}).json()["surfaces"];
+  });
+  CHECK_THAT(told, Contains("nan.ply: 2 of 3 faces have a corner that is not finite"));
+  CHECK(surfaces["prediction"]["cleaning"]["not_finite"] == 2);
+}
+
+TEST_CASE("a mesh in another unit is scored as metres, with the ratio and the likely unit") {
+  const Pair pair;
+  const auto warnings = [&](float scale) {
+    TriangleMesh mesh = unit_square(0.03f);
+    for (Vec3f& vertex : mesh.vertices) vertex = scale * vertex;
+    write_mesh_ply(pair.pred, mesh);
+    return pair.run({"--json"}).json().value("warnings", Json::array());
+  };
+  CHECK(warnings(1).empty());
+  CHECK(warnings(3).empty());
+  for (const auto& [scale, unit] :
+       {std::pair(1000.0f, "millimetres"), {100.0f, "centimetres"}, {10.0f, "decimetres"}}) {
+    const Json found = warnings(scale);
+    REQUIRE(found.size() == 1);
+    CHECK_THAT(
+        found[0].get<std::string>(),
+        Contains(fmt::format("is {:.3g} times as large", scale)) && Contains(unit)
+    );
+  }
 }

@@ -4,12 +4,14 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 
 #include "glint/scene/image_files.h"
 #include "reports/run/bench/stages.h"
 #include "tests/support/small_room.h"
+#include "tests/support/write_jpeg.h"
 
 using namespace glint;
 
@@ -89,6 +91,27 @@ TEST_CASE("A PNG's PSNR is psnr-8bit only, a float image has both") {
   c.import({});
   means = eval_stage(c.spec, test::small_room());
   CHECK(means.at("psnr") == 100);
+}
+
+TEST_CASE("Renders as JPEG are scored, and the record's notes say that they are lossy") {
+  Case c;
+  const fs::path renders = c.folder.path() / "theirs/rgb";
+  fs::remove_all(renders);
+  for (const View& view : test::small_room().test)
+    test::write_jpeg(renders / (view.name + ".jpg"), view.rgb, 50);
+  const auto notes = c.import({DepthConvention::kRay, NormalAxes::kOpengl, {}});
+  const std::size_t count = test::small_room().test.size();
+  CHECK(
+      std::ranges::count(
+          notes,
+          fmt::format(
+              "{0} of {0} pictures are JPEG, which is lossy: scores are of what the compression "
+              "left",
+              count
+          )
+      ) == 1
+  );
+  CHECK(eval_stage(c.spec, test::small_room()).at("psnr-8bit") < 60);
 }
 
 TEST_CASE("Colours that are not finite are refused by file and pixel") {
@@ -234,6 +257,7 @@ TEST_CASE("values in other units, of no direction or none at all are noted once 
   CHECK_THAT(
       note_of("depth", times(1000)),
       Catch::Contains("depth is 1e+03 times the true one") &&
+          Catch::Contains("another unit (millimetres, by the ratio)") &&
           Catch::Contains("(2 maps of depth are odd)")
   );
   CHECK_THAT(note_of("depth", nothing), Catch::Contains("no pixel has a finite depth"));
