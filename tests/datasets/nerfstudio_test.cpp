@@ -139,8 +139,9 @@ TEST_CASE("pictures with an alpha channel are told of") {
   CHECK_FALSE(has_alpha(folder / "transforms.json"));
   const Scene scene = folder.load();
   CHECK(scene.train[2].rgb.at(1, 1, 0) == Approx(128.0 / 255 * 127 / 255));  // on black
-  REQUIRE(scene.data_notes.size() == 1);
-  CHECK_THAT(scene.data_notes[0], Contains("1 of 10 pictures have an alpha channel"));
+  REQUIRE(scene.data_notes.size() == 2);  // it is smaller than its camera says, too
+  CHECK_THAT(scene.data_notes[0], Contains("1 of 10 pictures are of another size"));
+  CHECK_THAT(scene.data_notes[1], Contains("1 of 10 pictures have an alpha channel"));
 }
 
 TEST_CASE("split lists rule where there are any") {
