@@ -123,34 +123,48 @@ bool is_seen(Vec3d point, const std::vector<ViewSource>& views) {
   });
 }
 
-// Points a hundred times as far from the cameras as these are from each other, or as near, are
-// mostly in another unit: what a view sees of them is the same.
+double middle_of(std::vector<double> values) {
+  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), half, values.end());
+  return *half;
+}
+
+// The median distance from the median place.
+double spread_of(const std::vector<Vec3d>& places) {
+  Vec3d middle{};
+  std::vector<double> values(places.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::ranges::transform(places, values.begin(), [&](Vec3d place) { return place[axis]; });
+    middle[axis] = middle_of(values);
+  }
+  std::ranges::transform(places, values.begin(), [&](Vec3d place) {
+    return length(place - middle);
+  });
+  return middle_of(values);
+}
+
+// Points that are spread a hundred times as wide as the cameras, or as little, are mostly in
+// another unit: what a view sees of them may be the same.
 void check_point_unit(
     const SceneIndex& index, const std::vector<Vec3f>& points, std::vector<Finding>& findings
 ) {
   constexpr double kMostRatio = 100;
-  std::vector<double> far, apart;
-  Vec3d middle{};
-  for (const ViewSource& view : index.views)
-    middle += (1.0 / static_cast<double>(index.views.size())) * view.camera.center();
-  for (const ViewSource& view : index.views) apart.push_back(length(view.camera.center() - middle));
-  for (const Vec3f point : points) far.push_back(length(cast<double>(point) - middle));
-  if (points.empty() || index.views.empty()) return;
-  const auto middle_of = [](std::vector<double>& values) {
-    const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), half, values.end());
-    return *half;
-  };
-  const double ratio = middle_of(far) / middle_of(apart);
-  if (!std::isfinite(ratio) || (ratio < kMostRatio && ratio > 1 / kMostRatio)) return;
+  if (points.size() < kFewestPoints || index.views.empty()) return;
+  std::vector<Vec3d> places, centers;
+  for (const Vec3f point : points) places.push_back(cast<double>(point));
+  for (const ViewSource& view : index.views) centers.push_back(view.camera.center());
+  const double of_points = spread_of(places), of_cameras = spread_of(centers);
+  if (!(of_points > 0 && of_cameras > 0)) return;
+  const double ratio = of_points / of_cameras;
+  if (ratio < kMostRatio && ratio > 1 / kMostRatio) return;
   findings.push_back(
       {"points",
        index.points.string(),
        fmt::format(
-           "points lie {:.3g} from the middle of the cameras (median), which lie {:.3g} from it: a "
-           "ratio of {:.3g}; are points and poses in one unit (1000: millimetres and metres)?",
-           middle_of(far),
-           middle_of(apart),
+           "points lie {:.3g} from their middle (median), cameras {:.3g} from theirs, a ratio of "
+           "{:.3g}; are both in one unit (1000: millimetres and metres)?",
+           of_points,
+           of_cameras,
            ratio
        )}
   );

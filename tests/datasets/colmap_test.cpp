@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -251,4 +252,18 @@ TEST_CASE("some pictures of another size than stated, where others are as stated
   const auto findings = check_dataset(folder.path());
   REQUIRE(findings.size() == 1);
   CHECK_THAT(findings[0].message, Contains("2 of 10 pictures are of another size than stated"));
+}
+
+TEST_CASE("points in another unit than the poses are found") {
+  ColmapFolder folder;
+  for (const float scale : {1000.0f, 0.001f}) {
+    PointCloud points = folder.points;
+    for (Vec3f& position : points.positions) position = scale * position;
+    write_colmap_model(folder / "sparse/0", folder.model, points);
+    const auto findings = check_dataset(folder.path());
+    CHECK(std::ranges::any_of(findings, [](const Finding& finding) {
+      return finding.check == "points" &&
+             finding.message.find("both in one unit") != std::string::npos;
+    }));
+  }
 }
