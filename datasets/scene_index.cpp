@@ -89,10 +89,10 @@ std::string hash_of_files(const std::string& camera_text, const std::vector<View
 }
 
 std::string scene_name_problem(const SceneIndex& index) {
-  if (is_utf8(index.name)) return {};
+  const std::string path = fs::absolute(index.folder).string();
+  if (is_utf8(index.name) && is_utf8(path)) return {};
   return fmt::format(
-      "the scene's name '{}' is not UTF-8; rename the folder, or give a \"name\" in scene.json",
-      as_utf8(index.name)
+      "its path '{}' is not UTF-8, which records need; rename the folder", as_utf8(path)
   );
 }
 

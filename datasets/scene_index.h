@@ -100,7 +100,7 @@ Camera camera_at(const ViewSource& source, ImageSize image);
 // unreadable files, maps of another size than the image, values that are not finite.
 View read_view(const ViewSource& source, const LoadOptions& options);
 
-// Why its name cannot stand in records; empty: it can.
+// Why its folder cannot stand in records; empty: it can.
 std::string scene_name_problem(const SceneIndex& index);
 
 // Why a scene cannot be trained on: there is no view, or the split makes all of them test views.
