@@ -89,7 +89,7 @@ std::string hash_of_files(const std::string& camera_text, const std::vector<View
 }
 
 std::string scene_name_problem(const SceneIndex& index) {
-  const std::string path = fs::absolute(index.folder).string();
+  const std::string path = index.folder.empty() ? "" : fs::absolute(index.folder).string();
   if (is_utf8(index.name) && is_utf8(path)) return {};
   return fmt::format(
       "its path '{}' is not UTF-8, which records need; rename the folder", as_utf8(path)
