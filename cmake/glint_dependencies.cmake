@@ -28,9 +28,9 @@ add_library(glint_nettle INTERFACE)
 target_include_directories(glint_nettle SYSTEM INTERFACE ${GLINT_NETTLE_INCLUDE})
 target_link_libraries(glint_nettle INTERFACE ${GLINT_NETTLE_LIBRARY})
 
-# Pictures: libdeflate reads PNG, libpng writes it, libjpeg-turbo. None has a CMake config here.
+# Pictures: libdeflate reads PNG, libpng writes it, libjpeg-turbo, libwebp. None has a CMake config here.
 set(GLINT_IMAGE_CODECS glint_png)
-foreach(codec deflate:libdeflate.h turbojpeg:turbojpeg.h)
+foreach(codec deflate:libdeflate.h turbojpeg:turbojpeg.h webp:webp/decode.h)
   string(REPLACE ":" ";" codec ${codec})
   list(GET codec 0 name)
   list(GET codec 1 header)

@@ -11,11 +11,10 @@
 #include "datasets/opencv_yaml.h"
 #include "datasets/scene_index.h"
 #include "glint/core/presence.h"
+#include "glint/scene/image_files.h"
 
 namespace glint {
 namespace {
-
-const std::vector<std::string> kPictures{".png", ".jpg", ".jpeg"};
 
 LoaderMatch match(const fs::path& folder) {
   if (!is_there(folder / "intri.yml")) return {};
@@ -28,7 +27,7 @@ LoaderMatch match(const fs::path& folder) {
 // The view's only frame; a name that does not exist when the folder has none.
 fs::path first_frame(const fs::path& view_folder) {
   if (!is_folder(view_folder)) return view_folder / "000000.png";
-  const std::vector<fs::path> files = list_files(view_folder, kPictures);
+  const std::vector<fs::path> files = list_files(view_folder, kPictureExtensions);
   return files.empty() ? view_folder / "000000.png" : files.front();
 }
 
@@ -66,7 +65,7 @@ void remark_passed_over(const fs::path& folder, SceneIndex& index) {
   for (const ViewSource& view : index.views) cameras.insert(view.name);
   std::vector<fs::path> videos, strangers;
   for (const fs::path& pictures : list_folders(folder / "images")) {
-    const std::size_t frames = list_files(pictures, kPictures).size();
+    const std::size_t frames = list_files(pictures, kPictureExtensions).size();
     if (!cameras.contains(pictures.filename().string())) {
       if (frames > 0) strangers.push_back(pictures);
     } else if (frames > 1) {
@@ -79,7 +78,7 @@ void remark_passed_over(const fs::path& folder, SceneIndex& index) {
          videos.front().string(),
          fmt::format(
              "{} frames, of {} views several: each view's first is read, here {}",
-             list_files(videos.front(), kPictures).size(),
+             list_files(videos.front(), kPictureExtensions).size(),
              videos.size(),
              first_frame(videos.front()).filename().string()
          )}

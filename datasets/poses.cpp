@@ -16,11 +16,11 @@
 #include "datasets/scene_index.h"
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
+#include "glint/scene/image_files.h"
 
 namespace glint {
 namespace {
 
-const std::vector<std::string> kPictures{".png", ".jpg", ".jpeg"};
 constexpr std::size_t kMostNumbers = 16;
 
 bool has_intrinsics(const fs::path& folder) {
@@ -123,7 +123,7 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   index.name = folder_name(folder);
   index.dataset = "poses";
   std::string text;
-  for (const fs::path& picture : list_files(folder / "images", kPictures)) {
+  for (const fs::path& picture : list_files(folder / "images", kPictureExtensions)) {
     add_view(folder, picture, index);
     for (const char* part : {"poses", "intrinsics"})
       if (const fs::path file = folder / part / (picture.stem().string() + ".txt"); is_there(file))

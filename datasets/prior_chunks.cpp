@@ -10,13 +10,12 @@
 #include "datasets/prior_files.h"
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
+#include "glint/scene/image_files.h"
 
 namespace glint {
 namespace {
 
 constexpr std::size_t kMostFrames = 4096;  // in a chunk; a length beyond is no chunk's
-
-const std::vector<std::string> kPictures{".png", ".jpg", ".jpeg"};
 
 struct ChunkFile {
   std::size_t chunk = 0, frame = 0;
@@ -58,7 +57,7 @@ struct Clip {
 Clip read_clip(const fs::path& folder) {
   Clip clip{folder};
   if (!is_folder(folder)) return clip;
-  for (const fs::path& path : list_files(folder, kPictures)) {
+  for (const fs::path& path : list_files(folder, kPictureExtensions)) {
     const auto file = parse_chunk_name(path.stem().string());
     if (!file) continue;
     clip.passes[file->pass][{file->chunk, file->frame}] = path;

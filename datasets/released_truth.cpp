@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/released_truth.h"
 #include "glint/core/presence.h"
+#include "glint/scene/mesh_files.h"
 
 #include <fmt/format.h>
 
@@ -78,7 +79,8 @@ fs::path released_depth(const fs::path& truth, const std::string& view) {
 
 fs::path true_mesh(const fs::path& scene, const std::string& mesh) {
   const fs::path released = mesh == kTrueMesh ? released_truth(scene) / "gt_mesh.ply" : "";
-  return !is_file(scene / mesh) && is_file(released) ? released : scene / mesh;
+  const fs::path own = mesh_or_model(scene / mesh);
+  return !is_file(own) && is_file(released) ? released : own;
 }
 
 }  // namespace glint

@@ -24,8 +24,8 @@ void add_released_truth(const fs::path& scene, SceneIndex& index);
 // The view's true depth in `truth`, a released_truth(); empty: there is none.
 fs::path released_depth(const fs::path& truth, const std::string& view);
 
-// The scene's true mesh: kTrueMesh, else the released one; kTrueMesh where neither is there. Of
-// another surface, `mesh` of its folder.
+// The scene's true mesh: kTrueMesh, else a model of its name (mesh_files.h), else the released one;
+// kTrueMesh where none is there. Of another surface, `mesh` of its folder.
 inline constexpr const char* kTrueMesh = "gt/mesh.ply";
 fs::path true_mesh(const fs::path& scene, const std::string& mesh = kTrueMesh);
 

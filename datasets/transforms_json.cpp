@@ -206,8 +206,11 @@ void read_pose(const FrameReader& reader, Camera& camera) {
 // copies are there (DL3DV).
 fs::path find_image(const fs::path& folder, const std::string& file_path) {
   const fs::path path = (folder / file_path).lexically_normal();
-  for (const char* extension : {"", ".png", ".jpg", ".jpeg", ".JPG", ".PNG"})
-    if (const fs::path found = picture_or_copy(path.string() + extension); is_file(found))
+  std::vector<std::string> endings{""};
+  endings.insert(endings.end(), kPictureExtensions.begin(), kPictureExtensions.end());
+  endings.insert(endings.end(), {".JPG", ".PNG"});
+  for (const std::string& ending : endings)
+    if (const fs::path found = picture_or_copy(path.string() + ending); is_file(found))
       return found;
   return path;
 }

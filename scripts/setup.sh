@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build ccache git ca-certificates pkg-config
   libembree-dev libopenexr-dev libnanoflann-dev libeigen3-dev libcli11-dev catch2 libtbb-dev
   nlohmann-json3-dev libtomlplusplus-dev libfmt-dev libbullet-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libturbojpeg0-dev libdeflate-dev libtiff-dev libyaml-cpp-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libturbojpeg0-dev libdeflate-dev libwebp-dev libtiff-dev libyaml-cpp-dev
   libcairo2-dev libpango1.0-dev fonts-inter
   libassimp-dev libpng-dev nettle-dev libdnnl-dev libcgal-dev libopen3d-dev
   clang-format-14

@@ -93,16 +93,16 @@ Image read_by_extension(const fs::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".exr") return detail::read_exr(path);
   if (extension == ".npy") return detail::read_npy(path);
-  if (extension == ".tif" || extension == ".tiff") return read_tiff(path);
-  const bool known = extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+  if (extension == ".tif" || extension == ".tiff") return read_tiff(path, std::nullopt);
   GLINT_CHECK(
-      known,
+      std::ranges::count(kPictureExtensions, extension) > 0,
       kBadReference,
-      "{}: unknown image format '{}'; expected .png, .jpg, .jpeg, .exr, .npy or .tiff",
+      "{}: unknown image format '{}'; expected {}, .exr, .npy or .tiff",
       path.string(),
-      extension
+      extension,
+      fmt::join(kPictureExtensions, ", ")
   );
-  return detail::read_png_or_jpeg(path);
+  return detail::read_picture(path);
 }
 
 }  // namespace

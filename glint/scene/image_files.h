@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Image files: PNG (read with libdeflate, written by libpng), JPEG, EXR, NPY maps. Colours stay as
-// stored (sRGB-encoded values in [0, 1]); nothing here changes a transfer function. Writers are
-// atomic. Errors (kBadReference) name the file and say what was found and expected: truncated
-// files, wrong channel counts, sizes that do not match the header, cropped or deep EXR, missing EXR
-// channels.
+// Image files: PNG (read with libdeflate, written by libpng), JPEG, WebP, BMP, EXR, NPY maps.
+// Colours stay as stored (sRGB-encoded values in [0, 1]); nothing here changes a transfer function.
+// Writers are atomic. Errors (kBadReference) name the file and say what was found and expected:
+// truncated files, wrong channel counts, sizes that do not match the header, cropped or deep EXR,
+// missing EXR channels.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,16 @@
 
 namespace glint {
 
-// 8- and 16-bit PNG, JPEG, EXR, NPY, TIFF (library glint_tiff) by extension. Grey images get one
-// channel, colour three, in the order R G B; an alpha channel is dropped. Integers are divided by
-// their maximum.
+// Pictures of integers, by extension, in lower case.
+inline const std::vector<std::string> kPictureExtensions{".png", ".jpg", ".jpeg", ".webp", ".bmp"};
+
+// 8- and 16-bit PNG, JPEG, WebP, BMP, EXR, NPY, TIFF (library glint_tiff) by extension. Grey images
+// get one channel, colour three, in the order R G B; an alpha channel is dropped. Integers are
+// divided by their maximum.
 Image read_image(const fs::path& path);
 // The same, always `channels` channels (1 or 3; grey is repeated, colour to grey is an error).
 Image read_image(const fs::path& path, int channels);
-// The size in the header of a PNG or JPEG; nothing is decoded.
+// The size in the header of a PNG, JPEG, WebP or BMP; nothing is decoded.
 ImageSize read_image_size(const fs::path& path);
 // Pixels of at least half of the range count. Errors besides: values, but none that large (a mask
 // of 0 and 1 in 8 bits).
@@ -47,8 +51,9 @@ inline constinit Service<Image(ImageView, ImageSize)> resize_image{
     "resizing pictures",
     "pack the scene at that size with the full build (glint-bench dataset pack --max-pixels)"};
 
-// float32 and 8- and 16-bit TIFF (libtiff, library glint_tiff). Errors (kBadReference): as above.
-inline constinit Service<Image(const fs::path&)> read_tiff{
+// float32 and 8- and 16-bit TIFF (libtiff, library glint_tiff); alpha is laid on a grey where one
+// is given, else dropped. Errors (kBadReference): as above.
+inline constinit Service<Image(const fs::path&, std::optional<float>)> read_tiff{
     "reading TIFF", "convert the file to EXR or NPY, or build with libtiff-dev installed"};
 
 // IEC 61966-2-1. Values outside [0, 1] are continued (encode clamps below at 0).

@@ -14,9 +14,9 @@
 
 namespace glint::detail {
 
-// `background`: what pixels of a PNG with an alpha channel are laid on; without it, alpha is
-// dropped.
-Image read_png_or_jpeg(const fs::path& path, std::optional<float> background = {});
+// PNG, JPEG, WebP or BMP, by its first bytes. `background`: what pixels of a picture with alpha are
+// laid on; without it, alpha is dropped.
+Image read_picture(const fs::path& path, std::optional<float> background = {});
 Image read_exr(const fs::path& path);
 Image read_npy(const fs::path& path);
 
@@ -29,12 +29,18 @@ struct ClaimedSize {
 
 // What a PNG claims, after checking that all its chunks are there. Errors (kBadReference).
 ClaimedSize png_size(const fs::path& path, std::string_view file);
+ClaimedSize webp_size(const fs::path& path, std::string_view file);
+ClaimedSize bmp_size(const fs::path& path, std::string_view file);
 
 // The codecs, of files whose claimed size was checked. Integers divided by their maximum, 1 (grey)
 // or 3 channels (R G B); alpha is dropped, or laid on `background`. Errors (kBadReference):
 // damaged, or colours that are not read; `path` opens the message.
 Image decode_png(const fs::path& path, std::string_view file, std::optional<float> background = {});
 Image decode_jpeg(const fs::path& path, const std::string& file);
+Image decode_webp(
+    const fs::path& path, std::string_view file, std::optional<float> background = {}
+);
+Image decode_bmp(const fs::path& path, std::string_view file);
 
 // Of PNG and JPEG headers; at most four bytes.
 inline std::uint32_t big_endian(std::string_view bytes) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// NumPy arrays [H][W] or [H][W][C].
+// NumPy arrays [H][W] or [H][W][C]; as PyTorch has them, [C][H][W] and with leading axes of one.
 #include <ImathConfig.h>
 #include <half.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -31,60 +32,82 @@ float convert(const char* from) {
 struct ValueType {
   const char* name;
   std::size_t bytes;
-  float (*read)(const char*);
+  float (*read)(const char*);  // of little-endian bytes
 };
 constexpr ValueType kValueTypes[] = {
-    {"<f4", 4, convert<float>},
-    {"<f8", 8, convert<double>},
-    {"<f2", 2, convert<half>},
-    {"|u1", 1, convert<std::uint8_t>},
-    {"<u2", 2, convert<std::uint16_t>},
-    {"|b1", 1, [](const char* from) { return *from != 0 ? 1.0f : 0.0f; }},
+    {"f4", 4, convert<float>},
+    {"f8", 8, convert<double>},
+    {"f2", 2, convert<half>},
+    {"u1", 1, convert<std::uint8_t>},
+    {"u2", 2, convert<std::uint16_t>},
+    {"b1", 1, [](const char* from) { return *from != 0 ? 1.0f : 0.0f; }},
 };
 
 const ValueType& find_type(const fs::path& path, const std::string& name) {
   const auto* type =
       std::find_if(std::begin(kValueTypes), std::end(kValueTypes), [&](const ValueType& t) {
-        return t.name == name;
+        return !name.empty() && "<>|="sv.find(name[0]) != std::string_view::npos &&
+               name.substr(1) == t.name;
       });
   GLINT_CHECK(
       type != std::end(kValueTypes),
       kBadReference,
-      "{}: values of type '{}'; expected float16, float32, float64, uint8, uint16 or bool, "
-      "little-endian",
+      "{}: values of type '{}'; expected float16, float32, float64, uint8, uint16 or bool",
       path.string(),
       name
   );
   return *type;
 }
 
-detail::ClaimedSize image_size(const fs::path& path, const NpyHeader& header) {
-  const std::vector<std::int64_t>& shape = header.shape;
-  // Two channels are no picture's: grey with alpha, say, or flow.
-  const bool usable =
-      shape.size() == 2 || (shape.size() == 3 && shape[2] >= 1 && shape[2] <= 4 && shape[2] != 2);
-  GLINT_CHECK(
-      usable,
-      kBadReference,
-      "{}: shape ({}); expected (height, width) or (height, width, channels) with 1, 3 or 4 "
-      "channels",
-      path.string(),
-      fmt::join(shape, ", ")
-  );
-  return {shape[1], shape[0], shape.size() == 3 ? shape[2] : 1};
+bool is_channel_count(std::int64_t n) { return n == 1 || n == 3 || n == 4; }
+
+// An axis of the array, as it lies in the file.
+struct Axis {
+  std::int64_t extent = 1;
+  std::size_t step = 0;  // values from one to the next
+};
+
+// In C order the last index is the fastest, in Fortran order the first.
+std::vector<Axis> axes_of(const NpyHeader& header) {
+  std::vector<Axis> axes;
+  for (const std::int64_t extent : header.shape) axes.push_back({extent});
+  std::size_t step = 1;
+  const auto take = [&](Axis& axis) {
+    axis.step = step;
+    step *= static_cast<std::size_t>(axis.extent);
+  };
+  if (header.fortran_order)
+    std::for_each(axes.begin(), axes.end(), take);
+  else
+    std::for_each(axes.rbegin(), axes.rend(), take);
+  return axes;
 }
 
-// Where the value of a pixel's channel stands among all: with the last index fastest, or, in
-// Fortran order, the first.
-struct ValueOrder {
-  std::size_t width, height, channels;
-  bool fortran;
+struct ArrayLayout {
+  Axis height, width, channels;
 
-  std::size_t at(std::size_t pixel, std::size_t channel) const {
-    if (!fortran) return pixel * channels + channel;
-    return pixel / width + height * (pixel % width + width * channel);
+  std::size_t at(std::size_t y, std::size_t x, std::size_t channel) const {
+    return y * height.step + x * width.step + channel * channels.step;
   }
 };
+
+// Two channels are no picture's: grey with alpha, say, or flow.
+ArrayLayout layout_of(const fs::path& path, const NpyHeader& header) {
+  std::vector<Axis> axes = axes_of(header);
+  while (axes.size() > 3 && axes.front().extent == 1) axes.erase(axes.begin());  // a batch of one
+  if (axes.size() == 2) return {axes[0], axes[1], {}};
+  if (axes.size() == 3 && is_channel_count(axes[2].extent)) return {axes[0], axes[1], axes[2]};
+  if (axes.size() == 3 && is_channel_count(axes[0].extent)) return {axes[1], axes[2], axes[0]};
+  throw Error(
+      ExitCode::kBadReference,
+      fmt::format(
+          "{}: shape ({}); expected (height, width), (height, width, channels) or (channels, "
+          "height, width), with 1, 3 or 4 channels",
+          path.string(),
+          fmt::join(header.shape, ", ")
+      )
+  );
+}
 
 }  // namespace
 
@@ -92,11 +115,17 @@ Image detail::read_npy(const fs::path& path) {
   const std::string file = read_file(path);
   const NpyHeader header = parse_npy_header(file, path.string());
   const ValueType& type = find_type(path, header.type);
-  const ClaimedSize size = image_size(path, header);
-  check_claimed_size(path, size, file.size());
-  const auto stored = static_cast<std::size_t>(size.channels);
+  const ArrayLayout layout = layout_of(path, header);
+  const auto stored = static_cast<std::size_t>(layout.channels.extent);
+  check_claimed_size(
+      path, {layout.width.extent, layout.height.extent, layout.channels.extent}, file.size()
+  );
   const std::size_t kept = std::min<std::size_t>(stored, 3);  // alpha is dropped
-  Image image(static_cast<int>(size.width), static_cast<int>(size.height), static_cast<int>(kept));
+  Image image(
+      static_cast<int>(layout.width.extent),
+      static_cast<int>(layout.height.extent),
+      static_cast<int>(kept)
+  );
   const std::size_t expected = image.num_pixels() * stored * type.bytes;
   if (file.size() - header.values_at != expected)
     fail_incomplete(
@@ -105,14 +134,18 @@ Image detail::read_npy(const fs::path& path) {
         fmt::format("{} bytes of values, expected {}", file.size() - header.values_at, expected)
     );
   const char* from = file.data() + header.values_at;
-  const ValueOrder order{
-      static_cast<std::size_t>(size.width),
-      static_cast<std::size_t>(size.height),
-      stored,
-      header.fortran_order};
-  for (std::size_t i = 0; i < image.num_pixels(); ++i)
-    for (std::size_t c = 0; c < kept; ++c)
-      image.data()[i * kept + c] = type.read(from + order.at(i, c) * type.bytes);
+  const bool big_endian = header.type[0] == '>';
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x)
+      for (std::size_t c = 0; c < kept; ++c) {
+        std::array<char, 8> value{};
+        const std::size_t at =
+            layout.at(static_cast<std::size_t>(y), static_cast<std::size_t>(x), c);
+        std::copy_n(from + at * type.bytes, type.bytes, value.begin());
+        if (big_endian)
+          std::reverse_copy(from + at * type.bytes, from + (at + 1) * type.bytes, value.begin());
+        image.at(x, y, static_cast<int>(c)) = type.read(value.data());
+      }
   return image;
 }
 

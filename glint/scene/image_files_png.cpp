@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// PNG and JPEG. Decoders report damage on standard error and hand out half-grey pictures, so the
-// container is walked first: every chunk of a PNG, the headers of a JPEG. Nothing is allocated on
-// the word of a header that the file cannot fill.
+// Pictures of integers. Decoders report damage on standard error and hand out half-grey pictures,
+// so the container is walked first: every chunk of a PNG, the headers of a JPEG. Nothing is
+// allocated on the word of a header that the file cannot fill.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,6 +19,11 @@ using detail::ClaimedSize;
 
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
 constexpr std::string_view kJpegSignature = "\xff\xd8\xff"sv;
+
+bool is_webp(std::string_view file) {
+  return file.starts_with("RIFF"sv) && file.substr(0, 12).ends_with("WEBP"sv);
+}
+bool is_bmp(std::string_view file) { return file.starts_with("BM"sv); }
 
 // Each scan of a progressive picture is work for all of its pixels; encoders write about ten. The
 // marker is no part of compressed data.
@@ -57,12 +62,14 @@ ClaimedSize walk_jpeg(const fs::path& path, std::string_view file) {
 ClaimedSize claimed_size(const fs::path& path, std::string_view file) {
   if (file.starts_with(kPngSignature)) return detail::png_size(path, file);
   if (file.starts_with(kJpegSignature)) return walk_jpeg(path, file);
+  if (is_webp(file)) return detail::webp_size(path, file);
+  if (is_bmp(file)) return detail::bmp_size(path, file);
   GLINT_CHECK(
-      !file.empty(), kBadReference, "{}: the file is empty; expected a PNG or JPEG", path.string()
+      !file.empty(), kBadReference, "{}: the file is empty; expected a picture", path.string()
   );
   throw Error(
       ExitCode::kBadReference,
-      fmt::format("{}: neither a PNG nor a JPEG, whatever its name says", path.string())
+      fmt::format("{}: neither PNG, JPEG, WebP nor BMP, whatever its name says", path.string())
   );
 }
 
@@ -76,9 +83,11 @@ T to_step(float value) {
 
 }  // namespace
 
-Image detail::read_png_or_jpeg(const fs::path& path, std::optional<float> background) {
+Image detail::read_picture(const fs::path& path, std::optional<float> background) {
   const std::string file = read_file(path);
   check_claimed_size(path, claimed_size(path, file), file.size());
+  if (is_webp(file)) return decode_webp(path, file, background);
+  if (is_bmp(file)) return decode_bmp(path, file);
   return file.starts_with(kPngSignature) ? decode_png(path, file, background)
                                          : decode_jpeg(path, file);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // PNG, all of it: every depth and colour type, palettes, interlacing (PNG specification). Inflated
 // by libdeflate at once, which is twice as fast as zlib in pieces: scoring pictures is mostly
-// waiting for that (docs/METRICS.md has the times). Alpha is dropped or laid on a background;
-// transparent colours are dropped.
+// waiting for that (docs/METRICS.md has the times). Alpha, which colour types, palettes and a
+// colour that counts as transparent may bring, is dropped or laid on a background.
 #include <libdeflate.h>
 
 #include <algorithm>
@@ -40,7 +40,8 @@ struct PngFormat {
 
 struct PngParts {
   PngFormat format;
-  std::string_view palette;  // R G B
+  std::string_view palette;       // R G B
+  std::string_view transparency;  // of tRNS: alpha of the palette's colours, or the colour without
   std::string deflated;
 };
 
@@ -121,7 +122,8 @@ class PngReader {
   void take_chunks(std::string_view file) {
     parts_.deflated.reserve(file.size());
     for (const Chunk& chunk : chunks_of(path_, file)) {
-      if (!is_critical(chunk.type())) continue;
+      const bool is_transparency = background_ && chunk.type() == "tRNS";
+      if (!is_critical(chunk.type()) && !is_transparency) continue;
       check(
           libdeflate_crc32(0, chunk.body.data(), chunk.body.size()) == chunk.checksum,
           fmt::format("the checksum of a chunk {} is wrong", chunk.type())
@@ -137,6 +139,8 @@ class PngReader {
       take_header(data);
     else if (type == "PLTE")
       parts_.palette = data;
+    else if (type == "tRNS")
+      parts_.transparency = data;
     else if (type == "IDAT")
       parts_.deflated += data;
     else
@@ -237,6 +241,13 @@ class PngReader {
   }
 
   void line_values(const Byte* row, std::vector<float>& line) const {
+    stored_values(row, line);
+    const bool has_alpha = format().samples() > format().channels() || !parts_.transparency.empty();
+    if (background_ && has_alpha) compose(row, line);
+  }
+
+  // Without alpha.
+  void stored_values(const Byte* row, std::vector<float>& line) const {
     const PngFormat& f = format();
     if (f.type == kPalette) return palette_values(row, line);
     const int range = (1 << f.depth) - 1, kept = f.channels(), stored = f.samples();
@@ -248,17 +259,37 @@ class PngReader {
       const std::size_t at = i / kept * stored + i % kept;  // without alpha, which is last
       line[i] = detail::unit_value(sample(row, at), range);
     }
-    if (background_ && stored > kept) compose(row, line);
   }
 
   // Colours of a PNG are straight: not multiplied by their alpha.
   void compose(const Byte* row, std::vector<float>& line) const {
     const std::size_t kept = format().channels();
-    const int range = (1 << format().depth) - 1;
     for (std::size_t i = 0; i < line.size(); ++i) {
-      const float alpha = detail::unit_value(sample(row, i / kept * (kept + 1) + kept), range);
+      const float alpha = alpha_of(row, i / kept);
       line[i] = alpha * line[i] + (1 - alpha) * *background_;
     }
+  }
+
+  float alpha_of(const Byte* row, std::size_t pixel) const {
+    const PngFormat& f = format();
+    const std::size_t stored = f.samples(), kept = f.channels();
+    if (f.type == kPalette) {
+      const auto entry = static_cast<std::size_t>(sample(row, pixel));
+      const std::string_view alphas = parts_.transparency;
+      return entry < alphas.size() ? detail::unit_value(static_cast<Byte>(alphas[entry]), 255) : 1;
+    }
+    if (stored > kept)
+      return detail::unit_value(sample(row, pixel * stored + kept), (1 << f.depth) - 1);
+    for (std::size_t c = 0; c < kept; ++c)  // the colour that counts as transparent, or not
+      if (sample(row, pixel * stored + c) != colorless(c)) return 1;
+    return 0;
+  }
+
+  // Of tRNS: two bytes a sample. A chunk that is too short names none.
+  int colorless(std::size_t channel) const {
+    const std::string_view bytes =
+        parts_.transparency.substr(std::min(2 * channel, parts_.transparency.size()), 2);
+    return bytes.size() < 2 ? -1 : static_cast<int>(big_endian(bytes));
   }
 
   int sample(const Byte* row, std::size_t i) const {

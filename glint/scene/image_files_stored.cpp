@@ -23,35 +23,88 @@ std::string beginning_of(const fs::path& path, std::size_t count = kBeginning) {
   return bytes;
 }
 
-// "<u2", "|b1": the letter says the kind.
-bool is_integer_type(std::string_view npy_type) {
-  return npy_type.find_first_of("uib") != std::string_view::npos;
+// Of "<u2", "|b1": the letter says the kind, the number its bytes.
+int range_of_type(std::string_view npy_type) {
+  if (npy_type.find_first_of("b") != std::string_view::npos) return 1;
+  if (npy_type.find_first_of("ui") == std::string_view::npos) return 0;
+  return npy_type.ends_with("1") ? 255 : 65535;
+}
+
+// Of IHDR: samples of a palette have 8 bits.
+int range_of_png(std::string_view file) {
+  constexpr std::size_t kDepth = 24, kColorType = 25;
+  if (file.size() <= kColorType) return 255;
+  const int depth = file[kColorType] == 3 ? 8 : std::clamp<int>(file[kDepth], 1, 16);
+  return (1 << depth) - 1;
+}
+
+bool is_tiff(std::string_view file) { return file.starts_with("II") || file.starts_with("MM"); }
+
+bool is_webp(std::string_view file) {
+  return file.starts_with("RIFF") && file.substr(0, 12).ends_with("WEBP");
+}
+
+// Of a file's beginning: a channel, or the chunk tRNS, which stands in front of the pixels; text
+// that is longer than the beginning hides it.
+bool png_has_alpha(std::string_view file) {
+  constexpr std::size_t kColorType = 25;  // after signature, IHDR's length and name, sizes, depth
+  constexpr std::size_t kSignature = 8, kOverhead = 12;  // length, type, checksum
+  if (file.size() <= kColorType) return false;
+  if (file[kColorType] == 4 || file[kColorType] == 6) return true;
+  for (std::size_t at = kSignature; at + 8 <= file.size();) {
+    const std::string_view type = file.substr(at + 4, 4);
+    if (type == "tRNS" || type == "IDAT") return type == "tRNS";
+    at += kOverhead + detail::big_endian(file.substr(at, 4));
+  }
+  return false;
+}
+
+// VP8X names it in a flag; lossless pictures without such a header, in theirs (RFC 9649).
+bool webp_has_alpha(std::string_view file) {
+  constexpr std::size_t kKind = 12, kFlags = 20, kLosslessBits = 24;
+  if (file.size() <= kLosslessBits) return false;
+  const std::string_view kind = file.substr(kKind, 4);
+  if (kind == "VP8X") return (file[kFlags] & 0x10) != 0;
+  return kind == "VP8L" && (file[kLosslessBits] & 0x10) != 0;
 }
 
 }  // namespace
 
-bool stores_integers(const fs::path& path) {
+bool stores_integers(const fs::path& path) { return integer_range(path) > 0; }
+
+int integer_range(const fs::path& path) {
   const std::string file = beginning_of(path);
-  if (file.starts_with(kNpyMagic))
-    return is_integer_type(parse_npy_header(file, path.string()).type);
-  if (file.starts_with("II") || file.starts_with("MM")) return tiff_stores_integers(path);
-  return file.starts_with("\x89PNG") || file.starts_with("\xff\xd8");  // or JPEG; else EXR
+  if (file.starts_with(kNpyMagic)) return range_of_type(parse_npy_header(file, path.string()).type);
+  if (is_tiff(file)) return tiff_integer_range(path);
+  if (file.starts_with("\x89PNG")) return range_of_png(file);
+  return file.starts_with("\xff\xd8") || is_webp(file) || file.starts_with("BM") ? 255
+                                                                                 : 0;  // else EXR
+}
+
+bool is_colored_png(const fs::path& path) {
+  constexpr std::size_t kColorType = 25;
+  constexpr int kColor = 2;  // a bit of the colour type
+  const std::string file = beginning_of(path, kColorType + 1);
+  return file.starts_with("\x89PNG") && file.size() > kColorType &&
+         (file[kColorType] & kColor) != 0;
 }
 
 bool is_jpeg(const fs::path& path) { return is_file(path) && beginning_of(path, 2) == "\xff\xd8"; }
 
 bool has_alpha(const fs::path& path) {
-  constexpr std::size_t kColorType =
-      25;  // after the signature, IHDR's length and name, sizes, depth
-  const std::string file = beginning_of(path, kColorType + 1);
-  const bool is_png = file.starts_with("\x89PNG") && file.size() > kColorType;
-  return is_png && (file[kColorType] == 4 || file[kColorType] == 6);
+  const std::string file = beginning_of(path);
+  if (file.starts_with("\x89PNG")) return png_has_alpha(file);
+  if (is_webp(file)) return webp_has_alpha(file);
+  if (is_tiff(file)) return tiff_has_alpha.here() && tiff_has_alpha(path);
+  return false;
 }
 
 Image read_composed(const fs::path& path, int channels, float background) {
   if (!has_alpha(path)) return read_image(path, channels);
-  Image image =
-      read_within_memory(path, [&] { return detail::read_png_or_jpeg(path, background); });
+  Image image = read_within_memory(path, [&] {
+    return is_tiff(beginning_of(path, 4)) ? read_tiff(path, background)
+                                          : detail::read_picture(path, background);
+  });
   return image.channels() == channels ? image : detail::repeat_grey(image, channels);
 }
 

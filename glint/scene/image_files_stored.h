@@ -15,14 +15,19 @@ namespace glint {
 // step? Of a file that is not read, a missing one too, false: its reader has the message. Errors:
 // kBadReference (a damaged header of NPY or TIFF), kEnvironment (TIFF without library glint_tiff).
 bool stores_integers(const fs::path& path);
+// That maximum: 65535 of 16 bits, 255 of 8; 0: floats, or no file that is read. Errors as above.
+int integer_range(const fs::path& path);
+
+// Has a PNG three colours a pixel? Of any other file: false.
+bool is_colored_png(const fs::path& path);
 
 // By its first bytes, whatever its name says. Of a file that is not there, false.
 bool is_jpeg(const fs::path& path);
 
-// Does the header of a PNG name an alpha channel, which read_image() drops? Of any other file:
-// false.
+// Does a PNG, TIFF or WebP have alpha, which read_image() drops? In PNG that is a channel, a
+// palette with it, or a colour that counts as transparent. Of any other file: false.
 bool has_alpha(const fs::path& path);
-// read_image() with what such a PNG holds laid on a grey of `background`; other files as there.
+// read_image() with what such a picture holds laid on a grey of `background`; other files as there.
 Image read_composed(const fs::path& path, int channels, float background);
 // The channel itself, [0, 1]; of other files 1.
 Image read_alpha(const fs::path& path);
@@ -40,7 +45,9 @@ std::string orientation_words(int orientation);
 std::string orientation_hint(const fs::path& path);
 
 // Of a TIFF (library glint_tiff).
-inline constinit Service<bool(const fs::path&)> tiff_stores_integers{
+inline constinit Service<int(const fs::path&)> tiff_integer_range{
     "reading TIFF", "convert the file to EXR or NPY, or build with libtiff-dev installed"};
+inline constinit Service<bool(const fs::path&)> tiff_has_alpha{
+    "reading TIFF", "convert the file to PNG, or build with libtiff-dev installed"};
 
 }  // namespace glint

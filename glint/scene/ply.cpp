@@ -298,18 +298,17 @@ Triangle fan_triangle(
 // Lists of faces may also be texture coordinates, say.
 void check_lists_vertices(const PlyFile& file, const PlyElement& faces) {
   if (faces.count == 0) return;
-  const auto list = std::find_if(
-      faces.properties.begin(),
-      faces.properties.end(),
-      [](const PlyProperty& property) { return property.is_list; }
-  );
-  const std::string found = list != faces.properties.end() ? list->name : "none";
+  std::vector<std::string> found;
+  for (const PlyProperty& property : faces.properties)
+    if (property.is_list) found.push_back(property.name);
   GLINT_CHECK(
-      found == "vertex_indices" || found == "vertex_index",
+      std::ranges::any_of(
+          found, [](const auto& name) { return name == "vertex_indices" || name == "vertex_index"; }
+      ),
       kBadReference,
       "{}: faces need a list vertex_indices (or vertex_index) of their corners; found: {}",
       file.path,
-      found
+      found.empty() ? "none" : fmt::format("{}", fmt::join(found, ", "))
   );
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PLY files, binary little-endian and ASCII in, binary out: surfel clouds in the field order that
+// PLY files, binary and ASCII in, binary little-endian out: surfel clouds in the field order that
 // common viewers read, coloured points, triangle meshes. Readers never trust a count: it is checked
 // against the file's size before anything is allocated. Errors (kBadReference) name the file and
 // the first value that is not finite, missing properties, faces that refer to no vertex, cut-off

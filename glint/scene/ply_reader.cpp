@@ -70,8 +70,10 @@ PlyType parse_type(const std::string& path, std::string_view name) {
   fail(path, fmt::format("PLY header: unknown type '{}'", name));
 }
 
+enum class Format { kText, kLittleEndian, kBigEndian };
+
 struct Header {
-  bool binary = false;
+  Format format = Format::kText;
   std::vector<PlyElement> elements;
   std::size_t rows_at = 0;  // bytes
 };
@@ -101,16 +103,15 @@ void parse_property(
       std::string(words.back()), parse_type(path, words[words.size() - 2]), is_list};
   if (is_list) property.count_type = parse_type(path, words[2]);
   if (!is_list) ++element.num_scalars;
-  if (is_list && element.properties.size() > element.num_scalars)
-    fail(path, fmt::format("element {}: more than one list; expected one", element.name));
   element.properties.push_back(std::move(property));
 }
 
-bool parse_format(const std::string& path, const std::vector<std::string_view>& words) {
+Format parse_format(const std::string& path, const std::vector<std::string_view>& words) {
   const std::string_view format = words.size() > 1 ? words[1] : "";
-  if (format != "ascii" && format != "binary_little_endian")
-    fail(path, fmt::format("PLY format '{}'; expected ascii or binary_little_endian", format));
-  return format != "ascii";
+  if (format == "ascii") return Format::kText;
+  if (format == "binary_little_endian") return Format::kLittleEndian;
+  if (format == "binary_big_endian") return Format::kBigEndian;
+  fail(path, fmt::format("PLY format '{}'; expected ascii or binary_little_endian", format));
 }
 
 Header parse_header(const std::string& path, std::string_view file) {
@@ -126,7 +127,7 @@ Header parse_header(const std::string& path, std::string_view file) {
     at = end + 1;
     const std::string_view keyword = words.empty() ? "comment" : words[0];
     if (keyword == "format") {
-      header.binary = parse_format(path, words);
+      header.format = parse_format(path, words);
       has_format = true;
     } else if (keyword == "element") {
       header.elements.push_back(parse_element(path, words));
@@ -145,7 +146,8 @@ Header parse_header(const std::string& path, std::string_view file) {
 // Reads values of either format from the front of the rows.
 class RowSource {
  public:
-  RowSource(std::string_view rows, bool binary) : rows_(rows), binary_(binary) {}
+  RowSource(std::string_view rows, Format format)
+      : rows_(rows), binary_(format != Format::kText), big_endian_(format == Format::kBigEndian) {}
 
   std::size_t remaining() const { return rows_.size() - at_; }
   // Bytes that are no value's. Text ends with any space, binary rows with one line break at most.
@@ -166,6 +168,10 @@ class RowSource {
   double take() {
     T value;
     std::memcpy(&value, rows_.data() + at_, sizeof value);
+    if (big_endian_) {
+      auto* bytes = reinterpret_cast<std::byte*>(&value);
+      std::reverse(bytes, bytes + sizeof value);
+    }
     at_ += sizeof value;
     return static_cast<double>(value);
   }
@@ -210,7 +216,7 @@ class RowSource {
   }
 
   std::string_view rows_;
-  bool binary_;
+  bool binary_, big_endian_;
   std::size_t at_ = 0;
 };
 
@@ -249,8 +255,9 @@ void check_count(const std::string& path, const PlyElement& element, const RowSo
     );
 }
 
-// Appends one list; false when it cannot be read or its length exceeds what the file can hold.
-bool read_list(RowSource& source, const PlyProperty& property, PlyElement& element) {
+// Appends one list, or passes over it; false when it cannot be read or its length exceeds what the
+// file can hold.
+bool read_list(RowSource& source, const PlyProperty& property, bool is_kept, PlyElement& element) {
   double length = 0;
   if (!source.next(property.count_type, length)) return false;
   const auto most =
@@ -259,19 +266,30 @@ bool read_list(RowSource& source, const PlyProperty& property, PlyElement& eleme
   for (double i = 0; i < length; ++i) {
     double item = 0;
     if (!source.next(property.type, item) || !(std::abs(item) < 1e15)) return false;
-    element.list_items.push_back(static_cast<std::int64_t>(item));
+    if (is_kept) element.list_items.push_back(static_cast<std::int64_t>(item));
   }
-  element.list_ends.push_back(element.list_items.size());
+  if (is_kept) element.list_ends.push_back(element.list_items.size());
   return true;
+}
+
+// Of several lists that of vertices, else the first: MeshLab and Open3D write coordinates of
+// textures beside.
+const PlyProperty* kept_list(const PlyElement& element) {
+  const PlyProperty* kept = nullptr;
+  for (const PlyProperty& property : element.properties)
+    if (property.is_list && (kept == nullptr || property.name.starts_with("vertex_ind")))
+      kept = &property;
+  return kept;
 }
 
 void read_rows(const std::string& path, RowSource& source, PlyElement& element) {
   check_count(path, element, source);
+  const PlyProperty* kept = kept_list(element);
   element.scalars.reserve(element.count * element.num_scalars);
   for (std::size_t row = 0; row < element.count; ++row)
     for (const PlyProperty& property : element.properties) {
       double value = 0;
-      const bool good = property.is_list ? read_list(source, property, element)
+      const bool good = property.is_list ? read_list(source, property, &property == kept, element)
                                          : source.next(property.type, value);
       if (!good) fail_row(path, element, row);
       if (!property.is_list) element.scalars.push_back(static_cast<float>(value));
@@ -311,7 +329,7 @@ namespace {
 PlyFile read_ply_file(const fs::path& path) {
   const std::string file = read_file(path);
   Header header = parse_header(path.string(), file);
-  RowSource source(std::string_view(file).substr(header.rows_at), header.binary);
+  RowSource source(std::string_view(file).substr(header.rows_at), header.format);
   for (PlyElement& element : header.elements) read_rows(path.string(), source, element);
   if (source.left_over() > 0)
     fail(

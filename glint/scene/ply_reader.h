@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PLY as a container: header, then rows of scalars and lists, ASCII or binary little-endian.
+// PLY as a container: header, then rows of scalars and lists, ASCII or binary of either order.
 // ply.h gives the rows their meaning.
 #pragma once
 
@@ -27,7 +27,8 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
   std::vector<float> scalars;  // [count][num_scalars], in the order of the properties
   std::size_t num_scalars = 0;
-  std::vector<std::int64_t> list_items;  // all rows of the only list property, concatenated
+  std::vector<std::int64_t> list_items;  // all rows of one list property, concatenated: that of
+                                         // vertices where there are several
   std::vector<std::size_t> list_ends;    // [count] end of each row in list_items
 
   // Column of a scalar property, or -1.
@@ -44,8 +45,8 @@ struct PlyFile {
   const PlyElement& element(std::string_view name) const;
 };
 
-// Errors (kBadReference): no PLY, big-endian, unknown types, counts that the file cannot hold, rows
-// missing, unreadable numbers, two lists in one element.
+// Errors (kBadReference): no PLY, unknown types, counts that the file cannot hold, rows missing,
+// unreadable numbers.
 PlyFile read_ply(const fs::path& path);
 // Of the header alone, with its errors.
 std::vector<std::string> read_ply_element_names(const fs::path& path);

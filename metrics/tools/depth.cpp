@@ -6,6 +6,7 @@
 #include "glint/core/error.h"
 #include "glint/scene/camera.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_depth.h"
 #include "glint/scene/image_files_stored.h"
 #include "metrics/tools/doubts.h"
 #include "metrics/tools/numeric_options.h"
@@ -18,8 +19,8 @@ class DepthTool final : public MetricTool {
  public:
   std::string name() const override { return "glint-depth"; }
   std::string description() const override {
-    return "Errors of depth maps: planar z in metres, one channel, EXR or NPY; 0 or not finite: no "
-           "depth.";
+    return "Errors of depth maps: planar z, one channel, metres as EXR, NPY or TIFF or steps as "
+           "16-bit PNG; 0 or not finite: no depth.";
   }
   std::string example() const override {
     return "glint-depth out/ci/runs/room_1/2dgs/0 data/glassroom/room_1-* --glass "
@@ -41,6 +42,10 @@ class DepthTool final : public MetricTool {
     release->excludes("--align")->excludes("--max-depth");
     app.add_option("--ray", intrinsics_, "FX FY CX CY: the prediction holds distances along rays")
         ->expected(4);
+    app.add_option(
+           "--depth-scale", depth_scale_, "metres of a step of integers, on either side (0.001: mm)"
+    )
+        ->check(above_zero());
     app.add_flag("--planar", planar_, "the prediction holds planar z (the default)")
         ->excludes("--ray");
   }
@@ -55,26 +60,29 @@ class DepthTool final : public MetricTool {
     );
   }
 
+  // Integers of all pairs have one scale.
+  void look_at(const FilePair& first) override {
+    if (first.view == nullptr)
+      reference_scale_ =
+          with_exit_code(ExitCode::kBadReference, [&] { return stated_scale(first.reference); });
+    with_exit_code(ExitCode::kBadPrediction, [&] {
+      prediction_scale_ = stated_scale(first.prediction);
+      if (!stores_integers(first.prediction) || prediction_scale_.known()) return;
+      const Image reference =
+          first.view ? map_of(*first.view, "depth") : load_reference(first.reference);
+      if (!reference.empty()) prediction_scale_ = depth_scale_by(first.prediction, reference);
+    });
+  }
+
   Image load_prediction(const fs::path& path) const override {
     const bool metric = protocol().alignment == DepthAlignment::kNone;
-    GLINT_CHECK(
-        !metric || !stores_integers(path),
-        kBadPrediction,
-        "{}: integers hold no metres; give floats as EXR or NPY, or fit it with --align",
-        path.string()
-    );
-    Image depth = read_image(path, 1);
+    Image depth = !metric && !prediction_scale_.known() ? read_image(path, 1)
+                                                        : read_depth(path, prediction_scale_);
     if (!intrinsics_.empty()) make_planar(depth);
     return depth;
   }
   Image load_reference(const fs::path& path) const override {
-    GLINT_CHECK(
-        !stores_integers(path),
-        kBadReference,
-        "{}: integers hold no metres; give floats as EXR or NPY",
-        path.string()
-    );
-    return read_image(path, 1);
+    return read_depth(path, reference_scale_);
   }
 
   // Values that a table does not have under its id get the alignment in theirs.
@@ -89,10 +97,23 @@ class DepthTool final : public MetricTool {
   }
 
   Json protocol_of_options() const override {
-    return {{"prediction", intrinsics_.empty() ? "planar z" : "distance along rays, made planar"}};
+    Json protocol = {
+        {"prediction", intrinsics_.empty() ? "planar z" : "distance along rays, made planar"}};
+    for (const auto& [side, scale] :
+         {std::pair{"prediction_steps", &prediction_scale_},
+          {"reference_steps", &reference_scale_}})
+      if (scale->known()) protocol[side] = {{"metres", scale->metres}, {"from", scale->from}};
+    return protocol;
   }
 
  private:
+  // Nothing of a file that needs none.
+  DepthSteps stated_scale(const fs::path& path) const {
+    if (!stores_integers(path)) return {};
+    if (depth_scale_ > 0) return {depth_scale_, "--depth-scale"};
+    return exported_depth_scale(path);
+  }
+
   DepthProtocol protocol() const {
     if (release_) return release_depth_protocol();
     DepthProtocol protocol;
@@ -113,7 +134,9 @@ class DepthTool final : public MetricTool {
   }
 
   std::string alignment_ = "none";
-  double max_depth_ = 0;  // metres; 0: no limit
+  double max_depth_ = 0;    // metres; 0: no limit
+  double depth_scale_ = 0;  // metres; 0: not given
+  DepthSteps prediction_scale_, reference_scale_;
   bool release_ = false, planar_ = false;
   std::vector<double> intrinsics_;  // fx fy cx cy in pixels, when given
 };

@@ -23,7 +23,7 @@ constexpr int kCurvePoints = 100;  // equal steps up to the largest threshold
 
 struct MeshToolOptions {
   fs::path prediction, reference, dataset, colored, colored_reference, curve;
-  std::string cull, distance = "point-to-triangle";
+  std::string cull, distance = "point-to-triangle", gltf_up = "y";
   MeshProtocol protocol;
   bool json = false, csv = false, quiet = false;
   int threads = 0;
@@ -33,11 +33,12 @@ void add_inputs(CLI::App& app, MeshToolOptions& options) {
   app.add_option(
          "PREDICTION",
          options.prediction,
-         "mesh or points (.ply), or run folder: mesh.ply, by the protocol it was scored with"
+         "mesh (.ply, .glb, .gltf, .obj, .stl) or points (.ply), or run folder: mesh.ply, by the "
+         "protocol it was scored with"
   )
       ->required();
   app.add_option(
-         "REFERENCE", options.reference, "mesh or points (.ply), or dataset folder: gt/mesh.ply"
+         "REFERENCE", options.reference, "mesh or points as well, or dataset folder: gt/mesh.ply"
   )
       ->required();
   app.add_option(
@@ -47,6 +48,11 @@ void add_inputs(CLI::App& app, MeshToolOptions& options) {
   )
       ->check(CLI::IsMember({"cameras", "none"}));
   app.add_option("--dataset", options.dataset, "whose cameras cull; else REFERENCE's folder");
+  app.add_option(
+         "--gltf-up", options.gltf_up, "of glTF: axis that was up in the frame it was written from"
+  )
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
 }
 
 void add_protocol(CLI::App& app, MeshToolOptions& options) {
@@ -156,10 +162,13 @@ MeshReport load_surfaces(const MeshToolOptions& options) {
   report.prediction = with_exit_code(ExitCode::kBadPrediction, [&] {
     return read_surface(surface_path(options.prediction, "mesh.ply"));
   });
-  if (std::string doubt = unit_doubt(report.prediction, report.reference); !doubt.empty()) {
-    log::warn(doubt);
-    report.warnings.push_back(std::move(doubt));
-  }
+  const GltfUp up = options.gltf_up == "z" ? GltfUp::kZ : GltfUp::kY;
+  turn_gltf(report.prediction, up);
+  turn_gltf(report.reference, up);
+  report.warnings = frame_doubts(report.prediction, report.reference, up);
+  for (const std::string& doubt : report.warnings) log::warn(doubt);
+  for (const SurfaceInput* input : {&report.prediction, &report.reference})
+    if (is_gltf(input->path)) report.gltf_up = options.gltf_up;
   return report;
 }
 

@@ -2,7 +2,6 @@
 #include "metrics/tools/mesh_inputs.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -10,9 +9,8 @@
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
 #include "glint/core/progress.h"
-#include "glint/scene/ply.h"
-#include "metrics/length_units.h"
-#include "metrics/reduce.h"
+#include "glint/scene/mesh_files.h"
+#include "metrics/mesh_frames.h"
 
 namespace glint {
 namespace {
@@ -21,22 +19,9 @@ namespace {
 // borders when it is resized, so that what is inside stays inside.
 constexpr double kLeastPixels = 4096;
 
-void check_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  GLINT_CHECK(
-      extension == ".ply",
-      kBadReference,
-      "{}: '{}' files are not read; expected a mesh or points as .ply (MeshLab, Blender and Open3D "
-      "convert)",
-      path.string(),
-      extension
-  );
-}
-
-void read_mesh(SurfaceInput& input) {
+void read_faces(SurfaceInput& input) {
   const std::string name = input.path.string();
-  const TriangleMesh mesh = read_mesh_ply(input.path, NonFinite::kKeep);
+  const TriangleMesh mesh = read_mesh(input.path, NonFinite::kKeep);
   GLINT_CHECK(
       !mesh.faces.empty(),
       kBadReference,
@@ -86,59 +71,44 @@ void read_points(SurfaceInput& input) {
 }  // namespace
 
 SurfaceInput read_surface(const fs::path& path) {
-  check_extension(path);
   SurfaceInput input;
   input.path = path;
-  if (is_mesh_ply(path))
-    read_mesh(input);
-  else
+  if (mesh_extension(path) == ".ply" && !is_mesh_ply(path))
     read_points(input);
+  else
+    read_faces(input);
   return input;
 }
 
-namespace {
-
-const std::vector<Vec3f>& positions_of(const Surface& surface) {
-  const auto* points = std::get_if<SurfacePoints>(&surface);
-  return points ? points->positions : std::get<TriangleMesh>(surface).vertices;
+const std::vector<Vec3f>& corners_of(const SurfaceInput& input) {
+  const auto* points = std::get_if<SurfacePoints>(&input.surface);
+  return points ? points->positions : std::get<TriangleMesh>(input.surface).vertices;
 }
 
-// The median distance of its corners from their median: stray ones do not count. Corners that are
-// not finite are no part of any face.
-double extent_of(const Surface& surface) {
-  std::vector<double> axes[3], distances;
-  for (const Vec3f corner : positions_of(surface))
-    if (std::isfinite(corner.x + corner.y + corner.z))
-      for (int c = 0; c < 3; ++c) axes[c].push_back(static_cast<double>(corner[c]));
-  if (axes[0].empty()) return 0;
-  const Vec3d middle{median(axes[0]), median(axes[1]), median(axes[2])};
-  for (const Vec3f corner : positions_of(surface))
-    if (std::isfinite(corner.x + corner.y + corner.z))
-      distances.push_back(length(cast<double>(corner) - middle));
-  return median(distances);
+void turn_gltf(SurfaceInput& input, GltfUp up) {
+  if (up == GltfUp::kZ && is_gltf(input.path)) turn_back(std::get<TriangleMesh>(input.surface));
 }
 
-}  // namespace
-
-std::string unit_doubt(const SurfaceInput& prediction, const SurfaceInput& reference) {
-  const double found = extent_of(prediction.surface), expected = extent_of(reference.surface);
-  if (!(found > 0 && expected > 0) || !is_odd_length_ratio(found / expected)) return {};
-  return fmt::format(
-      "{} is {:.3g} times as large as {} (by the median distance from its middle) and is scored as "
-      "metres; is it in {}?",
-      prediction.path.string(),
-      found / expected,
-      reference.path.string(),
-      likely_unit(found / expected)
-  );
+std::vector<std::string> frame_doubts(
+    const SurfaceInput& prediction, const SurfaceInput& reference, GltfUp up
+) {
+  const NamedCorners found{prediction.path, corners_of(prediction)},
+      expected{reference.path, corners_of(reference)};
+  std::vector<std::string> doubts;
+  for (std::string doubt :
+       {mesh_unit_doubt(found, expected),
+        gltf_up_doubt(found, expected, up),
+        gltf_up_doubt(expected, found, up)})
+    if (!doubt.empty()) doubts.push_back(std::move(doubt));
+  return doubts;
 }
 
 fs::path surface_path(const fs::path& path, const fs::path& file_in_folder) {
-  const fs::path file = is_folder(path) ? path / file_in_folder : path;
+  const fs::path file = is_folder(path) ? mesh_or_model(path / file_in_folder) : path;
   GLINT_CHECK(
       is_there(file),
       kBadReference,
-      "{}: no such file; expected a .ply, or a folder with {}",
+      "{}: no such file; expected a mesh, or a folder with {}",
       file.string(),
       file_in_folder.string()
   );

@@ -7,6 +7,7 @@
 
 #include "glint/core/files.h"
 #include "glint/scene/camera.h"
+#include "glint/scene/mesh_files.h"
 #include "metrics/mesh/clean.h"
 #include "metrics/mesh/cull.h"
 #include "metrics/mesh/mesh_protocol.h"
@@ -21,15 +22,23 @@ struct SurfaceInput {
   std::optional<CullRecipe> culling;    // where it was culled
 };
 
-// A PLY file whose header has an element "face" is a mesh, which is cleaned; any other is a point
-// cloud. Normals of points are made unit; a zero one drops them all. Errors (kBadReference):
-// another extension, ply.h's, no faces before or after cleaning, no points.
+// A mesh (mesh_files.h), which is cleaned, or a PLY file whose header has no element "face": a
+// point cloud. Normals of points are made unit; a zero one drops them all. Errors (kBadReference):
+// another extension, mesh_files.h's, no faces before or after cleaning, no points.
 SurfaceInput read_surface(const fs::path& path);
 
-// Surfaces of so different a size that one is likely in another unit; empty: they are alike.
-std::string unit_doubt(const SurfaceInput& prediction, const SurfaceInput& reference);
+const std::vector<Vec3f>& corners_of(const SurfaceInput& input);
 
-// `path`, or, for a folder, the file in it. Errors (kBadReference): nothing there.
+// Of a glTF, where z was up. Other files are as they are.
+void turn_gltf(SurfaceInput& input, GltfUp up);
+
+// What looks like another unit or axis (mesh_frames.h), both as turned by `up`.
+std::vector<std::string> frame_doubts(
+    const SurfaceInput& prediction, const SurfaceInput& reference, GltfUp up
+);
+
+// `path`, or, for a folder, the file in it, or a model of its name (mesh_files.h). Errors
+// (kBadReference): nothing there.
 fs::path surface_path(const fs::path& path, const fs::path& file_in_folder);
 
 // Of the training views. Errors (kBadReference): load_scene()'s, no training view.

@@ -136,6 +136,7 @@ void print_mesh_json(const MeshReport& report, std::ostream& out) {
       {"prediction", report.prediction.path.string()},
       {"reference", report.reference.path.string()}};
   if (!report.dataset.empty()) json["dataset"] = report.dataset.string();
+  if (!report.gltf_up.empty()) json["gltf_up"] = report.gltf_up;
   if (!report.warnings.empty()) json["warnings"] = report.warnings;
   json["metrics"] = scores_json(mesh_values(report.scores, report.protocol));
   json["summary"] = {

@@ -18,6 +18,7 @@ struct MeshReport {
   SurfaceInput prediction, reference;
   fs::path dataset;  // whose cameras culled; may be empty
   MeshProtocol protocol;
+  std::string gltf_up;  // of a glTF among them: y or z
   std::vector<std::string> warnings;
   MeshScores scores;
   std::vector<ThresholdScores> curve;

@@ -5,12 +5,17 @@
 
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
+#include "glint/scene/image_files.h"
 
 namespace glint {
 namespace {
 
-const std::vector<std::string> kExtensions = {
-    ".png", ".jpg", ".jpeg", ".exr", ".npy", ".tif", ".tiff"};
+std::vector<std::string> extensions() {
+  std::vector<std::string> all = kPictureExtensions;
+  all.insert(all.end(), {".exr", ".npy", ".tif", ".tiff"});
+  return all;
+}
+const std::vector<std::string> kExtensions = extensions();
 
 fs::path enter_layout(const fs::path& folder, const FolderLayout& layout) {
   for (const std::string& name : layout.subfolders)

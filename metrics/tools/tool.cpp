@@ -272,8 +272,9 @@ std::vector<std::string> doubts_of(const MetricTool& tool, std::span<const FileP
   return doubts;
 }
 
-ToolReport score_all(const MetricTool& tool, const PairingOptions& options) {
+ToolReport score_all(MetricTool& tool, const PairingOptions& options) {
   const Pairing pairing = pair_files(options);
+  if (!pairing.pairs.empty()) tool.look_at(pairing.pairs.front());
   ToolReport report{
       options.prediction, options.reference, options.mask, options.glass, {}, pairing.missing};
   if (!pairing.pairs.empty() && pairing.pairs.front().view)

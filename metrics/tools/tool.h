@@ -51,6 +51,9 @@ class MetricTool {
   // After parsing, before the first pair. Errors: kUsage; kEnvironment for files it needs.
   virtual void check_options() {}
 
+  // Before the first pair is loaded: what all of them have in common. Errors as load_prediction().
+  virtual void look_at(const FilePair&) {}
+
   // One of a pair's files as the metric wants it; called by several threads. Errors
   // (kBadReference): see image_files.h.
   virtual Image load_prediction(const fs::path& path) const = 0;

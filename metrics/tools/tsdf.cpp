@@ -13,6 +13,8 @@
 #include "glint/core/printable.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_depth.h"
+#include "glint/scene/image_files_stored.h"
 #include "glint/scene/ply.h"
 #include "metrics/fusion/tsdf.h"
 #include "metrics/tools/numeric_options.h"
@@ -27,13 +29,14 @@ struct TsdfArguments {
   std::string depth, dataset, out = "mesh.ply", map = "depth.exr", pattern, mask;
   TsdfOptions options;
   std::vector<double> bounds;
+  double depth_scale = 0;  // metres; 0: not given
   bool ray = false, json = false, csv = false, quiet = false;
   int threads = 0;
 };
 
 void add_options(CLI::App& app, TsdfArguments& a) {
   app.add_option(
-         "DEPTH", a.depth, "folder with a depth map per view, or glob: planar z, EXR or NPY"
+         "DEPTH", a.depth, "folder with a depth map per view, or glob: planar z, EXR, NPY or PNG"
   )
       ->required();
   app.add_option("DATASET", a.dataset, "dataset folder: cameras of the views by name")->required();
@@ -48,6 +51,8 @@ void add_options(CLI::App& app, TsdfArguments& a) {
   app.add_option("--bounds", a.bounds, "X0 Y0 Z0 X1 Y1 Z1 in metres; otherwise none")->expected(6);
   app.add_option("--min-cluster", o.min_cluster, "triangles")->capture_default_str();
   app.add_option("--max-memory", o.max_memory_mb, "MB; 0: half of the machine's");
+  app.add_option("--depth-scale", a.depth_scale, "metres of a step of integers (0.001: mm)")
+      ->check(above_zero());
   app.add_flag("--ray", a.ray, "the maps hold distances along rays");
   auto* json = app.add_flag("--json", a.json, "one JSON document");
   app.add_flag("--csv", a.csv, "one row")->excludes(json);
@@ -98,12 +103,21 @@ std::vector<Source> find_sources(const TsdfArguments& a, const Scene& scene) {
   return sources;
 }
 
+// Of integers; nothing of floats.
+DepthSteps scale_of(const fs::path& depth, double stated) {
+  return with_exit_code(ExitCode::kBadPrediction, [&]() -> DepthSteps {
+    if (!stores_integers(depth)) return {};
+    if (stated > 0) return {stated, "--depth-scale"};
+    return exported_depth_scale(depth);
+  });
+}
+
 // Maps of another size than the dataset's images bring their own resolution.
-FusionView load_source(const Source& source, bool ray) {
+FusionView load_source(const Source& source, const TsdfArguments& a, const DepthSteps& scale) {
   FusionView view = with_exit_code(ExitCode::kBadPrediction, [&] {
-    FusionView read{read_image(source.depth, 1), {}, source.camera};
+    FusionView read{read_depth(source.depth, scale), {}, source.camera};
     read.camera = resized(source.camera, read.depth.size());
-    if (ray) make_planar(read.depth, read.camera);
+    if (a.ray) make_planar(read.depth, read.camera);
     if (!source.rgb.empty()) read.rgb = read_image(source.rgb, 3);
     return read;
   });
@@ -121,12 +135,15 @@ void print_csv(const std::string& mesh, const Json& report, std::ostream& out) {
   out << "\n";
 }
 
-void print_report(const TsdfArguments& a, const TsdfReport& report, std::ostream& out) {
+void print_report(
+    const TsdfArguments& a, const DepthSteps& scale, const TsdfReport& report, std::ostream& out
+) {
   if (a.json) {
     Json json = {{"tool", "glint-tsdf"}, {"depth", a.depth}, {"dataset", a.dataset}};
     if (!a.mask.empty()) json["mask"] = a.mask;
     json["mesh"] = a.out;
     json["options"] = config_to_json(a.options);
+    if (scale.known()) json["steps"] = {{"metres", scale.metres}, {"from", scale.from}};
     json["report"] = config_to_json(report);
     out << json.dump(2) << "\n";
     return;
@@ -181,9 +198,10 @@ void run(TsdfArguments& a, std::ostream& out) {
   const std::vector<Source> sources = find_sources(a, load_scene(a.dataset, load));
   check_destination(a, sources);
   TsdfReport report;
-  const auto view = [&](std::size_t i) { return load_source(sources[i], a.ray); };
+  const DepthSteps scale = scale_of(sources.front().depth, a.depth_scale);
+  const auto view = [&](std::size_t i) { return load_source(sources[i], a, scale); };
   write_mesh_ply(a.out, fuse_depth(view, sources.size(), a.options, &report));
-  print_report(a, report, out);
+  print_report(a, scale, report, out);
 }
 
 }  // namespace

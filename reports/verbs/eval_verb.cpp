@@ -119,8 +119,10 @@ void check_test_views(const Scene& scene, const fs::path& dataset) {
 }
 
 struct EvalArguments {
-  std::string run, predictions, dataset, method, depth = "planar", axes = "opencv", mesh;
+  std::string run, predictions, dataset, method, depth = "planar", axes = "opencv", mesh,
+                                                 gltf_up = "y";
   std::optional<double> max_pixels, image_ratio;
+  double depth_scale = 0;  // metres; 0: not given
   bool all = false, force = false;
 };
 
@@ -268,7 +270,9 @@ int eval_predictions(const CommonOptions& common, const EvalArguments& arguments
       spec,
       {Json(arguments.depth).get<DepthConvention>(),
        Json(arguments.axes).get<NormalAxes>(),
-       arguments.mesh}
+       arguments.mesh,
+       arguments.gltf_up,
+       arguments.depth_scale}
   );
   log::info(notes.front());  // whose renders they are
   for (std::size_t i = 1; i < notes.size(); ++i) log::warn(notes[i]);
@@ -296,10 +300,15 @@ void add_prediction_options(CLI::App& verb, CLI::Option& predictions, EvalArgume
   add("--depth-kind", arguments.depth, "of their depth: along z, or along rays")
       ->check(CLI::IsMember({"planar", "ray"}))
       ->capture_default_str();
+  add("--depth-scale", arguments.depth_scale, "metres of a step of depth as integers")
+      ->check(above_zero());
   add("--normal-axes", arguments.axes, "of their normals")
       ->check(CLI::IsMember({"opencv", "opengl", "world"}))
       ->capture_default_str();
-  add("--mesh", arguments.mesh, "PLY of theirs; otherwise looked for");
+  add("--mesh", arguments.mesh, "PLY, GLB, OBJ or STL of theirs; otherwise looked for");
+  add("--gltf-up", arguments.gltf_up, "of a GLB: axis that was up in the frame it was written from")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
   add("--max-pixels", arguments.max_pixels, "shrink images below this area")
       ->check(at_least_zero());
   add("--image-ratio", arguments.image_ratio, "shrink both sides of images to this share")

@@ -8,11 +8,13 @@
 #include <ImfTiledOutputFile.h>
 #include <libdeflate.h>
 #include <turbojpeg.h>
+#include <webp/encode.h>
 
 #include <memory>
 
 #include "glint/core/npy.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_stored.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace glint::fuzz {
@@ -23,11 +25,14 @@ bool read_as(const char* name, std::string_view bytes) {
   const fs::path file = input_file(bytes, name);
   accepts([&] { read_image_size(file); });
   accepts([&] { read_mask(file); });
+  accepts([&] { read_alpha(file); });
   accepts([&] { read_image(file, 3); });
   return accepts([&] { read_image(file); });
 }
 bool read_png(std::string_view bytes) { return read_as("input.png", bytes); }
 bool read_jpeg(std::string_view bytes) { return read_as("input.jpg", bytes); }
+bool read_webp(std::string_view bytes) { return read_as("input.webp", bytes); }
+bool read_bmp(std::string_view bytes) { return read_as("input.bmp", bytes); }
 bool read_exr(std::string_view bytes) { return read_as("input.exr", bytes); }
 bool read_npy(std::string_view bytes) { return read_as("input.npy", bytes); }
 
@@ -158,6 +163,42 @@ std::vector<FuzzInput> jpeg_seeds() {
       jpeg("progressive", TJSAMP_420, TJFLAG_PROGRESSIVE)};
 }
 
+// ---- WebP and BMP
+
+FuzzInput webp(const char* name, int channels, bool lossless) {
+  constexpr int kWidth = 9, kHeight = 6;
+  std::uint8_t pixels[kWidth * kHeight * 4];
+  for (std::size_t i = 0; i < sizeof pixels; ++i) pixels[i] = static_cast<std::uint8_t>(7 * i);
+  std::uint8_t* bytes = nullptr;
+  const int stride = channels * kWidth;
+  std::size_t size = 0;
+  if (lossless)
+    size = WebPEncodeLosslessRGBA(pixels, kWidth, kHeight, stride, &bytes);
+  else if (channels == 4)
+    size = WebPEncodeRGBA(pixels, kWidth, kHeight, stride, 75, &bytes);
+  else
+    size = WebPEncodeRGB(pixels, kWidth, kHeight, stride, 75, &bytes);
+  FuzzInput seed{name, std::string(reinterpret_cast<const char*>(bytes), size)};
+  WebPFree(bytes);
+  return seed;
+}
+
+std::vector<FuzzInput> webp_seeds() {
+  return {webp("rgb", 3, false), webp("rgba", 4, false), webp("lossless", 4, true)};
+}
+
+// 2 x 2 pixels behind a palette of two colours.
+FuzzInput bmp(const char* name, int bits) {
+  constexpr std::size_t kPixelsAt = 54 + 8;
+  std::string file(kPixelsAt, '\0');
+  file.replace(0, 2, "BM");
+  file[10] = static_cast<char>(kPixelsAt), file[14] = 40, file[18] = 2, file[22] = 2;
+  file[26] = 1, file[28] = static_cast<char>(bits), file[46] = 2;
+  return {name, file + std::string(16, '\1')};
+}
+
+std::vector<FuzzInput> bmp_seeds() { return {bmp("8", 8), bmp("24", 24), bmp("32", 32)}; }
+
 // ---- EXR
 
 constexpr int kWidth = 9, kHeight = 6;
@@ -213,14 +254,14 @@ std::string npy_bytes(std::string_view type, std::string_view shape, std::string
 
 std::vector<FuzzInput> npy_seeds() {
   std::vector<FuzzInput> seeds;
-  for (const char* type : {"<f2", "<f4", "<f8", "|u1", "<u2", "|b1"}) {
+  for (const char* type : {"<f2", "<f4", "<f8", "|u1", "<u2", "|b1", ">f4"}) {
     const auto bytes = static_cast<std::size_t>(type[2] - '0');
-    seeds.push_back({std::string(type + 1), npy_bytes(type, "2, 3", std::string(6 * bytes, '\x3e'))}
-    );
+    seeds.push_back({type, npy_bytes(type, "2, 3", std::string(6 * bytes, '\x3e'))});
   }
   std::string by_columns = npy_bytes("<f4", "2, 3", std::string(24, '\x3e'));
   by_columns.replace(by_columns.find("False"), 5, "True ");
   seeds.push_back({"by columns", by_columns});
+  seeds.push_back({"batch", npy_bytes("|u1", "1, 3, 1, 2", "abcdef")});
   seeds.push_back({"rgba", npy_bytes("|u1", "1, 2, 4", "abcdefgh")});
   seeds.push_back(written("own", [](const fs::path& p) { write_npy(p, ramp(3, 2, 3)); }));
   return seeds;
@@ -231,6 +272,8 @@ std::vector<FuzzInput> npy_seeds() {
 GLINT_REGISTER(FuzzTarget, {"png", read_png, png_seeds})
 GLINT_REGISTER(FuzzTarget, {"png_rows", read_rows, seeds_of_rows})
 GLINT_REGISTER(FuzzTarget, {"jpeg", read_jpeg, jpeg_seeds})
+GLINT_REGISTER(FuzzTarget, {"webp", read_webp, webp_seeds})
+GLINT_REGISTER(FuzzTarget, {"bmp", read_bmp, bmp_seeds})
 GLINT_REGISTER(FuzzTarget, {"exr", read_exr, exr_seeds})
 GLINT_REGISTER(FuzzTarget, {"npy", read_npy, npy_seeds})
 

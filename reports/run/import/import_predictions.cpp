@@ -6,11 +6,15 @@
 #include <cmath>
 
 #include "datasets/map_files.h"
+#include "datasets/released_truth.h"
 #include "datasets/scene_index.h"
 #include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/image_files_depth.h"
 #include "glint/scene/image_files_stored.h"
+#include "glint/scene/mesh_files.h"
 #include "metrics/depth.h"
+#include "metrics/mesh_frames.h"
 #include "metrics/normal.h"
 #include "reports/run/import/map_values.h"
 #include "reports/run/records/earlier_run.h"
@@ -47,10 +51,11 @@ Image in_rows(Image image, ImageSize size) {
   return rows;
 }
 
-Image read_for(const fs::path& path, int channels, const View& view) {
-  Image image = without_truth(
-      with_exit_code(ExitCode::kBadPrediction, [&] { return read_image(path, channels); }), view
-  );
+Image read_for(const fs::path& path, int channels, const View& view, const DepthSteps& scale = {}) {
+  const auto read = [&] {
+    return scale.known() ? read_depth(path, scale) : read_image(path, channels);
+  };
+  Image image = without_truth(with_exit_code(ExitCode::kBadPrediction, read), view);
   image = in_rows(std::move(image), view.camera.size());
   GLINT_CHECK(
       image.size() == view.camera.size(),
@@ -63,9 +68,27 @@ Image read_for(const fs::path& path, int channels, const View& view) {
       view.name,
       view.camera.width,
       view.camera.height,
-      image.width() == 2 * view.camera.width ? " (truth and render side by side? crop them)" : ""
+      (image.width() == 2 * view.camera.width ? " (truth and render side by side? crop them)" : ""
+      ) + orientation_hint(path)
   );
   return image;
+}
+
+// Of depth as integers; nothing of floats. Errors (kBadPrediction): nobody says the step.
+DepthSteps depth_scale_for(
+    const std::map<std::string, fs::path>& files, const View& view, const ImportOptions& options
+) {
+  const auto depth = files.find("depth");
+  if (depth == files.end()) return {};
+  return with_exit_code(ExitCode::kBadPrediction, [&]() -> DepthSteps {
+    if (!stores_integers(depth->second)) return {};
+    if (options.depth_scale > 0) return {options.depth_scale, "--depth-scale"};
+    DepthSteps scale = exported_depth_scale(depth->second);
+    if (const Image& truth = view.truth["depth"]; !scale.known() && !truth.empty())
+      scale = depth_scale_by(depth->second, truth);
+    if (!scale.known()) read_depth(depth->second, scale);  // which says what is missing
+    return scale;
+  });
 }
 
 std::vector<std::string> names_of(const std::vector<View>& views) {
@@ -78,13 +101,15 @@ MapSet read_view(
     const std::map<std::string, fs::path>& files,
     const View& view,
     const ImportOptions& options,
+    const DepthSteps& scale,
     OddValues& odd
 ) {
   MapSet rendered;
   for (const MapRow& row : maps()) {
     const auto file = files.find(std::string(row.id));
     if (file == files.end()) continue;
-    Image& map = rendered[row] = read_for(file->second, row.channels(), view);
+    Image& map = rendered[row] =
+        read_for(file->second, row.channels(), view, row.id == "depth" ? scale : DepthSteps());
     if (row.kind == MapKind::kColor)
       with_exit_code(ExitCode::kBadPrediction, [&] { check_finite(file->second, map); });
     if (row.kind == MapKind::kNormal) to_our_normals(map, view.camera, options.normals);
@@ -129,6 +154,7 @@ void note_conventions(
     const std::map<std::string, fs::path>& files,
     const View& view,
     const ImportOptions& options,
+    const DepthSteps& scale,
     std::vector<std::string>& notes
 ) {
   constexpr std::array kDepths = {DepthConvention::kPlanar, DepthConvention::kRay};
@@ -145,7 +171,7 @@ void note_conventions(
       ));
   };
   if (files.contains("depth") && !view.truth["depth"].empty()) {
-    const Image depth = read_for(files.at("depth"), 1, view);
+    const Image depth = read_for(files.at("depth"), 1, view, scale);
     const auto error = [&](DepthConvention kind) { return absrel(depth, view, kind); };
     note(
         "depth", better_convention<DepthConvention>(options.depth, kDepths, error), "--depth-kind"
@@ -174,7 +200,7 @@ void note_absent(
         unread.empty() ? std::string()
                        : fmt::format(
                              "; {} lies there, but is none of the files that are read: EXR, NPY or "
-                             "TIFF in {}/, one a test view",
+                             "TIFF in {}/, one a test view (depth also as grey PNG of 16 bits)",
                              unread.front().string(),
                              map
                          )
@@ -201,9 +227,34 @@ void note_lossy(const PredictionFiles& found, std::vector<std::string>& notes) {
     ));
 }
 
-void copy_mesh(const fs::path& from, const fs::path& to) {
+// Returns its corners.
+std::vector<Vec3f> copy_mesh(const fs::path& from, const fs::path& to, GltfUp up) {
   GLINT_CHECK(is_file(from), kBadPrediction, "{}: no such mesh", from.string());
-  write_file(to, with_exit_code(ExitCode::kBadPrediction, [&] { return read_file(from); }));
+  return with_exit_code(ExitCode::kBadPrediction, [&] {
+    TriangleMesh mesh = read_mesh(from, NonFinite::kKeep);
+    if (is_gltf(from) && up == GltfUp::kZ) turn_back(mesh);
+    if (mesh_extension(from) == ".ply")
+      write_file(to, read_file(from));
+    else
+      write_mesh_ply(to, mesh);
+    return std::move(mesh.vertices);
+  });
+}
+
+void import_mesh(
+    const fs::path& from,
+    const RunSpec& spec,
+    const ImportOptions& options,
+    std::vector<std::string>& notes
+) {
+  const GltfUp up = options.gltf_up == "z" ? GltfUp::kZ : GltfUp::kY;
+  const std::vector<Vec3f> corners = copy_mesh(from, spec.folder / "mesh.ply", up);
+  const fs::path truth = true_mesh(spec.dataset_folder);
+  if (!is_file(truth)) return;
+  const TriangleMesh expected = read_mesh(truth, NonFinite::kKeep);
+  const NamedCorners found{from, corners}, wanted{truth, expected.vertices};
+  for (std::string doubt : {mesh_unit_doubt(found, wanted), gltf_up_doubt(found, wanted, up)})
+    if (!doubt.empty()) notes.push_back(std::move(doubt));
 }
 
 }  // namespace
@@ -244,8 +295,13 @@ std::vector<std::string> import_predictions(
         "ranked beside psnr"
     );
   note_lossy(found, notes);
+  const DepthSteps scale = depth_scale_for(found.views.front(), scene.test.front(), options);
+  if (scale.known())
+    notes.push_back(
+        fmt::format("depth of integers: steps of {} m, as {} says", scale.metres, scale.from)
+    );
   note_absent(folder, found, scene.test.front(), notes);
-  note_conventions(found.views.front(), scene.test.front(), options, notes);
+  note_conventions(found.views.front(), scene.test.front(), options, scale, notes);
   remove_renders(spec.folder / "renders");
   write_run_spec(
       spec,
@@ -255,14 +311,14 @@ std::vector<std::string> import_predictions(
   );
   OddValues odd;
   for (std::size_t i = 0; i < scene.test.size(); ++i) {
-    const MapSet rendered = read_view(found.views[i], scene.test[i], options, odd);
+    const MapSet rendered = read_view(found.views[i], scene.test[i], options, scale, odd);
     if (const std::string problem = color_range_problem(rendered["rgb"]); !problem.empty())
       notes.push_back(fmt::format("{}: {}", found.views[i].at("rgb").string(), problem));
     write_render(view_folder(spec.folder, scene.test[i].name), rendered, eight_bit);
   }
   for (std::string& note : odd.notes()) notes.push_back(std::move(note));
   const fs::path mesh = options.mesh.empty() ? found.mesh : fs::path(options.mesh);
-  if (!mesh.empty()) copy_mesh(mesh, spec.folder / "mesh.ply");
+  if (!mesh.empty()) import_mesh(mesh, spec, options, notes);
   if (write_strips.here()) write_strips(spec.folder, scene.test);
   return notes;
 }

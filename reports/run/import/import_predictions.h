@@ -27,12 +27,16 @@ struct ImportOptions {
   DepthConvention depth = DepthConvention::kPlanar;
   NormalAxes normals = NormalAxes::kOpencv;
   std::string mesh;  // file; empty: the one that find_predictions() finds
+  std::string gltf_up = "y";
+  double depth_scale = 0;  // metres of a step of integers; 0: found, or an error
 
   template <class V>
   void visit(V&& v) {
     v("depth", depth, "planar: z in metres; ray: distance along the ray");
     v("normals", normals, "opencv, opengl or world");
     v("mesh", mesh, "mesh to score; empty: found in the folder");
+    v("gltf_up", gltf_up, "of a mesh as glTF: the axis that was up before, y or z");
+    v("depth_scale", depth_scale, "metres of a step of depth as integers; 0: found, or none");
   }
 };
 

@@ -7,6 +7,8 @@
 
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
+#include "glint/scene/image_files_stored.h"
+#include "glint/scene/mesh_files.h"
 #include "reports/run/records/run_folder.h"
 
 namespace glint {
@@ -58,7 +60,10 @@ const std::vector<MapPlaces> kOtherPrograms = {
       "test/ours_*/vis/depth_*.tiff",
       "vis/depth_*.tiff",
       "*_depth.exr",
-      "*_depth.npy"}},
+      "*_depth.npy",
+      "depth/*.png",  // of 16 bits, see are_steps()
+      "depths/*.png",
+      "*_depth.png"}},
     {"normal",
      {"normal/*.exr",
       "normal/*.npy",
@@ -84,7 +89,12 @@ MapPlaces places_of(const MapRow& row) {
   if (!row.file.empty()) add(fmt::format("renders/{}.npy", row.id));
   for (const MapPlaces& other : kOtherPrograms)
     if (other.map == row.id)
-      for (const std::string& place : other.places) add(place);
+      for (const std::string& place : other.places) {
+        add(place);
+        if (!place.ends_with(".jpg")) continue;
+        for (const char* ending : {".jpeg", ".webp", ".bmp"})
+          add(fs::path(place).replace_extension(ending).string());
+      }
   if (!row.file.empty())
     for (const char* extension : {"exr", "npy"}) add(fmt::format("{}/*.{}", row.id, extension));
   return found;
@@ -136,11 +146,18 @@ std::vector<FoundFile> files_in(const fs::path& folder, const std::string& patte
   return files;
 }
 
+// Depth as PNG is mostly a picture for people: of 16 bits it counts steps.
+bool are_steps(const std::vector<FoundFile>& files) {
+  return integer_range(files.front().path) == 65535 && !is_colored_png(files.front().path);
+}
+
 std::vector<FoundFile> find_map(const fs::path& root, const MapPlaces& map) {
   for (const fs::path place : map.places) {
     const fs::path folder = resolve(root, place.parent_path().string());
     if (folder.empty()) continue;
-    if (auto files = files_in(folder, place.filename().string()); !files.empty()) return files;
+    auto files = files_in(folder, place.filename().string());
+    const bool is_picture = map.map == "depth" && place.extension() == ".png";
+    if (!files.empty() && (!is_picture || are_steps(files))) return files;
   }
   return {};
 }
@@ -194,7 +211,7 @@ fs::path find_mesh(const fs::path& root) {
         "mesh/tsdf_fusion_interface_post.ply",
         "mesh/tsdf_fusion_post.ply",
         "mesh/tsdf_fusion.ply"})
-    if (is_file(root / candidate)) return root / candidate;
+    if (const fs::path mesh = mesh_or_model(root / candidate); is_file(mesh)) return mesh;
   const fs::path train = resolve(root, "train/ours_*");
   for (const char* candidate : {"fuse_post.ply", "fuse_unbounded_post.ply", "fuse.ply"})
     if (!train.empty() && is_file(train / candidate)) return train / candidate;

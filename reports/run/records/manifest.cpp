@@ -93,8 +93,7 @@ std::string size_text(ImageSize size) { return fmt::format("{}x{}", size.width, 
 ImageSize first_picture_size(const fs::path& folder) {
   for (const fs::path& file : list_files_below(folder / "images")) {
     const std::string extension = file.extension().string();
-    if (extension == ".png" || extension == ".jpg" || extension == ".jpeg")
-      return read_image_size(file);
+    if (std::ranges::count(kPictureExtensions, extension) > 0) return read_image_size(file);
   }
   return {};
 }

@@ -10,7 +10,7 @@
 #include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
-#include "glint/scene/ply.h"
+#include "glint/scene/mesh_files.h"
 #include "metrics/mesh/clean.h"
 #include "metrics/mesh/cull.h"
 #include "reports/run/bench/mesh_stage.h"
@@ -81,7 +81,7 @@ class MeshPainter {
   std::optional<SeenMesh> look_at(const fs::path& path) const {
     try {
       if (!is_there(path)) return std::nullopt;
-      const TriangleMesh mesh = clean_mesh(read_mesh_ply(path, NonFinite::kKeep)).mesh;
+      const TriangleMesh mesh = clean_mesh(read_mesh(path, NonFinite::kKeep)).mesh;
       SeenMesh seen{shade(mesh), render_mesh(mesh, camera_), {}, kept(mesh)};
       seen.scored = render_mesh(seen.kept, camera_);
       return seen;

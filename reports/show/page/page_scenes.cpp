@@ -10,6 +10,7 @@
 #include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
+#include "glint/scene/mesh_files.h"
 #include "reports/run/records/script_text.h"
 #include "reports/show/page/mesh_part.h"
 #include "reports/show/page/probe_values.h"
@@ -250,7 +251,7 @@ class SceneWriter {
     progress_.advance(owner.front() == 'r');  // the truth's is no step: no run has it
     TriangleMesh mesh;
     try {
-      mesh = read_mesh_ply(path);
+      mesh = read_mesh(path);
     } catch (const Error& error) {
       log::warn(fmt::format("report: shown as missing: {}", error.what()));
       return;

@@ -230,6 +230,44 @@ TEST_CASE("NPY arrays in Fortran order are read as those in C order") {
   CHECK(largest_difference(a, b) == 0);
 }
 
+// Values 10 y + x + 100 c as float32.
+std::string float_at(int y, int x, int c, bool big_endian = false) {
+  const float value = static_cast<float>(10 * y + x + 100 * c);
+  std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+  if (big_endian) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+TEST_CASE("NPY of big-endian values, of a batch of one and with channels first is read") {
+  const TempFolder folder;
+  const auto read = [&](const std::string& type, const std::string& shape, int channels_first) {
+    std::string bytes;
+    const auto add = [&](int y, int x, int c) { bytes += float_at(y, x, c, type[0] == '>'); };
+    for (int outer = 0; outer < (channels_first ? 3 : 1); ++outer)
+      for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 5; ++x)
+          for (int c = 0; c < (channels_first ? 1 : 3); ++c) add(y, x, channels_first ? outer : c);
+    write_file(folder / "x.npy", npy_file(npy_dictionary(type, shape), bytes));
+    return read_image(folder / "x.npy");
+  };
+  const Image expected = read("<f4", "(2, 5, 3)", false);
+  CHECK(expected.at(4, 1, 2) == 214);
+  for (const char* type : {"<f4", ">f4", "=f4"}) {
+    CHECK(largest_difference(read(type, "(2, 5, 3)", false), expected) == 0);
+    CHECK(largest_difference(read(type, "(1, 2, 5, 3)", false), expected) == 0);
+    CHECK(largest_difference(read(type, "(3, 2, 5)", true), expected) == 0);
+    CHECK(largest_difference(read(type, "(1, 1, 3, 2, 5)", true), expected) == 0);
+  }
+  std::string grey;
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 5; ++x) grey += float_at(y, x, 0);
+  write_file(folder / "g.npy", npy_file(npy_dictionary("<f4", "(1, 2, 5)"), grey));
+  const Image map = read_image(folder / "g.npy");
+  CHECK(map.size() == ImageSize{5, 2});
+  CHECK(map.channels() == 1);
+  CHECK(map.at(4, 1) == 14);
+}
+
 TEST_CASE("every cut-off PNG, EXR and NPY is an error that names the file") {
   const TempFolder folder;
   const Image image = random_map({9, 6}, 3, 0, 1, 7);

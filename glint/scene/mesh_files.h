@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Triangle meshes in whatever format they come.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glint/core/files.h"
+#include "glint/core/service.h"
+#include "glint/core/triangle_mesh.h"
+#include "glint/core/vec.h"
+#include "glint/scene/ply.h"
+
+namespace glint {
+
+// In lower case, best first. PLY may also hold points.
+inline const std::vector<std::string> kMeshExtensions{".ply", ".glb", ".gltf", ".obj", ".stl"};
+
+// Of the name, in lower case.
+std::string mesh_extension(const fs::path& path);
+
+// OBJ, glTF 2.0 and STL (assimp, library glint_models): axes and units as stored, of glTF that is y
+// up, in metres; colours of vertices where all parts have them. Errors (kBadReference): as ply.h.
+inline constinit Service<TriangleMesh(const fs::path&)> read_model{
+    "reading OBJ, glTF and STL", "write the mesh as PLY"};
+
+// By its extension. Errors (kBadReference): read_mesh_ply()'s, read_model's, another extension.
+TriangleMesh read_mesh(const fs::path& path, NonFinite vertices = NonFinite::kReject);
+
+// glTF has y up. Programs whose frames have z up turn what they write: (x, y, z) to (x, z, -y).
+enum class GltfUp { kY, kZ };  // which axis was up before
+bool is_gltf(const fs::path& path);
+inline Vec3f turned_back(Vec3f v) { return {v.x, -v.z, v.y}; }
+void turn_back(TriangleMesh& mesh);
+
+// `path`, or where nothing is there, a mesh of that name with another of kMeshExtensions; `path`
+// where there is none either.
+fs::path mesh_or_model(const fs::path& path);
+
+}  // namespace glint
