@@ -251,10 +251,10 @@ TEST_CASE("an empty file is an error with the side's exit code") {
 
 TEST_CASE("another format is an error that names the one that is read") {
   const Pair pair;
-  const Result result = pair.run_file("x.obj", "v 0 0 0\n");
+  const Result result = pair.run_file("x.fbx", "");
   CHECK(result.code == 2);
   CHECK_THAT(
-      result.err, Contains("x.obj: '.obj' files are not read; expected") && Contains(".ply")
+      result.err, Contains("x.fbx: '.fbx' files are not read; expected") && Contains(".ply")
   );
 }
 
@@ -338,6 +338,122 @@ TEST_CASE("faces with a corner that is not finite are dropped with a count") {
   });
   CHECK_THAT(told, Contains("nan.ply: 2 of 3 faces have a corner that is not finite"));
   CHECK(surfaces["prediction"]["cleaning"]["not_finite"] == 2);
+}
+
+namespace {
+
+// A mesh as glTF with its buffer inside, the node scaled.
+std::string gltf_of(const TriangleMesh& mesh, double scale) {
+  std::string bytes;
+  const auto add = [&](const auto& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (const auto& face : mesh.faces)
+    for (const std::int32_t corner : face) add(corner);
+  const std::size_t positions_at = bytes.size();
+  for (const Vec3f& v : mesh.vertices) add(v);
+  Json accessors = {
+      {{"bufferView", 0}, {"componentType", 5125}, {"count", 3 * mesh.faces.size()}},
+      {{"bufferView", 1}, {"componentType", 5126}, {"count", mesh.vertices.size()}}};
+  accessors[0]["type"] = "SCALAR";
+  accessors[1]["type"] = "VEC3";
+  const Json json = {
+      {"asset", {{"version", "2.0"}}},
+      {"scene", 0},
+      {"scenes", {{{"nodes", {0}}}}},
+      {"nodes", {{{"mesh", 0}, {"scale", {scale, scale, scale}}}}},
+      {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 1}}}, {"indices", 0}}}}}}},
+      {"buffers", {{{"byteLength", bytes.size()}}}},
+      {"bufferViews",
+       {{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", positions_at}},
+        {{"buffer", 0},
+         {"byteOffset", positions_at},
+         {"byteLength", bytes.size() - positions_at}}}},
+      {"accessors", accessors}};
+  const auto padded = [](std::string text, char with) {
+    text.resize((text.size() + 3) / 4 * 4, with);
+    return text;
+  };
+  const std::string text = padded(json.dump(), ' '), buffer = padded(bytes, '\0');
+  std::string file = "glTF";
+  const auto add_number = [&](std::uint32_t n) { file.append(reinterpret_cast<char*>(&n), 4); };
+  add_number(2);
+  add_number(static_cast<std::uint32_t>(28 + text.size() + buffer.size()));
+  add_number(static_cast<std::uint32_t>(text.size()));
+  file += "JSON" + text;
+  add_number(static_cast<std::uint32_t>(buffer.size()));
+  return file + std::string("BIN\0", 4) + buffer;
+}
+
+// Two sides of a box whose axes differ in length.
+TriangleMesh corner_of_box() {
+  TriangleMesh mesh = parallelogram({0, 0, 0}, {1, 0, 0}, {0, 2, 0});
+  const TriangleMesh side = parallelogram({0, 0, 0}, {0, 2, 0}, {0, 0, 4});
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), side.vertices.begin(), side.vertices.end());
+  for (const auto& face : side.faces)
+    mesh.faces.push_back({first + face[0], first + face[1], first + face[2]});
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("the same mesh as PLY of either order, OBJ, STL and glTF scores as the same") {
+  const Pair pair;
+  const auto check = [&](const std::string& name, const std::string& content) {
+    const Result result = pair.run_file(name, content);
+    INFO(name << ": " << result.err);
+    REQUIRE(result.code == 0);
+    CHECK_THAT(result.out, Contains("mesh-cd 0.030000 m"));
+  };
+  // A square of two triangles, 3 cm in front.
+  const std::string corners = "v 0 0 0.03\nv 1 0 0.03\nv 1 1 0.03\nv 0 1 0.03\n";
+  check("plain.obj", corners + "f 1 2 3 4\n");
+  check("texture.obj", corners + "vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\nf 1//1 3//1 4//1\n");
+  check("negative.obj", corners + "f -4 -3 -2\nf -4 -2 -1\n");
+  check(
+      "x.stl",
+      "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0.03\nvertex 1 0 0.03\nvertex 1 1 "
+      "0.03\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0.03\nvertex 1 1 "
+      "0.03\nvertex 0 1 0.03\nendloop\nendfacet\nendsolid x\n"
+  );
+  TriangleMesh tenfold = unit_square(0.03f);
+  for (Vec3f& vertex : tenfold.vertices) vertex = 10.0f * vertex;
+  check("x.glb", gltf_of(tenfold, 0.1));
+  std::string big = ascii_mesh(2, "");
+  big.replace(big.find("ascii"), 5, "binary_big_endian");
+  big.insert(big.find("property list"), "property list uchar float texcoord\n");
+  const auto add = [&](auto value) {
+    std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+    big.append(bytes.rbegin(), bytes.rend());
+  };
+  for (const Vec3f& v : {Vec3f{0, 0, 0.03f}, {1, 0, 0.03f}, {1, 1, 0.03f}, {0, 1, 0.03f}})
+    for (int c = 0; c < 3; ++c) add(v[c]);
+  for (const auto& face : {std::array{0, 1, 2}, {0, 2, 3}}) {
+    add(std::uint8_t{2}), add(0.5f), add(0.25f), add(std::uint8_t{3});
+    for (const std::int32_t corner : face) add(corner);
+  }
+  check("big.ply", big);
+}
+
+TEST_CASE("a glTF that was turned from z up is told of, and turned back on request") {
+  const Pair pair;
+  const TriangleMesh box = corner_of_box();
+  write_mesh_ply(pair.ref, box);
+  TriangleMesh turned = box;
+  for (Vec3f& v : turned.vertices) v = {v.x, v.z, -v.y};
+  write_file(pair / "x.glb", gltf_of(turned, 1));
+  write_file(pair / "same.glb", gltf_of(box, 1));
+  const auto run = [&](const char* file, std::vector<std::string> options) {
+    options.insert(options.begin(), {pair / file, pair.ref, "--json"});
+    return mesh_tool(options).json();
+  };
+  CHECK_THAT(run("x.glb", {})["warnings"].dump(), Contains("give --gltf-up z"));
+  const Json mended = run("x.glb", {"--gltf-up", "z"});
+  CHECK_FALSE(mended.contains("warnings"));
+  CHECK(mended["gltf_up"] == "z");
+  CHECK(mended["metrics"]["mesh-cd"].get<double>() < 1e-6);
+  CHECK_FALSE(run("same.glb", {}).contains("warnings"));
 }
 
 TEST_CASE("a mesh in another unit is scored as metres, with the ratio and the likely unit") {

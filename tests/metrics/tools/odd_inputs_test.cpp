@@ -129,6 +129,46 @@ TEST_CASE("Depth in another unit is scored as metres, with the ratio and the lik
   CHECK(warnings(1000, {"--align", "median"}).empty());
 }
 
+TEST_CASE("Depth as integers counts steps: of a stated length, of an export, or near millimetres") {
+  const test::TempFolder folder;
+  write_exr(folder / "b.exr", depths(1));
+  const auto write_steps = [](const fs::path& file, double step) {
+    Image shares = depths(1);
+    for (float& value : shares.values())
+      value = static_cast<float>(std::nearbyint(static_cast<double>(value) / step) / 65535);
+    write_png16(file, shares);
+  };
+  const auto run_on = [&](const std::string& name, std::vector<std::string> options) {
+    options.insert(options.begin(), {folder / name, folder / "b.exr", "--json"});
+    return run(make_depth_tool(), options);
+  };
+  const auto check = [&](const Result& result, double step, const std::string& from) {
+    INFO(result.err);
+    REQUIRE(result.code == 0);
+    CHECK(result.json()["mean"]["depth-absrel"].get<double>() < step);  // half a step below 2 m
+    const Json steps = result.json()["protocol"]["depth-absrel"]["prediction_steps"];
+    CHECK(steps["metres"].get<double>() == step);
+    CHECK_THAT(steps["from"].get<std::string>(), Contains(from));
+  };
+  write_steps(folder / "mm.png", 0.001);
+  check(run_on("mm.png", {}), 0.001, "near the reference's in millimetres");
+  write_steps(folder / "tum.png", 0.0002);
+  const Result unknown = run_on("tum.png", {});
+  CHECK(unknown.code == 2);
+  CHECK_THAT(
+      unknown.err, Contains("tum.png: integers hold no metres") && Contains("--depth-scale")
+  );
+  check(run_on("tum.png", {"--depth-scale", "0.0002"}), 0.0002, "--depth-scale");
+  write_steps(folder / "capture/depths/0.png", 0.0002);
+  write_file(folder / "capture/scene.json", R"({"side_maps": true, "depth_scale": 0.0002})");
+  check(run_on("capture/depths/0.png", {}), 0.0002, "scene.json");
+  const Result both =
+      run(make_depth_tool(),
+          {folder / "mm.png", folder / "capture/depths/0.png", "--depth-scale", "0.001", "--json"});
+  CHECK(both.json()["mean"]["depth-absrel"].get<double>() == Approx(0.8).epsilon(1e-3));
+  CHECK(both.json()["protocol"]["depth-absrel"]["reference_steps"]["metres"] == 0.001);
+}
+
 TEST_CASE("Predictions as JPEG are scored and told to be lossy, once") {
   const test::TempFolder folder;
   for (const char* name : {"1", "2", "3"}) {

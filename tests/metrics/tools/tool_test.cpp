@@ -429,7 +429,7 @@ TEST_CASE("glint-depth turns distances along rays into planar depth") {
   CHECK(depth_tool({rays, truth, "--json"}).json()["mean"]["depth-absrel"] > 0.02);
 }
 
-TEST_CASE("a PNG holds no metric depth") {
+TEST_CASE("a PNG holds no metric depth by itself") {
   const test::TempFolder folder;
   write_png(folder / "depth.png", golden::make_image(kWidth, kHeight, 1, [](int x, int, int) {
               return 0.2f + 0.02f * static_cast<float>(x);
@@ -440,9 +440,9 @@ TEST_CASE("a PNG holds no metric depth") {
   CHECK(depth_tool({folder / "depth.png", folder / "truth.exr", "--align", "affine"}).code == 0);
 }
 
-TEST_CASE("integers of 16 bits hold no metric depth, whatever the file's name") {
+TEST_CASE("integers of 16 bits hold no metric depth by themselves, whatever the file's name") {
   const test::TempFolder folder;
-  write_integers_npy(folder / "depth.npy", "<u2", 1, std::string(2 * kWidth * kHeight, '\x07'));
+  write_integers_npy(folder / "depth.npy", "<u2", 1, std::string(2 * kWidth * kHeight, '\x7f'));
   write_exr(folder / "truth.exr", golden::true_depth_map(kWidth, kHeight));
   CHECK(depth_tool({folder / "depth.npy", folder / "truth.exr"}).code == 2);
   CHECK(depth_tool({folder / "truth.exr", folder / "depth.npy"}).code == 3);

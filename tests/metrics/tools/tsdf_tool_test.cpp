@@ -77,6 +77,32 @@ TEST_CASE("glint-tsdf fuses a glob of maps by the names of the views") {
   REQUIRE(mesh.faces.size() > 100);
 }
 
+TEST_CASE("glint-tsdf reads depth as integers by the length of a step, and asks for it") {
+  const Maps maps;
+  for (const View& view : small_room().test) {
+    Image shares = view.truth["depth"];
+    for (float& z : shares.values()) z *= 1000.0f / 65535;
+    write_png16(maps.path("steps/" + view.name + ".png"), shares);
+  }
+  const Outcome without = run({maps.path("steps"), maps.room(), "-o", maps.path("m.ply")});
+  CHECK(without.code == static_cast<int>(ExitCode::kBadPrediction));
+  CHECK(without.err.find("integers hold no metres") != std::string::npos);
+  const Outcome with = run(
+      {maps.path("steps"),
+       maps.room(),
+       "-o",
+       maps.path("m.ply"),
+       "--json",
+       "--depth-scale",
+       "0.001"}
+  );
+  REQUIRE(with.code == 0);
+  const Json json = Json::parse(with.out), of_floats = maps.fused({});
+  CHECK(json["steps"]["metres"] == 0.001);
+  const auto triangles = [](const Json& of) { return of["report"]["triangles"].get<double>(); };
+  CHECK(triangles(json) == Approx(triangles(of_floats)).epsilon(0.05));  // rounded to a millimetre
+}
+
 TEST_CASE("glint-tsdf leaves out depths outside of masks") {
   const Maps maps;
   CHECK(maps.fused({})["report"]["num_depths"] == maps.num_depths(1));

@@ -126,6 +126,31 @@ TEST_CASE("Colours that are not finite are refused by file and pixel") {
   CHECK_THROWS_WITH(c.import({}), Catch::Contains(name) && Catch::Contains("pixel (3, 2) is nan"));
 }
 
+TEST_CASE("Depth as 16-bit PNG in millimetres scores as depth, rounded to them") {
+  Case c;
+  fs::remove_all(c.folder / "theirs/depth");
+  double most = 0;  // AbsRel of rounding
+  for (const View& view : test::small_room().test) {
+    Image shares = view.truth["depth"];
+    for (float& z : shares.values()) z *= 1000.0f / 65535;
+    write_png16(c.folder.path() / "theirs/depth" / (view.name + ".png"), shares);
+    for (const float z : view.truth["depth"].values())
+      if (z > 0) most = std::max(most, 0.0005 / static_cast<double>(z));
+  }
+  const auto notes = c.import({.normals = NormalAxes::kOpengl});
+  CHECK_THAT(
+      fmt::format("{}", fmt::join(notes, "; ")),
+      Catch::Contains("depth of integers: steps of 0.001 m, as the median")
+  );
+  CHECK(eval_stage(c.spec, test::small_room()).at("depth-absrel") < most);
+  // Pictures for people are none.
+  for (const View& view : test::small_room().test)
+    write_png(c.folder.path() / "theirs/depth" / (view.name + ".png"), view.truth["depth"]);
+  CHECK_THAT(
+      fmt::format("{}", fmt::join(c.import({}), "; ")), Catch::Contains("no depth maps read")
+  );
+}
+
 TEST_CASE("Maps that the data have and the renders lack are told, with what lies there instead") {
   Case c;
   fs::rename(c.folder / "theirs/depth", c.folder / "theirs/depth_colored");
