@@ -4,6 +4,7 @@
 import numpy as np
 
 from conformance_files import write_cameras, write_exr, write_png
+from conformance_orders import order_vectors
 
 WIDTH, HEIGHT = 24, 16
 PATHS = ["t", "tt", "r", "tr", "rt", "rest"]
@@ -99,6 +100,9 @@ def layer_vectors(values, depth_values, add, source):
         vector(f"layer-{k}-t-iou", (called & glass & mask).sum() / ((called | glass) & mask).sum(),
                "called glass at 0.5 or more, where such a layer is behind glass (1: all)", 1e-9)
         behind_glass = behind_glass | glass
+
+    order_vectors(vector, depths, [d[name_of(k, "depth")] for k in (1, 2, 3, 4)], opens[0],
+                  "points of all layers, pixels that begin with glass or a mirror")
 
     last, found_last = np.zeros_like(depths[0]), d["depth"].copy()
     for k in (4, 3, 2):

@@ -20,6 +20,7 @@ from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 from conformance_files import ROOT, write_cameras, write_exr, write_npy, write_ply, write_png
 from conformance_layers import HEIGHT as LAYERS_HEIGHT, WIDTH as LAYERS_WIDTH, layer_vectors
+from conformance_orders import order_vectors
 from conformance_lpips import alex_lpips, read_weights
 
 NUMPY = f"NumPy {np.__version__}"
@@ -511,6 +512,10 @@ def region_vectors(d, t, glass, clipped):
 
 def behind_vectors(d, t, glass):
     vector = glass_vector
+    order_vectors(
+        lambda key, expected, convention: vector(key, expected, NUMPY, convention, 1e-9),
+        [t["depth"], t["behind_depth"]], [d["depth"], d["behind_depth"]], glass,
+        "points of the first surface and of what is behind glass")
     behind = depth_values(d["behind_depth"][glass], t["behind_depth"][glass])
     vector("behind-absrel", behind["absrel"], NUMPY, "depth of what is behind glass, glass pixels")
     content = t["behind_depth"] - t["depth"] < 1.25

@@ -125,6 +125,8 @@ TEST_CASE("every metric of the protocol is registered once, with direction and p
         "layer-last-coverage",
         "layer-4-mae",
         "layer-3-t-iou",
+        "order-pairs",
+        "order-quadruplets",
         "path-t-psnr",
         "path-rt-psnr"})
     CHECK(ids.count(id) == 1);
