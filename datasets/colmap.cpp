@@ -137,6 +137,14 @@ std::string model_text(const ColmapModel& model) {
   return text;
 }
 
+// RT-Splatting's scenes say which pixels are glass or semi-transparent: by hand, with SAM 2.
+void find_transparent_masks(const fs::path& folder, std::vector<ViewSource>& views) {
+  const fs::path masks = folder / "transparent_masks";
+  if (!is_folder(masks)) return;
+  for (ViewSource& view : views)
+    view.truth["glass"] = masks / fs::path(view.name).filename().replace_extension(".png");
+}
+
 SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
   const fs::path files = find_colmap_model(folder);
   const ColmapModel model = read_colmap_model(files.empty() ? folder / "sparse/0" : files);
@@ -151,6 +159,7 @@ SceneIndex index_folder(const fs::path& folder, const LoadOptions& options) {
       index.problems.push_back(make_finding("camera-field", where, error.what()));
     }
   }
+  find_transparent_masks(folder, index.views);
   index.split_rule = split_views(files / "test.txt", options.test_every, index.views);
   sort_naturally(index.views);
   shorten_names(index.views);

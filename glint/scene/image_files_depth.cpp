@@ -51,6 +51,32 @@ Image read_depth(const fs::path& path, const DepthSteps& scale) {
   return depth;
 }
 
+DepthSteps glassrecon_depth_scale(const fs::path& path) {
+  const fs::path absolute = fs::absolute(path);
+  for (fs::path folder = absolute.parent_path(); folder.has_relative_path();
+       folder = folder.parent_path()) {
+    const std::string name = folder.filename().string();
+    if (name != "evaluation_depths" && name != "completed_depths" && name != "sensor_depths")
+      continue;
+    const fs::path file =
+        folder.parent_path() / "intrinsics" / absolute.filename().replace_extension(".json");
+    if (!is_file(file)) return {};
+    const double scale =
+        number_or(read_json_object(file, ExitCode::kBadReference), "depth_scale", 0);
+    if (!(scale > 0 && std::isfinite(scale))) return {};
+    // Metres of a step, or steps of a metre.
+    return {scale > 1 ? 1 / scale : scale, "intrinsics/" + file.filename().string()};
+  }
+  return {};
+}
+
+Image read_glassrecon_depth(const fs::path& path, const DepthSteps& scale) {
+  Image depth = read_stored(path);
+  for (float& value : depth.values())
+    value = static_cast<float>(static_cast<double>(value) * scale.metres);
+  return depth;
+}
+
 DepthSteps exported_depth_scale(const fs::path& path) {
   fs::path folder = fs::absolute(path).parent_path();
   for (int level = 0; level < 3 && folder.has_relative_path(); ++level) {

@@ -23,6 +23,12 @@ struct DepthSteps {
 // (kBadReference): read_image()'s; integers whose scale is not known.
 Image read_depth(const fs::path& path, const DepthSteps& scale);
 
+// Of GlassRecon (arXiv 2604.18336), whose intrinsics/NAME.json beside evaluation_depths/,
+// completed_depths/ and sensor_depths/ have "depth_scale", by which its values are multiplied, whatever their type.
+DepthSteps glassrecon_depth_scale(const fs::path& path);
+// The same with it. Errors (kBadReference): read_image()'s.
+Image read_glassrecon_depth(const fs::path& path, const DepthSteps& scale);
+
 // Of a file in a folder that says of itself that maps lie there (scene.json with side_maps, as our
 // exports have it), at most three levels up. Errors (kBadReference): a step that is no length.
 DepthSteps exported_depth_scale(const fs::path& path);

@@ -28,7 +28,10 @@ class DepthTool final : public MetricTool {
   }
   FolderLayout prediction_layout() const override { return {{"renders"}, {"depth.exr"}}; }
   std::string reference_map() const override { return "depth"; }
-  FolderLayout reference_layout() const override { return {{"gt/depth"}, {}}; }
+  // A folder of truth of ours, or GlassRecon's: completed where glass was, unknown pixels 0.
+  FolderLayout reference_layout() const override {
+    return {{"gt/depth", "evaluation_depths/depths_npy", "evaluation_depths"}, {}};
+  }
 
   void add_options(CLI::App& app) override {
     app.add_option("--align", alignment_, "fit per image")
@@ -63,8 +66,10 @@ class DepthTool final : public MetricTool {
   // Integers of all pairs have one scale.
   void look_at(const FilePair& first) override {
     if (first.view == nullptr)
-      reference_scale_ =
-          with_exit_code(ExitCode::kBadReference, [&] { return stated_scale(first.reference); });
+      reference_scale_ = with_exit_code(ExitCode::kBadReference, [&] {
+        const DepthSteps steps = glassrecon_depth_scale(first.reference);
+        return depth_scale_ <= 0 && steps.known() ? steps : stated_scale(first.reference);
+      });
     with_exit_code(ExitCode::kBadPrediction, [&] {
       prediction_scale_ = stated_scale(first.prediction);
       if (!stores_integers(first.prediction) || prediction_scale_.known()) return;
@@ -82,6 +87,8 @@ class DepthTool final : public MetricTool {
     return depth;
   }
   Image load_reference(const fs::path& path) const override {
+    if (const DepthSteps scale = glassrecon_depth_scale(path); depth_scale_ <= 0 && scale.known())
+      return read_glassrecon_depth(path, scale);
     return read_depth(path, reference_scale_);
   }
 
