@@ -77,7 +77,7 @@ ViewSource make_view(
   ViewSource view;
   view.name = fs::path(with_slashes(image.name)).lexically_normal().string();
   view.where = std::move(where);
-  view.image = picture_or_copy(folder / "images" / view.name);
+  view.image = picture_called_alike(picture_or_copy(folder / "images" / view.name));
   view.scales_with_image = true;
   const auto camera = model.cameras.find(image.camera_id);
   GLINT_CHECK(
@@ -96,7 +96,7 @@ ViewSource make_view(
 // Names of pictures, one a line.
 std::set<std::string> read_names(const fs::path& path) {
   std::set<std::string> names;
-  std::istringstream file(read_file(path));
+  std::istringstream file(read_text(path));
   for (std::string line; std::getline(file, line);) {
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
     if (!line.empty()) names.insert(fs::path(with_slashes(line)).lexically_normal().string());

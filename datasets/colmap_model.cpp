@@ -155,7 +155,7 @@ std::optional<std::uint64_t> stated_count(std::string_view comment) {
 template <class F>
 std::optional<std::uint64_t> for_each_line(const fs::path& path, bool skip_empty, F&& f) {
   std::optional<std::uint64_t> stated;
-  std::istringstream file(read_file(path));
+  std::istringstream file(read_text(path));
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -287,7 +287,7 @@ Mat3d rotation_of(const ColmapImage& image) {
 }
 
 fs::path find_colmap_model(const fs::path& folder) {
-  for (const char* model : {"sparse/0", "sparse"})
+  for (const char* model : {"sparse/0", "sparse", "colmap/sparse/0"})  // ns-process-data's
     if (!binary_or_text(folder / model, "cameras").empty() &&
         !binary_or_text(folder / model, "images").empty())
       return folder / model;

@@ -57,7 +57,8 @@ struct ColmapModel {
   std::vector<ColmapImage> images;  // as in the file
 };
 
-// sparse/0 or sparse below `folder`, whichever has cameras and images; empty: neither.
+// sparse/0, sparse or colmap/sparse/0 below `folder`, the first that has cameras and images; empty:
+// none.
 fs::path find_colmap_model(const fs::path& folder);
 // cameras and images there; .bin where there are both.
 ColmapModel read_colmap_model(const fs::path& model);

@@ -17,7 +17,7 @@ constexpr double kMaxSide = 1 << 20;  // pixels; more is no image size
 class YamlFile {
  public:
   explicit YamlFile(const fs::path& path) : path_(path.string()) {
-    const std::string text = read_file(path);
+    const std::string text = read_text(path);
     GLINT_CHECK(!text.empty(), kBadReference, "{}: the file is empty", path_);
     root_ = parse_camera_yaml(text, path_);
     GLINT_CHECK(

@@ -54,7 +54,7 @@ double number_of(const std::string& word, const fs::path& path) {
 // A matrix of 9 or 16 numbers as 4x4.
 std::array<double, 16> read_matrix(const fs::path& path) {
   std::vector<double> values;
-  std::istringstream words(read_file(path));
+  std::istringstream words(read_text(path));
   for (std::string word; words >> word && values.size() <= kMostNumbers;)
     values.push_back(number_of(word, path));
   GLINT_CHECK(

@@ -8,6 +8,7 @@
 #include "glint/core/error.h"
 #include "glint/core/presence.h"
 #include "glint/core/rng.h"
+#include "glint/core/similar_names.h"
 #include "glint/core/utf8.h"
 
 namespace glint {
@@ -33,6 +34,18 @@ fs::path picture_or_copy(const fs::path& path) {
     if (is_file(copy)) return copy;
   }
   return path;
+}
+
+fs::path picture_called_alike(const fs::path& path) {
+  if (is_file(path) || !is_folder(path.parent_path())) return path;
+  const std::string key = name_key(path.filename().string());
+  fs::path found;
+  for (const fs::path& file : list_entries(path.parent_path())) {
+    if (name_key(file.filename().string()) != key || !is_file(file)) continue;
+    if (!found.empty()) return path;
+    found = file;
+  }
+  return found.empty() ? path : found;
 }
 
 std::string folder_name(const fs::path& folder) {

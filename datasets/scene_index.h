@@ -72,6 +72,9 @@ std::string with_slashes(std::string path);
 // A picture, or its smaller copy where captures ship those alone, or beside it: of DIR_2/, DIR_4/
 // and DIR_8/ the largest that has it. `path` itself where none has.
 fs::path picture_or_copy(const fs::path& path);
+// A picture, or the only file of its folder that is called alike (similar_names.h); `path` itself
+// where there is none, or several.
+fs::path picture_called_alike(const fs::path& path);
 
 // The folder's own name, also for "." and names that end in a slash.
 std::string folder_name(const fs::path& folder);

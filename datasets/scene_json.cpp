@@ -121,7 +121,7 @@ void read_scene_json(const fs::path& folder, SceneIndex& index) {
   const fs::path path = folder / "scene.json";
   if (!is_there(path)) return;
   try {
-    const std::string text = read_file(path);
+    const std::string text = read_text(path);
     check_json_text(text, path);
     const Json json = Json::parse(text);
     index.name = json.value("name", index.name);

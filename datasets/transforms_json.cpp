@@ -212,7 +212,7 @@ fs::path find_image(const fs::path& folder, const std::string& file_path) {
   for (const std::string& ending : endings)
     if (const fs::path found = picture_or_copy(path.string() + ending); is_file(found))
       return found;
-  return path;
+  return picture_called_alike(path);
 }
 
 ViewSource make_view(const FrameReader& reader, const fs::path& folder) {
@@ -234,7 +234,7 @@ ViewSource make_view(const FrameReader& reader, const fs::path& folder) {
 
 Json parse_transforms(const fs::path& path) {
   try {
-    const std::string text = read_file(path);
+    const std::string text = read_text(path);
     check_json_text(text, path);
     Json json = Json::parse(text);
     GLINT_CHECK(

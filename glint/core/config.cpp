@@ -92,7 +92,7 @@ Json parse_json(std::string_view text) {
 
 Json read_json_object(const std::filesystem::path& path, ExitCode code) {
   return with_exit_code(code, [&] {
-    const std::string text = read_file(path);
+    const std::string text = read_text(path);
     check_json_text(text, path);
     Json json = Json::parse(text, nullptr, false);
     GLINT_CHECK(

@@ -105,6 +105,18 @@ std::string read_file(const fs::path& path) {
   return content;
 }
 
+std::string read_text(const fs::path& path) {
+  std::string text = read_file(path);
+  GLINT_CHECK(
+      !text.starts_with("\xff\xfe") && !text.starts_with("\xfe\xff"),
+      kBadReference,
+      "{}: text in UTF-16, as Windows PowerShell's '>' writes it; save it as UTF-8",
+      path.string()
+  );
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  return text;
+}
+
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   std::error_code code;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), code);

@@ -24,6 +24,10 @@ void check_exists(const fs::path& path, std::string_view what = "file");
 // (kEnvironment) it is larger than the memory.
 std::string read_file(const fs::path& path);
 
+// The same of text that people and other programs write: without the mark of UTF-8 in front that
+// programs on Windows put there. Errors besides (kBadReference): UTF-16.
+std::string read_text(const fs::path& path);
+
 // What `read` makes of a file; where memory runs out, the error names the file and its size.
 template <class F>
 auto read_within_memory(const fs::path& path, F&& read) {

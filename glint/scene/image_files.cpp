@@ -89,6 +89,15 @@ void fail_incomplete(const fs::path& path, std::string_view format, std::string_
 
 namespace {
 
+// For what phones and cameras write.
+std::string_view conversion_of(std::string_view extension) {
+  for (const std::string_view phone : {".heic", ".heif", ".avif"})
+    if (extension == phone) return "; heif-convert makes a PNG of it";
+  for (const std::string_view raw : {".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", ".orf"})
+    if (extension == raw) return "; a camera's raw file: darktable-cli or dcraw develops it";
+  return "";
+}
+
 Image read_by_extension(const fs::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".exr") return detail::read_exr(path);
@@ -97,10 +106,11 @@ Image read_by_extension(const fs::path& path) {
   GLINT_CHECK(
       std::ranges::count(kPictureExtensions, extension) > 0,
       kBadReference,
-      "{}: unknown image format '{}'; expected {}, .exr, .npy or .tiff",
+      "{}: unknown image format '{}'; expected {}, .exr, .npy or .tiff{}",
       path.string(),
       extension,
-      fmt::join(kPictureExtensions, ", ")
+      fmt::join(kPictureExtensions, ", "),
+      conversion_of(extension)
   );
   return detail::read_picture(path);
 }

@@ -114,11 +114,20 @@ Format parse_format(const std::string& path, const std::vector<std::string_view>
   fail(path, fmt::format("PLY format '{}'; expected ascii or binary_little_endian", format));
 }
 
+// For viewers' own formats of Gaussians.
+std::string_view export_of(std::string_view path) {
+  for (const std::string_view viewer : {".splat", ".ksplat", ".spz", ".sog"})
+    if (path.ends_with(viewer))
+      return "; a viewer's format, with less in it than was trained: take the trainer's PLY, or "
+             "export one (SuperSplat)";
+  return "";
+}
+
 Header parse_header(const std::string& path, std::string_view file) {
   Header header;
   bool has_format = false;
   if (!file.starts_with("ply\n") && !file.starts_with("ply\r\n"))
-    fail(path, "not a PLY file (the first line is not 'ply')");
+    fail(path, fmt::format("not a PLY file (the first line is not 'ply'){}", export_of(path)));
   for (std::size_t at = 0;;) {
     const std::size_t end = file.find('\n', at);
     if (end == std::string_view::npos)

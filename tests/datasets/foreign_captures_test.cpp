@@ -165,3 +165,96 @@ TEST_CASE("pictures of Blender's transforms lie on white") {
   CHECK(scene.train.at(2).rgb.at(5, 30, 1) == 1);
   CHECK_THAT(scene.data_notes.at(0), Contains("laid on white"));
 }
+
+namespace {
+
+// As Windows' Notepad and PowerShell leave text.
+std::string with_mark(const std::string& text) { return "\xef\xbb\xbf" + text; }
+std::string as_utf16(const std::string& text) {
+  std::string wide = "\xff\xfe";
+  for (const char c : text) wide += {c, '\0'};
+  return wide;
+}
+
+}  // namespace
+
+TEST_CASE("text with a mark of UTF-8 and Windows' line ends is read, UTF-16 is refused by its name"
+) {
+  Capture capture;
+  const std::string json = capture.json.dump();
+  write_file(capture / "transforms.json", with_mark(json));
+  CHECK(capture.load().train.size() + capture.load().test.size() == 10);
+  write_file(capture / "transforms.json", as_utf16(json));
+  CHECK_THAT(
+      bad_reference([&] { capture.load(); }),
+      Contains("transforms.json: text in UTF-16") && Contains("save it as UTF-8")
+  );
+  const TempFolder colmap;
+  for (int i = 0; i < 3; ++i)
+    write_png(
+        colmap / fmt::format("images/{}.png", i), Image(12, 8, 3, 0.3f * static_cast<float>(i))
+    );
+  write_file(
+      colmap / "sparse/0/images.txt",
+      with_mark("1 1 0 0 0 0 0 0 1 0.png\r\n\r\n2 1 0 0 0 1 0 0 1 1.png\r\n\r\n3 1 0 0 0 2 0 0 1 "
+                "2.png\r\n\r\n")
+  );
+  write_file(colmap / "sparse/0/cameras.txt", with_mark("1 PINHOLE 12 8 10 10 6 4\r\n"));
+  write_file(colmap / "sparse/0/points3D.txt", with_mark("1 0 0 5 128 128 128 0\r\n"));
+  write_file(colmap / "sparse/0/test.txt", with_mark("1.png\r\n"));
+  const Scene scene = load_scene(colmap.path(), {});
+  REQUIRE(scene.test.size() == 1);
+  CHECK(scene.test[0].name == "1");
+  write_file(colmap / "sparse/0/test.txt", as_utf16("1.png\r\n"));
+  CHECK_THAT(
+      bad_reference([&] { load_scene(colmap.path(), {}); }), Contains("test.txt: text in UTF-16")
+  );
+}
+
+TEST_CASE(
+    "a picture whose name differs in case or in how marks are written is found, if one alone does"
+) {
+  Capture capture;
+  const auto rename = [&](const char* from, const std::string& to) {
+    fs::rename(capture / (std::string("images/") + from), capture / ("images/" + to));
+  };
+  rename("0001.png", "0001.PNG");
+  rename("0002.png", "cafe\xcc\x81.png");  // e, then a mark: macOS
+  for (Json& frame : capture.json["frames"])
+    if (frame["file_path"].get<std::string>().ends_with("0002.png"))
+      frame["file_path"] = "images/caf\xc3\xa9.png";
+  capture.store();
+  CHECK(capture.load().train.size() + capture.load().test.size() == 10);
+  fs::copy_file(capture / "images/0001.PNG", capture / "images/0001.Png");
+  CHECK_THAT(bad_reference([&] { capture.load(); }), Contains("0001.png"));
+}
+
+TEST_CASE("what phones, cameras and Python write is refused with what to do") {
+  Capture capture;
+  fs::rename(capture / "images/0001.png", capture / "images/0001.heic");
+  for (Json& frame : capture.json["frames"])
+    if (frame["file_path"].get<std::string>().ends_with("0001.png"))
+      frame["file_path"] = "images/0001.heic";
+  capture.store();
+  CHECK_THAT(
+      bad_reference([&] { capture.load(); }), Contains("0001.heic") && Contains("heif-convert")
+  );
+  std::string text = capture.json.dump();
+  const std::size_t matrix = text.find("[[");
+  text.replace(matrix + 2, text.find(',', matrix) - matrix - 2, "NaN");
+  write_file(capture / "transforms.json", text);
+  CHECK_THAT(bad_reference([&] { capture.load(); }), Contains("NaN and Infinity"));
+}
+
+TEST_CASE("the model of ns-process-data is found where transforms.json is not beside it") {
+  const TempFolder folder;
+  for (int i = 0; i < 2; ++i)
+    write_png(
+        folder / fmt::format("images/{}.png", i), Image(12, 8, 3, 0.4f * static_cast<float>(i))
+    );
+  const fs::path model = folder / "colmap/sparse/0";
+  write_file(model / "images.txt", "1 1 0 0 0 0 0 0 1 0.png\n\n2 1 0 0 0 1 0 0 1 1.png\n\n");
+  write_file(model / "cameras.txt", "1 PINHOLE 12 8 10 10 6 4\n");
+  write_file(model / "points3D.txt", "1 0 0 5 128 128 128 0\n");
+  CHECK(load_scene(folder.path(), {}).train.size() == 1);
+}

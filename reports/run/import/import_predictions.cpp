@@ -18,6 +18,7 @@
 #include "metrics/normal.h"
 #include "reports/run/import/map_values.h"
 #include "reports/run/records/earlier_run.h"
+#include "reports/run/records/lossy_renders.h"
 #include "reports/show/pictures/strip.h"
 
 namespace glint {
@@ -221,9 +222,10 @@ void note_lossy(const PredictionFiles& found, std::vector<std::string>& notes) {
   });
   if (count > 0)
     notes.push_back(fmt::format(
-        "{} of {} pictures are JPEG, which is lossy: scores are of what the compression left",
+        "{} of {} pictures are {}: scores are of what the compression left",
         count,
-        found.views.size()
+        found.views.size(),
+        kLossyRenders
     ));
 }
 

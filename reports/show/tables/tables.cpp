@@ -9,6 +9,7 @@
 
 #include "glint/method.h"
 #include "reports/run/records/cell_filter.h"
+#include "reports/run/records/lossy_renders.h"
 #include "reports/run/records/manifest.h"
 #include "reports/show/tables/method_title.h"
 #include "reports/show/tables/published.h"
@@ -95,6 +96,15 @@ bool is_imported(const std::vector<Record>& records, const std::string& method) 
   });
 }
 
+bool is_lossy(const std::vector<Record>& records, const std::string& method) {
+  return std::ranges::any_of(records, [&](const Record& record) {
+    return record.cell.method == method &&
+           std::ranges::any_of(record.warnings, [](const std::string& warning) {
+             return warning.find(kLossyRenders) != std::string::npos;
+           });
+  });
+}
+
 // Those of the definition, then every other method with records that it does not leave out.
 std::vector<TableRowDefinition> rows_of(
     const TableDefinition& definition, const std::vector<Record>& records
@@ -109,7 +119,9 @@ std::vector<TableRowDefinition> rows_of(
       extra.insert(record.cell.method);
   for (const std::string& method : extra) rows.push_back({method, method_title(method), ""});
   for (TableRowDefinition& row : rows) {
-    if (is_imported(records, row.method)) row.title += " (renders imported)";
+    if (is_imported(records, row.method))
+      row.title +=
+          is_lossy(records, row.method) ? " (renders imported as JPEG)" : " (renders imported)";
     if (!is_rival(row.method)) row.title += kNoRival;
   }
   return rows;

@@ -308,6 +308,12 @@ TEST_CASE("headers that are no PLY's are errors that say why") {
   );
 }
 
+TEST_CASE("formats of viewers are refused with what to export") {
+  const TempFolder folder;
+  write_file(folder / "x.splat", std::string(64, '\x07'));
+  CHECK_THAT(bad_reference([&] { read_surfel_ply(folder / "x.splat"); }), Contains("SuperSplat"));
+}
+
 TEST_CASE("every cut-off PLY is an error") {
   const TempFolder folder;
   write_mesh_ply(folder / "x.ply", tetrahedron());

@@ -148,6 +148,36 @@ TEST_CASE("an import that fails leaves the one before") {
   CHECK(run({"eval", "--run", imported, "--quiet", "--out", place / "out"}) == 0);
 }
 
+TEST_CASE("an import says where it is recorded in terms of what was asked") {
+  const Place place;
+  for (const View& view : test::small_room().test)
+    write_png(place / "good/rgb" / (view.name + ".png"), view.rgb);
+  const auto said = [&](std::vector<std::string> more) {
+    std::vector<std::string> args = {
+        "eval",
+        "--predictions",
+        place / "good",
+        "--dataset",
+        test::small_room_folder(),
+        "--method",
+        "theirs",
+        "--out",
+        place / "out",
+        "--data",
+        place / "data",
+        "--force"};
+    args.insert(args.end(), more.begin(), more.end());
+    return test::captured(2, [&] { CHECK(run(args) == 0); });
+  };
+  const std::string out = (place / "out").string();
+  CHECK_THAT(
+      said({}),
+      Catch::Contains("recorded in " + out + "/ci/records.jsonl") &&
+          Catch::Contains(fmt::format("below --out {}, in the store of profile ci", out))
+  );
+  CHECK_THAT(said({"--profile", "smoke"}), Catch::Contains("in the store of profile smoke"));
+}
+
 TEST_CASE("a method's name that leads out of the results is a usage error") {
   const Place place;
   for (const char* name : {"../../../x", "/x", "a/../b", "x\n"})

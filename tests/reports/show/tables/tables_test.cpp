@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // tests/reports/golden: a fixed records.jsonl and the tables that it must give.
 #include "reports/show/tables/tables.h"
+#include "reports/run/records/lossy_renders.h"
 
 #include <catch2/catch.hpp>
 
@@ -172,7 +173,10 @@ TEST_CASE("an import of another scene or size stands apart, and the others keep 
     const std::string note = fmt::format("mean over {} at {} only", scene, size);
     CHECK(table_markdown(table).find(note) != std::string::npos);
     CHECK(table.notes[0].find("room_1 at 160x90, room_2 at 160x90") != std::string::npos);
+    CHECK(table.rows.back().title.ends_with("(renders imported)"));
   }
+  import.warnings = {fmt::format("8 of 8 pictures are {}: scores", kLossyRenders)};
+  CHECK(table_with("room_1", "160x90").rows.back().title.ends_with("(renders imported as JPEG)"));
   // The same scene at the same size: a mean over fewer scenes.
   const Table table = table_with("room_1", "160x90");
   CHECK(cell_of(table, "mine", "psnr").note == "mean over 1 of 2 scenes");
