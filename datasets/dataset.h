@@ -16,14 +16,17 @@
 namespace glint {
 
 struct LoadOptions {
-  ImageSize size;            // images resized to this (area average); {0, 0}: as stored
-  double image_ratio = 1;    // or: both sides times this, rounded down (area average)
-  double max_pixels = 0;     // or: shrink so that width x height stays below; 0: as stored
-  int test_every = 8;        // view index % test_every == 0 is a test view (unless the data says)
-  bool test_only = false;    // leave the training views out where that saves reading them
-  bool with_truth = true;    // read gt/
-  bool with_priors = true;   // read diffrens/
-  std::string loader;        // id of the loader to take; empty: the surest
+  ImageSize size;           // images resized to this (area average); {0, 0}: as stored
+  double image_ratio = 1;   // or: both sides times this, rounded down (area average)
+  double max_pixels = 0;    // or: shrink so that width x height stays below; 0: as stored
+  int test_every = 8;       // view index % test_every == 0 is a test view (unless the data says)
+  bool test_only = false;   // leave the training views out where that saves reading them
+  bool with_truth = true;   // read gt/
+  bool with_priors = true;  // read diffrens/
+  std::string loader;       // id of the loader to take; empty: the surest
+  // What is made of alpha: black, white, mask or stored (docs/LOADERS.md); empty: what the folder
+  // says of itself, else its format's custom.
+  std::string background;
   PriorOptions priors = {};  // how those of other programs are stored
 };
 

@@ -389,6 +389,7 @@ LoaderSpec indexed_loader(
     of_folder.folder = folder;
     read_scene_json(folder, of_folder);
     refuse_outside(folder, of_folder);
+    if (!options.background.empty()) set_alpha_use(options.background, "background", of_folder);
     mark_alpha_use(of_folder);
     add_released_truth(folder, of_folder);
     return of_folder;

@@ -22,6 +22,13 @@ Scene load(const fs::path& path, const LoadOptions& options) {
       "`dataset pack`",
       path.string()
   );
+  GLINT_CHECK(
+      options.background.empty(),
+      kUsage,
+      "{}: a packed scene keeps the pictures that it was packed with; give --background to "
+      "`dataset pack`",
+      path.string()
+  );
   Scene scene = read_packed_scene(path);
   for (std::vector<View>* views : {&scene.train, &scene.test})
     for (View& view : *views) {

@@ -97,8 +97,13 @@ void read_depth_scale(const Json& json, const std::string& where, SceneIndex& in
 }
 
 void read_alpha_use(const Json& json, const std::string& where, SceneIndex& index) {
-  if (!json.contains("alpha")) return;
-  const std::string use = json["alpha"].get<std::string>();
+  if (json.contains("alpha"))
+    set_alpha_use(json["alpha"].get<std::string>(), where + ": alpha", index);
+}
+
+}  // namespace
+
+void set_alpha_use(const std::string& use, const std::string& where, SceneIndex& index) {
   const std::map<std::string, AlphaUse> uses{
       {"black", AlphaUse::kBlack},
       {"white", AlphaUse::kWhite},
@@ -107,15 +112,13 @@ void read_alpha_use(const Json& json, const std::string& where, SceneIndex& inde
   GLINT_CHECK(
       uses.contains(use),
       kBadReference,
-      "{}: alpha is '{}'; expected black or white (what transparent pictures lie on), mask (what "
-      "is transparent does not count) or stored (colours as in the file)",
+      "{} is '{}'; expected black or white (what transparent pictures lie on), mask (what is "
+      "transparent does not count) or stored (colours as in the file)",
       where,
       use
   );
   for (ViewSource& view : index.views) view.alpha = uses.at(use);
 }
-
-}  // namespace
 
 void read_scene_json(const fs::path& folder, SceneIndex& index) {
   const fs::path path = folder / "scene.json";

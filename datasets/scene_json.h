@@ -15,4 +15,8 @@ namespace glint {
 // file nothing happens. Errors (kBadReference): no JSON object; names of no view.
 void read_scene_json(const fs::path& folder, SceneIndex& index);
 
+// What is made of alpha, of all views; `where` opens the message. Errors (kBadReference): no such
+// use.
+void set_alpha_use(const std::string& use, const std::string& where, SceneIndex& index);
+
 }  // namespace glint

@@ -7,6 +7,14 @@ namespace glint {
 
 void add_load_options(CLI::App& verb, LoadOptions& load) {
   verb.add_option("--loader", load.loader, "loader that reads it, by id; empty: the surest");
+  verb.add_option(
+          "--background",
+          load.background,
+          "what pictures with alpha lie on: black, white, mask (transparent pixels do not count) "
+          "or "
+          "stored; else as scene.json says"
+  )
+      ->check(CLI::IsMember({"black", "white", "mask", "stored"}));
   PriorOptions& priors = load.priors;
   verb.add_option("--priors", priors.folder, "folder with priors as other programs write them");
   verb.add_option(

@@ -125,6 +125,15 @@ TEST_CASE("transparent pictures are laid on black, on white, or masked, as the f
   CHECK(white.rgb.at(5, 20, 2) == Approx((240.0 * 64 + 255.0 * (255 - 64)) / (255 * 255)));
   CHECK(white.rgb.at(5, 30, 1) == 1);
   CHECK(capture.scene.spec_hash != hash);
+  LoadOptions options;
+  options.background = "black";  // goes before what the folder says
+  const Scene asked = load_scene(capture.path(), options);
+  CHECK(asked.spec_hash == hash);
+  CHECK(asked.train.at(2).rgb.at(5, 30, 1) == 0);
+  options.background = "green";
+  CHECK_THAT(
+      bad_reference([&] { load_scene(capture.path(), options); }), Contains("background is 'green'")
+  );
   const View& stored = capture.with(R"({"alpha": "stored"})");
   CHECK(stored.rgb.at(5, 30, 2) == 1);
   CHECK(stored.rgb.at(5, 30, 1) == 0);
