@@ -229,6 +229,20 @@ void note_lossy(const PredictionFiles& found, std::vector<std::string>& notes) {
     ));
 }
 
+void note_orientation(const PredictionFiles& found, std::vector<std::string>& notes) {
+  for (const auto& files : found.views) {
+    const fs::path& picture = files.at("rgb");
+    const int orientation = stated_orientation(picture);
+    if (orientation == 1) continue;
+    notes.push_back(fmt::format(
+        "{} states {}, perhaps others too; pixels are taken as stored",
+        picture.string(),
+        orientation_words(orientation)
+    ));
+    return;
+  }
+}
+
 // Returns its corners.
 std::vector<Vec3f> copy_mesh(const fs::path& from, const fs::path& to, GltfUp up) {
   GLINT_CHECK(is_file(from), kBadPrediction, "{}: no such mesh", from.string());
@@ -297,6 +311,7 @@ std::vector<std::string> import_predictions(
         "ranked beside psnr"
     );
   note_lossy(found, notes);
+  note_orientation(found, notes);
   const DepthSteps scale = depth_scale_for(found.views.front(), scene.test.front(), options);
   if (scale.known())
     notes.push_back(

@@ -10,6 +10,7 @@
 
 #include "glint/scene/image_files.h"
 #include "reports/run/bench/stages.h"
+#include "tests/support/exif.h"
 #include "tests/support/small_room.h"
 #include "tests/support/write_jpeg.h"
 
@@ -124,6 +125,16 @@ TEST_CASE("Colours that are not finite are refused by file and pixel") {
   }
   const std::string name = test::small_room().test.front().name + ".exr";
   CHECK_THROWS_WITH(c.import({}), Catch::Contains(name) && Catch::Contains("pixel (3, 2) is nan"));
+}
+
+TEST_CASE("An orientation that EXIF states in renders is noted") {
+  Case c;
+  const fs::path file =
+      c.folder.path() / "theirs/rgb" / (test::small_room().test.back().name + ".png");
+  write_file(file, test::png_with_exif(read_file(file), 6, true));
+  CHECK_THAT(
+      fmt::format("{}", fmt::join(c.import({}), "; ")), Catch::Contains("states EXIF orientation 6")
+  );
 }
 
 TEST_CASE("Depth as 16-bit PNG in millimetres scores as depth, rounded to them") {
