@@ -6,9 +6,7 @@
 #include <span>
 #include <string>
 
-#include "glint/core/files.h"
-#include "glint/core/vec.h"
-#include "glint/scene/mesh_files.h"
+#include "glint/core/gltf_axes.h"
 
 namespace glint {
 

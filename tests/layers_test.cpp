@@ -468,6 +468,7 @@ TEST_CASE(
       "glint/drawing/",
       "glint/render/trace_embree.cpp",
       "glint/scene/image_files_resize.cpp",
+      "glint/scene/model_files.cpp",
       "metrics/feature_net_onednn.cpp",
       "metrics/fusion/clusters.cpp",
       "metrics/fusion/tsdf_open3d.cpp",

@@ -24,7 +24,8 @@ struct DepthSteps {
 Image read_depth(const fs::path& path, const DepthSteps& scale);
 
 // Of GlassRecon (arXiv 2604.18336), whose intrinsics/NAME.json beside evaluation_depths/,
-// completed_depths/ and sensor_depths/ have "depth_scale", by which its values are multiplied, whatever their type.
+// completed_depths/ and sensor_depths/ have "depth_scale", by which its values are multiplied,
+// whatever their type.
 DepthSteps glassrecon_depth_scale(const fs::path& path);
 // The same with it. Errors (kBadReference): read_image()'s.
 Image read_glassrecon_depth(const fs::path& path, const DepthSteps& scale);

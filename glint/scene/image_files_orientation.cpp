@@ -18,7 +18,7 @@ using detail::big_endian;
 // Bytes of a file at any place; fewer, or none, where it ends before.
 class Bytes {
  public:
-  explicit Bytes(const fs::path& path) : in_(open_file(path)) {}
+  explicit Bytes(std::istream& in) : in_(in) {}
 
   std::string at(std::uint64_t place, std::size_t count) {
     constexpr std::uint64_t kFarthest = 1ull << 40;
@@ -32,7 +32,7 @@ class Bytes {
   }
 
  private:
-  std::ifstream in_;
+  std::istream& in_;
 };
 
 // A number of a TIFF, whose first letters say in which order its bytes are.
@@ -84,7 +84,8 @@ std::optional<int> in_png(Bytes& file) {
 }  // namespace
 
 int stated_orientation(const fs::path& path) {
-  Bytes file(path);
+  auto in = open_file(path);
+  Bytes file(in);
   const std::string head = file.at(0, 4);
   std::optional<int> stated;
   if (head.starts_with("\xff\xd8"sv)) stated = in_jpeg(file);

@@ -38,11 +38,6 @@ TriangleMesh read_mesh(const fs::path& path, NonFinite vertices) {
   return mesh;
 }
 
-bool is_gltf(const fs::path& path) {
-  const std::string extension = mesh_extension(path);
-  return extension == ".glb" || extension == ".gltf";
-}
-
 void turn_back(TriangleMesh& mesh) {
   for (Vec3f& vertex : mesh.vertices) vertex = turned_back(vertex);
 }

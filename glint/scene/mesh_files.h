@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "glint/core/files.h"
+#include "glint/core/gltf_axes.h"
 #include "glint/core/service.h"
 #include "glint/core/triangle_mesh.h"
-#include "glint/core/vec.h"
 #include "glint/scene/ply.h"
 
 namespace glint {
@@ -27,11 +27,7 @@ inline constinit Service<TriangleMesh(const fs::path&)> read_model{
 // By its extension. Errors (kBadReference): read_mesh_ply()'s, read_model's, another extension.
 TriangleMesh read_mesh(const fs::path& path, NonFinite vertices = NonFinite::kReject);
 
-// glTF has y up. Programs whose frames have z up turn what they write: (x, y, z) to (x, z, -y).
-enum class GltfUp { kY, kZ };  // which axis was up before
-bool is_gltf(const fs::path& path);
-inline Vec3f turned_back(Vec3f v) { return {v.x, -v.z, v.y}; }
-void turn_back(TriangleMesh& mesh);
+void turn_back(TriangleMesh& mesh);  // of a glTF, each corner by turned_back() (gltf_axes.h)
 
 // `path`, or where nothing is there, a mesh of that name with another of kMeshExtensions; `path`
 // where there is none either.
