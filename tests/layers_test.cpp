@@ -454,8 +454,7 @@ TEST_CASE("No function is longer than 60 lines") {
   CHECK(seen > 200);
 }
 
-// What a lean build does without stays in the files of libraries that it leaves out (NEEDS in their
-// CMakeLists.txt): nothing else would build there.
+// What a lean build does without stays in files of libraries that it leaves out (NEEDS in CMake).
 TEST_CASE(
     "Only optional libraries meet OpenCV, cairo, Open3D, CGAL, Embree, Bullet, assimp, yaml-cpp "
     "and oneDNN"

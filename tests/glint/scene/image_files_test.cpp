@@ -289,7 +289,8 @@ TEST_CASE("a picture under a wrong name, an unknown format and a missing file ar
   const TempFolder folder;
   write_file(folder / "x.png", "not a picture");
   CHECK_THAT(
-      bad_reference([&] { read_image(folder / "x.png"); }), Contains("neither PNG, JPEG, WebP nor BMP")
+      bad_reference([&] { read_image(folder / "x.png"); }),
+      Contains("neither PNG, JPEG, WebP nor BMP")
   );
   CHECK_THAT(
       bad_reference([&] { read_image(folder / "x.gif"); }), Contains("unknown image format")
