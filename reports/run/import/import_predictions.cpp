@@ -315,7 +315,7 @@ std::vector<std::string> import_predictions(
   const DepthSteps scale = depth_scale_for(found.views.front(), scene.test.front(), options);
   if (scale.known())
     notes.push_back(
-        fmt::format("depth of integers: steps of {} m, as {} says", scale.metres, scale.from)
+        fmt::format("depth of integers: steps of {} m (by {})", scale.metres, scale.from)
     );
   note_absent(folder, found, scene.test.front(), notes);
   note_conventions(found.views.front(), scene.test.front(), options, scale, notes);

@@ -151,7 +151,7 @@ TEST_CASE("Depth as 16-bit PNG in millimetres scores as depth, rounded to them")
   const auto notes = c.import({.normals = NormalAxes::kOpengl});
   CHECK_THAT(
       fmt::format("{}", fmt::join(notes, "; ")),
-      Catch::Contains("depth of integers: steps of 0.001 m, as the median")
+      Catch::Contains("depth of integers: steps of 0.001 m (by the median")
   );
   CHECK(eval_stage(c.spec, test::small_room()).at("depth-absrel") < most);
   // Pictures for people are none.
