@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "glint/core/error.h"
 #include "glint/core/npy.h"
 #include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
@@ -91,12 +92,13 @@ bool is_colored_png(const fs::path& path) {
 
 bool is_jpeg(const fs::path& path) { return is_file(path) && beginning_of(path, 2) == "\xff\xd8"; }
 
-bool has_alpha(const fs::path& path) {
+bool has_alpha(const fs::path& path) try {
   const std::string file = beginning_of(path);
   if (file.starts_with("\x89PNG")) return png_has_alpha(file);
   if (is_webp(file)) return webp_has_alpha(file);
-  if (is_tiff(file)) return tiff_has_alpha.here() && tiff_has_alpha(path);
-  return false;
+  return is_tiff(file) && tiff_has_alpha.here() && tiff_has_alpha(path);
+} catch (const Error&) {
+  return false;  // what reads the picture has the message
 }
 
 Image read_composed(const fs::path& path, int channels, float background) {

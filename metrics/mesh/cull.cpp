@@ -120,7 +120,7 @@ void check_parts(const TriangleMesh& mesh, double max_edge_m) {
       faces <= kMostFaces,
       kUsage,
       "culling: with max_edge_m (--max-edge) {} the mesh would have {:.2g} faces, expected at most "
-      "{:.0g}; use longer edges",
+      "{:.0g}; use longer edges, or metres where the mesh is in a smaller unit",
       max_edge_m,
       faces,
       kMostFaces

@@ -145,7 +145,7 @@ std::string bmp(int bits, int height, const std::string& palette, const std::str
          little_bytes(40, 4) + little_bytes(2, 4) +
          little_bytes(static_cast<std::uint32_t>(height), 4) + little_bytes(1, 2) +
          little_bytes(static_cast<std::uint32_t>(bits), 2) + little_bytes(0, 4) +
-         little_bytes(0, 12) + little_bytes(static_cast<std::uint32_t>(palette.size() / 4), 4) +
+         std::string(12, '\0') + little_bytes(static_cast<std::uint32_t>(palette.size() / 4), 4) +
          little_bytes(0, 4) + palette + pixels;
 }
 
@@ -161,6 +161,13 @@ TEST_CASE("pictures with alpha are laid on a grey in PNG, WebP and TIFF") {
     write_tiff(folder / "x.tif", premultiplied);
     check_composed(folder / "x.tif");
   }
+}
+
+TEST_CASE("of a damaged picture the reader tells, not the look for alpha") {
+  const TempFolder folder;
+  write_file(folder / "x.tif", "II*");
+  CHECK_FALSE(has_alpha(folder / "x.tif"));
+  CHECK_THAT(bad_reference([&] { read_composed(folder / "x.tif", 3, 0); }), Contains("x.tif"));
 }
 
 TEST_CASE("transparent colours of a PNG's palette, and a colour that counts as transparent") {
