@@ -12,6 +12,7 @@
 #include "datasets/recorded_files.h"
 #include "datasets/scene_index.h"
 #include "glint/core/error.h"
+#include "glint/core/middle.h"
 #include "glint/core/parallel.h"
 #include "glint/core/presence.h"
 #include "glint/core/rng.h"
@@ -121,26 +122,6 @@ bool is_seen(Vec3d point, const std::vector<ViewSource>& views) {
     const double height = view.camera.height > 0 ? view.camera.height : 2 * view.camera.cy;
     return pixel.x >= 0 && pixel.y >= 0 && pixel.x < width && pixel.y < height;
   });
-}
-
-double middle_of(std::vector<double> values) {
-  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), half, values.end());
-  return *half;
-}
-
-// The median distance from the median place.
-double spread_of(const std::vector<Vec3d>& places) {
-  Vec3d middle{};
-  std::vector<double> values(places.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    std::ranges::transform(places, values.begin(), [&](Vec3d place) { return place[axis]; });
-    middle[axis] = middle_of(values);
-  }
-  std::ranges::transform(places, values.begin(), [&](Vec3d place) {
-    return length(place - middle);
-  });
-  return middle_of(values);
 }
 
 // Points that are spread a hundred times as wide as the cameras, or as little, are mostly in

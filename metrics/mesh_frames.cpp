@@ -7,25 +7,19 @@
 #include <vector>
 
 #include "glint/core/error.h"
+#include "glint/core/middle.h"
 #include "metrics/length_units.h"
-#include "metrics/reduce.h"
 
 namespace glint {
 namespace {
 
 bool is_finite(Vec3f v) { return std::isfinite(v.x + v.y + v.z); }
 
-// The median distance of its corners from their median: stray ones do not count.
 double extent_of(std::span<const Vec3f> corners) {
-  std::vector<double> axes[3], distances;
+  std::vector<Vec3d> places;
   for (const Vec3f corner : corners)
-    if (is_finite(corner))
-      for (int c = 0; c < 3; ++c) axes[c].push_back(static_cast<double>(corner[c]));
-  if (axes[0].empty()) return 0;
-  const Vec3d middle{median(axes[0]), median(axes[1]), median(axes[2])};
-  for (const Vec3f corner : corners)
-    if (is_finite(corner)) distances.push_back(length(cast<double>(corner) - middle));
-  return median(distances);
+    if (is_finite(corner)) places.push_back(cast<double>(corner));
+  return spread_of(places);
 }
 
 struct Bounds {

@@ -4,8 +4,7 @@
 
 Every value comes from NumPy, SciPy or scikit-image, or from a closed form that is stated with it;
 none from this project's programs. `glint-bench selftest` runs the vectors. Needs Debian's
-python3-skimage; LPIPS vectors need --weights lpips_alex_v0.1.safetensors (else the old values stay).
-Run from the repository's root: scripts/make_conformance.py [--weights FILE]
+python3-skimage; LPIPS needs --weights lpips_alex_v0.1.safetensors (else the old values stay). Run it at the root.
 """
 
 import argparse
@@ -20,8 +19,8 @@ from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 from conformance_files import ROOT, write_cameras, write_exr, write_npy, write_ply, write_png
 from conformance_layers import HEIGHT as LAYERS_HEIGHT, WIDTH as LAYERS_WIDTH, layer_vectors
-from conformance_orders import order_vectors
 from conformance_lpips import alex_lpips, read_weights
+from conformance_orders import order_vectors
 
 NUMPY = f"NumPy {np.__version__}"
 SKIMAGE = f"scikit-image {skimage.__version__}"
@@ -512,10 +511,9 @@ def region_vectors(d, t, glass, clipped):
 
 def behind_vectors(d, t, glass):
     vector = glass_vector
-    order_vectors(
-        lambda key, expected, convention: vector(key, expected, NUMPY, convention, 1e-9),
-        [t["depth"], t["behind_depth"]], [d["depth"], d["behind_depth"]], glass,
-        "points of the first surface and of what is behind glass")
+    order_vectors(lambda key, expected, words: vector(key, expected, NUMPY, words, 1e-9),
+                  [t["depth"], t["behind_depth"]], [d["depth"], d["behind_depth"]], glass,
+                  "points of the first surface and of what is behind glass")
     behind = depth_values(d["behind_depth"][glass], t["behind_depth"][glass])
     vector("behind-absrel", behind["absrel"], NUMPY, "depth of what is behind glass, glass pixels")
     content = t["behind_depth"] - t["depth"] < 1.25

@@ -6,6 +6,7 @@
 
 #include "glint/core/config.h"
 #include "glint/core/error.h"
+#include "glint/core/middle.h"
 #include "glint/core/presence.h"
 #include "glint/scene/image_files.h"
 #include "glint/scene/image_files_stored.h"
@@ -20,18 +21,6 @@ Image read_stored(const fs::path& path) {
   if (range > 0)
     for (float& value : depth.values()) value = std::nearbyint(value * range);
   return depth;
-}
-
-// Of prediction over reference; 0: no pixel has both.
-double median_ratio(ImageView depth, ImageView reference) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
-    if (depth.data[i] > 0 && reference.data[i] > 0 && std::isfinite(reference.data[i]))
-      ratios.push_back(static_cast<double>(depth.data[i]) / static_cast<double>(reference.data[i]));
-  if (ratios.empty()) return 0;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return *middle;
 }
 
 }  // namespace

@@ -49,6 +49,10 @@ inline std::uint32_t big_endian(std::string_view bytes) {
   return value;
 }
 
+inline bool is_webp(std::string_view file) {
+  return file.starts_with("RIFF") && file.substr(0, 12).ends_with("WEBP");
+}
+
 // Of an EXR. Errors (kBadReference): deep, in parts, or with sizes that the file cannot fill.
 void check_exr_header(const fs::path& path, std::string_view file);
 

@@ -16,13 +16,11 @@ namespace {
 using namespace std::string_view_literals;
 using detail::big_endian;
 using detail::ClaimedSize;
+using detail::is_webp;
 
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
 constexpr std::string_view kJpegSignature = "\xff\xd8\xff"sv;
 
-bool is_webp(std::string_view file) {
-  return file.starts_with("RIFF"sv) && file.substr(0, 12).ends_with("WEBP"sv);
-}
 bool is_bmp(std::string_view file) { return file.starts_with("BM"sv); }
 
 // Each scan of a progressive picture is work for all of its pixels; encoders write about ten. The

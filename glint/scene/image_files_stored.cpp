@@ -14,6 +14,10 @@
 namespace glint {
 namespace {
 
+using detail::is_webp;
+
+constexpr std::size_t kColorType =
+    25;  // of PNG: after signature, IHDR's length and name, sizes, depth
 constexpr std::size_t kBeginning = 10 + 65535;  // bytes: the longest header of NPY's format 1
 
 std::string beginning_of(const fs::path& path, std::size_t count = kBeginning) {
@@ -33,7 +37,7 @@ int range_of_type(std::string_view npy_type) {
 
 // Of IHDR: samples of a palette have 8 bits.
 int range_of_png(std::string_view file) {
-  constexpr std::size_t kDepth = 24, kColorType = 25;
+  constexpr std::size_t kDepth = 24;
   if (file.size() <= kColorType) return 255;
   const int depth = file[kColorType] == 3 ? 8 : std::clamp<int>(file[kDepth], 1, 16);
   return (1 << depth) - 1;
@@ -41,14 +45,9 @@ int range_of_png(std::string_view file) {
 
 bool is_tiff(std::string_view file) { return file.starts_with("II") || file.starts_with("MM"); }
 
-bool is_webp(std::string_view file) {
-  return file.starts_with("RIFF") && file.substr(0, 12).ends_with("WEBP");
-}
-
 // Of a file's beginning: a channel, or the chunk tRNS, which stands in front of the pixels; text
 // that is longer than the beginning hides it.
 bool png_has_alpha(std::string_view file) {
-  constexpr std::size_t kColorType = 25;  // after signature, IHDR's length and name, sizes, depth
   constexpr std::size_t kSignature = 8, kOverhead = 12;  // length, type, checksum
   if (file.size() <= kColorType) return false;
   if (file[kColorType] == 4 || file[kColorType] == 6) return true;
@@ -83,7 +82,6 @@ int integer_range(const fs::path& path) {
 }
 
 bool is_colored_png(const fs::path& path) {
-  constexpr std::size_t kColorType = 25;
   constexpr int kColor = 2;  // a bit of the colour type
   const std::string file = beginning_of(path, kColorType + 1);
   return file.starts_with("\x89PNG") && file.size() > kColorType &&

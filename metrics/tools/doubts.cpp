@@ -7,17 +7,15 @@
 #include <vector>
 
 #include "glint/core/error.h"
+#include "glint/core/middle.h"
 #include "glint/core/vec.h"
 #include "glint/scene/image_files_stored.h"
 #include "metrics/length_units.h"
 #include "metrics/normal.h"
-#include "metrics/reduce.h"
 #include "metrics/tools/normal_axes.h"
 
 namespace glint {
 namespace {
-
-bool is_depth(float z) { return std::isfinite(z) && z > 0; }
 
 using Matrix4 = std::array<std::array<double, 4>, 4>;
 using Turn = std::array<double, 4>;  // unit quaternion w x y z
@@ -103,14 +101,8 @@ double angle_in_axes(
 }  // namespace
 
 std::string depth_unit_doubt(ImageView prediction, ImageView reference) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < prediction.num_pixels(); ++i)
-    if (is_depth(prediction.data[i]) && is_depth(reference.data[i]))
-      ratios.push_back(
-          static_cast<double>(prediction.data[i]) / static_cast<double>(reference.data[i])
-      );
-  const double ratio = ratios.empty() ? 1 : median(ratios);
-  if (!is_odd_length_ratio(ratio)) return {};
+  const double ratio = median_ratio(prediction, reference);
+  if (ratio == 0 || !is_odd_length_ratio(ratio)) return {};
   return fmt::format(
       "depth is {:.3g} times the reference's (median) and is scored as metres; is it in {}, or "
       "disparity?",

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "glint/core/error.h"
+#include "glint/core/middle.h"
 #include "glint/core/vec.h"
 #include "metrics/length_units.h"
 #include "metrics/reduce.h"
@@ -33,12 +34,8 @@ std::string odd_depth(const Image& depth, const Image& truth) {
   if (!has_depth(truth)) return {};
   if (!has_depth(depth))
     return "no pixel has a finite depth above 0, so all of them count as missing";
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < depth.num_pixels(); ++i)
-    if (const float z = truth.values()[i]; is_depth(depth.values()[i]) && is_depth(z))
-      ratios.push_back(static_cast<double>(depth.values()[i]) / static_cast<double>(z));
-  const double ratio = ratios.empty() ? 1 : median(ratios);
-  if (!is_odd_length_ratio(ratio)) return {};
+  const double ratio = median_ratio(depth, truth);
+  if (ratio == 0 || !is_odd_length_ratio(ratio)) return {};
   return fmt::format(
       "depth is {:.3g} times the true one (median) and is scored as metres; is it in {}, or "
       "disparity?",
