@@ -180,7 +180,7 @@ class TwoDgs final : public MethodOf<TwoDgsConfig> {
 // The paper's setting for bounded scenes: median depth (depth_ratio 1), so that normals are
 // consistent with the surface itself, and distortion of 1000, which its code uses for DTU. Rooms
 // are as bounded, and their scale fits: with cameras a few units from the surface, 0.2 / z^2 is
-// about what it is there. It is harsh on panes, where two layers are right (docs/GLINT_NOTES.md).
+// about what it is there. It is harsh on panes, where two layers are right (docs/design/tried.md).
 void set_bounded(TwoDgsConfig& config) {
   config.lambda_distortion = 1000;
   config.depth = "median";

@@ -72,7 +72,7 @@ struct EnvGsConfig {
     densify.split_large = densify.cap_by_visibility = true;
     densify.max_surfels = 2000000;
     grid.brightness = 1.0f / 255;  // as its code has it: black, but for what random numbers say
-    mirror.share_below = 0;        // it would cost the mirrored part 0.2 dB (docs/GLINT_NOTES.md)
+    mirror.share_below = 0;        // it would cost the mirrored part 0.2 dB (docs/design/tried.md)
     bootstrap.color_sabotage = bootstrap.normal_propagation = true;
   }
   template <class V>

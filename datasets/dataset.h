@@ -24,8 +24,8 @@ struct LoadOptions {
   bool with_truth = true;   // read gt/
   bool with_priors = true;  // read diffrens/
   std::string loader;       // id of the loader to take; empty: the surest
-  // What is made of alpha: black, white, mask or stored (docs/LOADERS.md); empty: what the folder
-  // says of itself, else its format's custom.
+  // What is made of alpha: black, white, mask or stored (docs/reference/formats.md); empty: what
+  // the folder says of itself, else its format's custom.
   std::string background;
   PriorOptions priors = {};  // how those of other programs are stored
 };

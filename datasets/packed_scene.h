@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A whole Scene in one safetensors file (docs/PACKED.md): what a loader made of a folder, so that
-// reading it needs no image library and gives the same floats.
+// A whole Scene in one safetensors file (docs/reference/formats.md): what a loader made of a
+// folder, so that reading it needs no image library and gives the same floats.
 #pragma once
 
 #include "glint/core/files.h"

@@ -7,7 +7,7 @@
 // Deviations: transmission is rasterised with the interface's depth as the near limit instead of
 // traced (thin glass does not bend the ray; `transmission=trace` traces). z_trans is the depth of
 // the transmission set seen from the camera on its own. In training, pixels that mirror little
-// share mirrored rays (`mirror_share_below`; docs/PERFORMANCE.md has its price). LPIPS needs
+// share mirrored rays (`mirror_share_below`; docs/design/speed.md has its price). LPIPS needs
 // weights that the user has, and is off without. Where the paper is silent, values are those of the
 // official code's second release (V2) but for L_trans' weight: V2's is of means over each mask, an
 // L1 over the picture is as strong with 0.1; L_depth is halved there. Left out of it, as mistakes:
@@ -306,7 +306,7 @@ class Glint final : public MethodOf<GlintConfig> {
   RasterOutputGradient dL_dinterface_;
 };
 
-// Values by source: docs/GLINT_NOTES.md, "What the paper leaves open".
+// Values by source: docs/design/glint.md, "What the paper leaves open".
 SettingGuide guide() {
   return {
       .id = "glint",

@@ -177,7 +177,7 @@ void set_text(GlintConfig& config) {
   config.mirror.observe_every = 0;
 }
 
-// docs/GLINT_NOTES.md has what each does alone.
+// docs/design/glint.md has what each does alone.
 void set_plus(GlintConfig& config) {
   set_text(config);
   // Both secondary sets start as copies of the interface, and a quarter of the resets.

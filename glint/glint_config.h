@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Settings of GLINT [Na26]. Defaults follow the paper's text and, where that is silent, the present
-// state of the official code (V2: the second release): docs/GLINT_NOTES.md has the values with
+// state of the official code (V2: the second release): docs/design/glint.md has the values with
 // their sources. Iterations are of the published 60,000 and scale with the run.
 #pragma once
 

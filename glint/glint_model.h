@@ -49,7 +49,7 @@ class GlintModel {
   // traced.
   RasterPass* transmission_pass() { return rasterized_ ? &transmission.pass() : nullptr; }
 
-  // All maps of a view (docs/RECORDS.md).
+  // All maps of a view (docs/reference/records.md).
   MapSet render(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
 
  private:

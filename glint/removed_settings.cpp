@@ -85,7 +85,7 @@ void drop_removed_settings(const std::string& method, const Json& offered, Json&
     GLINT_CHECK(
         is_same(*found, setting.value()),
         kUsage,
-        "{}: {} is {}, but is no setting any more: it is {} (docs/GLINT_NOTES.md, Tried and taken "
+        "{}: {} is {}, but is no setting any more: it is {} (docs/design/tried.md, Tried and taken "
         "out); leave it out",
         method,
         setting.key(),

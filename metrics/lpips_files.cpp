@@ -68,7 +68,7 @@ LpipsWeights load_lpips_weights(const fs::path& path) {
     log::warn(fmt::format(
         "{}: LPIPS ({}) with weights that are not known (arrays {}...); values may not be "
         "comparable "
-        "with published ones (docs/METRICS.md)",
+        "with published ones (docs/reference/metrics.md)",
         where,
         weights.network,
         weights.arrays_sha256.substr(0, 16)

@@ -58,7 +58,7 @@ NLOHMANN_JSON_SERIALIZE_ENUM(
 )
 
 struct Metric {
-  std::string id;    // "psnr", "normal-11.25", ...: docs/METRICS.md
+  std::string id;    // "psnr", "normal-11.25", ...: docs/reference/metrics.md
   std::string unit;  // "dB", "deg", "%", "m", "" for plain numbers
   Direction direction = Direction::kHigherIsBetter;
   int decimals = 3;  // as printed in tables; JSON is never rounded

@@ -106,7 +106,7 @@ def check_known(arrays, net):
         digest.update(name.encode() + b"\0" + little_endian(arrays[name][1]))
     if net not in KNOWN_ARRAYS:
         print(f"{net}: no sum of its linear layers is on record; compare a pair with a known value "
-              "(docs/METRICS.md)", file=sys.stderr)
+              "(docs/reference/metrics.md)", file=sys.stderr)
     elif digest.hexdigest() != KNOWN_ARRAYS[net]:
         fail(f"{net}: other values than those that were published (SHA-256 of the arrays {digest.hexdigest()[:16]}...); "
              "download the files again, or give --unpublished")

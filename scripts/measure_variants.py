@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Measures how far common variants of metrics differ: the tables of docs/METRICS.md.
+"""Measures how far common variants of metrics differ: the tables of docs/reference/metrics.md.
 
     scripts/measure_variants.py PICTURE.png
 

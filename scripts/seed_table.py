@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Tables of runs of one room with several seeds: those of docs/GLINT_NOTES_TABLES.md.
+"""Tables of runs of one room with several seeds: those of docs/design/tried.md.
 
     scripts/seed_table.py RECORDS.jsonl [--base NAME]
     scripts/seed_table.py docs/results/priors.jsonl --scenes perfect good default poor bad

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One assertion a line of docs/CONVENTIONS.md, as far as they concern axes, pixels and layouts.
+// One assertion a line of docs/reference/conventions.md, as far as they concern axes, pixels and
+// layouts.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

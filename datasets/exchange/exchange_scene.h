@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A scene as our path tracer takes it, as files that other renderers read
-// (scripts/blender/render_scene.py):
-//   exchange.json   materials, textures, environment, cameras, exposure (docs/DATASETS.md)
+// (scripts/blender/render_scene.py; docs/reference/datasets.md):
+//   exchange.json   materials, textures, environment, cameras, exposure
 //   meshes.obj      metres, z up; a group `mesh_<i>` for each mesh, its material `material_<i>`
 //   textures/<i>.exr   linear RGB, float32
 #pragma once

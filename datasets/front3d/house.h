@@ -63,10 +63,10 @@ struct House {
 inline Vec3f with_z_up(Vec3f v) { return {v.x, -v.z, v.y}; }
 
 // Both forms that such files come in: lists of numbers flat or in rows, furniture with `size` or
-// with `bbox`, with `valid` flags or without (docs/DATASETS.md). What is merely missing is passed
-// over with a note. Errors (kBadReference): no JSON object, no rooms, a field of another type,
-// lists whose lengths do not fit, indices beyond the vertices, coordinates beyond 10 km, a rotation
-// of length 0; they name file, entry and field.
+// with `bbox`, with `valid` flags or without (docs/reference/datasets.md). What is merely missing
+// is passed over with a note. Errors (kBadReference): no JSON object, no rooms, a field of another
+// type, lists whose lengths do not fit, indices beyond the vertices, coordinates beyond 10 km, a
+// rotation of length 0; they name file, entry and field.
 House read_house(const fs::path& file);
 
 // "floor", "wall", "ceiling", "baseboard", "cornice", "door", "window", "slab" or "other".

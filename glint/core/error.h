@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// Exit codes of every program (docs/ARCHITECTURE.md).
+// Exit codes of every program (docs/reference/verbs.md).
 enum class ExitCode : int {
   kSuccess = 0,
   kUsage = 1,          // wrong command line

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The order of kernels that makes a rasterisation, forward and backward, for an executor: the GPU's
 // (device_exec.cuh) or the tests' on the host. An executor offers Buffer<T>, for_each, launch,
-// exclusive_sum_on_device, sort_pairs, download and fill_zero. docs/gpu_raster.md: what it costs.
+// exclusive_sum_on_device, sort_pairs, download and fill_zero. docs/design/gpu.md: what it costs.
 #pragma once
 
 #include <cstring>

@@ -6,7 +6,7 @@
 
 namespace glint {
 
-// Cut-offs, the same in every op (docs/CONVENTIONS.md).
+// Cut-offs, the same in every op (docs/reference/conventions.md).
 inline constexpr float kMaxRho = 9.0f;             // 3 sigma
 inline constexpr float kMinAlpha = 1.0f / 255.0f;  // fainter hits are skipped
 inline constexpr float kMaxAlpha = 0.99f;

@@ -216,7 +216,7 @@ struct BackwardVisitor {
   }
   void sum_hits(const Splat& splat, int begin, int end, T* sums) const {
     std::fill_n(sums, splat_sums(has()), T(0));
-    // A loop for each: with a surface a little faster than one (docs/PERFORMANCE.md).
+    // A loop for each: with a surface a little faster than one (docs/design/tried.md).
     for (int i = begin; i < end; ++i)
       pixels[groups_of_hits[i]].add_attributes(hits[i], splat, has(), sums);
     for (int i = begin; i < end; ++i)

@@ -96,7 +96,7 @@ GLINT_HD GlassRadiance<T> outgoing_displayed_vjp(const GlassRadiance<T>& p, Vec3
       dL_dlinear.mirrored};
 }
 // A layer's part of a displayed value, when its light has this weight in the sum (the metrics'
-// true components are made so, docs/RECORDS.md); 0 where the picture is black.
+// true components are made so, docs/reference/metrics.md); 0 where the picture is black.
 template <class T>
 GLINT_HD T displayed_part(T picture, T layer, T weight) {
   const T sum = linear_of_srgb(picture);

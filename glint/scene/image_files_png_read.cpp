@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // PNG, all of it: every depth and colour type, palettes, interlacing (PNG specification). Inflated
 // by libdeflate at once, which is twice as fast as zlib in pieces: scoring pictures is mostly
-// waiting for that (docs/METRICS.md has the times). Alpha, which colour types, palettes and a
-// colour that counts as transparent may bring, is dropped or laid on a background.
+// waiting for that (docs/reference/metrics.md has the times). Alpha, which colour types, palettes
+// and a colour that counts as transparent may bring, is dropped or laid on a background.
 #include <libdeflate.h>
 
 #include <algorithm>

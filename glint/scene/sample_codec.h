@@ -3,7 +3,7 @@
 // sample is predicted from what stands left of it and above it, and the difference is coded by how
 // large such differences were nearby (range_coder.h). Of pictures in one stream each learns from
 // those before it. On photographs, normals and depth of 8 and 16 bits a quarter to a half smaller
-// than PNG (docs/PACKED.md has the sizes).
+// than PNG (docs/reference/formats.md has the sizes).
 //
 // The prediction is a mean of simple ones, each weighted by the inverse square of its errors at the
 // four neighbours, as lossless coders with blended predictors do (Meyer and Tischer, "TMW", 1997).

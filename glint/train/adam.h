@@ -51,7 +51,7 @@ struct SurfelRates {
   // Rates of a run that is `shortening` times shorter than the published one: numbers of steps
   // shrink with it, and positions, colour, scales and rotations move faster by faster_rates(), the
   // same rule for every method. Deviation: at published rates a short run ends before
-  // surfels have reached their place (docs/GLINT_NOTES.md).
+  // surfels have reached their place (docs/design/baselines.md).
   SurfelRates for_shorter_run(double shortening) const;
 };
 

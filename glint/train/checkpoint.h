@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The state of a training in a file, from which it goes on as if it had never stopped: on the CPU
 // the same bytes come out. A safetensors file: arrays as tensors, numbers in its metadata
-// (docs/RECORDS.md).
+// (docs/reference/records.md).
 #pragma once
 
 #include <string>

@@ -53,7 +53,7 @@ struct GeometryLossConfig {
 
 // Depth and normal priors and the smoothness of normals as [Na26 Sec. 3.4, 4.1] uses them, and
 // as GeometryLossConfig::use_priors() gives them to others. Weights and starts that the paper does
-// not give: docs/GLINT_NOTES.md, "What the paper leaves open".
+// not give: docs/design/glint.md, "What the paper leaves open".
 struct PriorLosses {
   static constexpr float kLambdaDepth = 0.05f, kLambdaNormal = 0.3f, kMinCosine = 0.3f;
   static constexpr float kLambdaSmooth = 0.05f / 3;  // there a mean over three components

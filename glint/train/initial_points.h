@@ -27,7 +27,7 @@ struct ReflectionGrid {
   // pixel, for more could not be told apart by so few rays. Larger images keep `cells`.
   static constexpr double kPointsPerPixel = 1.264;
   // Deviation: the official codes draw colours up to 1/255, black but for that, and in runs as
-  // short as ours GLINT's stays dark (docs/GLINT_NOTES.md). EnvGS starts as there.
+  // short as ours GLINT's stays dark (docs/design/tried.md). EnvGS starts as there.
   float brightness = 1;
 
   template <class V>
@@ -38,7 +38,7 @@ struct ReflectionGrid {
   int cells_for(ImageSize size) const;
   // How many times as far apart points are as with all cells. Deviation: the size at which density
   // control prunes or splits grows with it; otherwise surfels of a coarse grid begin near that size
-  // and nearly all of them go (docs/GLINT_NOTES.md).
+  // and nearly all of them go (docs/design/tried.md).
   float coarseness(ImageSize size) const;
   PointCloud points(const Scene& scene, std::uint64_t seed) const;
 };

@@ -8,7 +8,8 @@
 namespace glint::view_metrics {
 namespace {
 
-constexpr float kContentWithin = 1.25f;  // metres of depth behind the pane; docs/METRICS.md
+// Metres of depth behind the pane (docs/reference/metrics.md).
+constexpr float kContentWithin = 1.25f;
 
 // Glass pixels of which the surface behind lies within that distance, or beyond it.
 MaskImage glass_in_front_of(const ViewPair& pair, bool content) {

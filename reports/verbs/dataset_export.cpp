@@ -69,7 +69,7 @@ void add_dataset_export(CommandLine& line, CLI::App& dataset) {
   *verb = line.add_verb(
       dataset,
       "export",
-      "a scene as a folder that other programs train on (docs/LOADERS.md)",
+      "a scene as a folder that other programs train on (docs/guide/your_data.md)",
       [&line, arguments, verb] {
         return run_export(line.common, *arguments, (*verb)->count("--out") > 0);
       },

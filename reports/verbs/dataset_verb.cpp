@@ -277,7 +277,7 @@ void add_make(CommandLine& line, CLI::App& dataset) {
       "--write-scene",
       options->write_scene,
       "folder: no pictures, but meshes, materials and cameras for other renderers "
-      "(docs/DATASETS.md)"
+      "(docs/reference/datasets.md)"
   );
 }
 

@@ -199,7 +199,8 @@ void add_model_options(CLI::App& verb, RenderArguments& arguments) {
   CLI::Option* model = verb.add_option(
       "--model",
       arguments.model,
-      "Gaussians that another program trained: a PLY, or a folder (docs/RENDERING.md); becomes the "
+      "Gaussians that another program trained: a PLY, or a folder (docs/guide/your_renders.md); "
+      "becomes the "
       "run"
   );
   model->needs(verb.get_option("--dataset"));

@@ -12,7 +12,8 @@ int run_results(const std::string& root) {
   const ResultsInfo info = read_results_info(results_parts(root).front());
   const auto records = read_records(fs::path(root) / info.records);
   GLINT_CHECK(!records.empty(), kBadPrediction, "{}: no records", info.records);
-  const fs::path page = fs::path(root) / "docs/RESULTS.md", readme = fs::path(root) / "README.md";
+  const fs::path page = fs::path(root) / "docs/results/RESULTS.md",
+                 readme = fs::path(root) / "README.md";
   write_file(page, results_markdown(root));
   write_file(readme, with_results(read_file(readme), readme_results(info, records)));
   print_text(fmt::format("{} and {}: written\n", page.string(), readme.string()));
@@ -24,7 +25,7 @@ void add_results_verb(CommandLine& line) {
   CLI::App* verb = line.add_verb(
       line.app,
       "results",
-      "write docs/RESULTS.md and the README's table from docs/results/",
+      "write docs/results/RESULTS.md and the README's table from docs/results/",
       [root] { return run_results(*root); },
       CommonOption{}
   );

@@ -102,7 +102,8 @@ struct Verb {
   void (*add)(CommandLine& line);
 };
 
-// Of the JSON that verbs print (docs/JSON.md); grows when a field changes its meaning or goes.
+// Of the JSON that verbs print (docs/reference/verbs.md); grows when a field changes its meaning or
+// goes.
 inline constexpr int kVerbSchema = 1;
 
 // Results go here: one JSON document, or text. Documents open with "schema".

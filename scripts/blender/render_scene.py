@@ -5,7 +5,7 @@
         SCENE --out FOLDER [--spp 256] [--views 0000,0008] [--threads 2]
 
 FOLDER gets images/, intri.yml, extri.yml, scene.json and gt/{rgb,depth,normal,glass,behind_depth,behind_normal}, as our
-path tracer writes them (docs/DATASETS.md). A view that is there already is not rendered again. Blender 3.3 and later of
+path tracer writes them (docs/reference/datasets.md). A view that is there already is not rendered again. Blender 3.3 and later of
 3.x and 4.x; tried with 3.4.1. No add-on and no NumPy is needed.
 """
 import argparse

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files of a scene folder (docs/LOADERS.md), in plain Python: EXR floats, 8-bit PNG, cameras as OpenCV's FileStorage."""
+"""Files of a scene folder (docs/reference/formats.md), in plain Python: EXR floats, 8-bit PNG, cameras as OpenCV's FileStorage."""
 import array
 import os
 import struct

@@ -117,7 +117,7 @@ TEST_CASE("Nor does a steady step with LPIPS") {
   for (const char* id : {"glint/release", "rt-splatting"}) check_steady(id);
 }
 
-// For docs/gpu.md: test_baselines_gpu_steady_steps "[costs]".
+// For docs/design/gpu.md: test_baselines_gpu_steady_steps "[costs]".
 TEST_CASE("What a steady step asks of a GPU", "[.costs]") {
   const OnHost on_host;
   for (const std::string& id : all_trained()) {

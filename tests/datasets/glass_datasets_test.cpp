@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Real glass with truth, in files made as their authors describe them: ClearPose, RT-Splatting's
-// scenes, GlassRecon (docs/DATASETS.md).
+// scenes, GlassRecon (docs/reference/datasets.md).
 #include <catch2/catch.hpp>
 
 #include <cmath>

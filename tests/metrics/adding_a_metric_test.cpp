@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The worked example of docs/METRICS.md, which has the lines between the marks word for word.
+// The worked example of docs/guide/your_metric.md, which has the lines between the marks word for
+// word.
 #include <catch2/catch.hpp>
 
 #include "glint/core/files.h"
@@ -56,10 +57,10 @@ TEST_CASE("a metric is a file that registers it: it has a value for each region"
   CHECK(find_metric("rgb-l1")->direction == Direction::kLowerIsBetter);
 }
 
-TEST_CASE("docs/METRICS.md has the example as it is compiled") {
+TEST_CASE("docs/guide/your_metric.md has the example as it is compiled") {
   const std::string source = read_file("tests/metrics/adding_a_metric_test.cpp");
   const std::string begin = "// example: begin\n", end = "// example: end";
   const std::size_t from = source.find(begin) + begin.size();
   const std::string example = source.substr(from, source.find(end) - from);
-  CHECK(read_file("docs/METRICS.md").find(example) != std::string::npos);
+  CHECK(read_file("docs/guide/your_metric.md").find(example) != std::string::npos);
 }

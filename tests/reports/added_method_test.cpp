@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What docs/ADDING_A_METHOD.md promises: a method that is registered, here by this file, is
+// What docs/guide/your_method.md promises: a method that is registered, here by this file, is
 // trained, rendered, scored, and stands in every table, in the figures and on the page, although no
 // profile names it.
 #include <catch2/catch.hpp>

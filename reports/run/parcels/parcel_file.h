@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A parcel: what one cell that ended leaves for another machine, in one small file. It holds files
-// of the run folder, and what is left of the model (compact_model.h). docs/RECORDS.md has the
-// format.
+// of the run folder, and what is left of the model (compact_model.h). docs/reference/records.md has
+// the format.
 #pragma once
 
 #include <map>

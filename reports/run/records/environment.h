@@ -9,7 +9,7 @@
 namespace glint {
 
 // Machine, threads, build (compiler, flags, libraries, git revision), weights, device and date:
-// part of every record (docs/RECORDS.md).
+// part of every record (docs/reference/records.md).
 Json environment_json();
 
 // Errors (kUsage): none of "auto", "cpu" and "cuda".

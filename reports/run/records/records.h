@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // records.jsonl: what a profile's folder knows about its cells. One JSON object a line, appended
-// when a cell ends, whether it finished or failed; never rewritten. docs/RECORDS.md lists the
-// fields.
+// when a cell ends, whether it finished or failed; never rewritten. docs/reference/records.md lists
+// the fields.
 #pragma once
 
 #include <cstdint>

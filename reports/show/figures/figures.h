@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Figures of a profile's results as PNG and PDF: what methods render beside the truth, and curves.
-// One view a scene, chosen by a rule; one range of colours for all methods (docs/REPORT.md).
+// One view a scene, chosen by a rule; one range of colours for all methods
+// (docs/reference/reports.md).
 #pragma once
 
 #include <functional>

@@ -205,7 +205,7 @@ std::vector<Record> records_at(const fs::path& path) {
   GLINT_CHECK(
       !records.empty(),
       kBadPrediction,
-      "{}: holds no record; expected one JSON object a line (docs/RECORDS.md)",
+      "{}: holds no record; expected one JSON object a line (docs/reference/records.md)",
       file.string()
   );
   return records;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
+#include "glint/core/rows.h"
 #include "reports/show/tables/table_writers.h"
 
 namespace glint {
@@ -44,12 +46,20 @@ std::string shared_card_text(const std::vector<Record>& records) {
 
 std::string joined(const Texts& texts) { return fmt::format("{}", fmt::join(texts, ", ")); }
 
+std::string source_text(const ResultsInfo& info) {
+  return fmt::format("- Command: `{}`\n- Records: `{}`\n", info.command, info.records);
+}
+
+std::string remarks_text(const ResultsInfo& info) {
+  return info.remarks.empty() ? "" : fmt::format("- {}\n", info.remarks);
+}
+
 std::string facts(const ResultsInfo& info, const std::vector<Record>& records) {
   const auto environment = [&](const char* key) {
     return joined(collect(records, [&](const Record& r) { return environment_text(r, key); }));
   };
   const Texts dates = collect(records, [](const Record& r) { return environment_text(r, "date"); });
-  std::string text = fmt::format("- Command: `{}`\n- Records: `{}`\n", info.command, info.records);
+  std::string text = source_text(info);
   text += fmt::format(
       "- Scenes: {}; test views of {} pixels\n",
       joined(collect(records, [](const Record& r) { return r.dataset + "/" + r.cell.scene; })),
@@ -70,8 +80,7 @@ std::string facts(const ResultsInfo& info, const std::vector<Record>& records) {
       environment("device"),
       shared_card_text(records)
   );
-  if (!info.remarks.empty()) text += fmt::format("- {}\n", info.remarks);
-  return text;
+  return text + remarks_text(info);
 }
 
 // Captions, scenes of means and published columns are those of our rooms.
@@ -96,6 +105,41 @@ std::vector<Record> shown_records(const ResultsInfo& info, std::vector<Record> r
   };
   std::erase_if(records, is_left_out);
   return records;
+}
+
+// Prose and items of lists in lines of at most 118 characters; rows of tables cannot be broken.
+std::string in_lines(const std::string& markdown) {
+  std::string text;
+  std::istringstream lines(markdown);
+  for (std::string line; std::getline(lines, line);) {
+    const bool stays = line.empty() || line.front() == '|' || line.front() == '#';
+    const char* indent = line.starts_with("- ") ? "\n  " : "\n";
+    text += (stays ? line : fmt::format("{}", fmt::join(wrapped(line, 116), indent))) + "\n";
+  }
+  return text;
+}
+
+// Of the summary what fits a screen: five columns, without intervals.
+Table front_page_table(const std::vector<Record>& records) {
+  static const std::set<std::string> shown{
+      "psnr", "psnr@glass", "normal-mae@glass", "depth-absrel@glass", "mesh-cd"};
+  const auto definitions = table_definitions();
+  TableDefinition summary =
+      *std::find_if(definitions.begin(), definitions.end(), [](const TableDefinition& definition) {
+        return definition.id == "summary";
+      });
+  std::erase_if(summary.columns, [](const TableColumn& column) {
+    return !shown.contains(column.metric);
+  });
+  Table table = build_table(summary, records);
+  table.caption.clear();
+  for (TableColumn& column : table.columns) column.group.clear();
+  for (TableRow& row : table.rows)
+    for (TableCell& cell : row.cells) cell.interval.reset();
+  std::erase_if(table.notes, [](const std::string& note) {
+    return note.starts_with(kIntervalNote);
+  });
+  return table;
 }
 
 }  // namespace
@@ -135,30 +179,28 @@ std::string results_part(const ResultsInfo& info, std::vector<Record> records) {
 std::string results_markdown(const fs::path& root) {
   std::string text =
       "# Results\n\n"
-      "Written by `glint-bench results` from the records named below; a test fails when the two "
-      "differ.\n\n";
+      "This page has the tables of the committed records, written by `glint-bench results`; a test "
+      "fails when they differ. For all tables of a part, copy its records to "
+      "`out/NAME/records.jsonl` and run `glint-bench table --out out/NAME`.\n\n";
   for (const fs::path& file : results_parts(root)) {
     const ResultsInfo info = read_results_info(file);
     const auto records = read_records(root / info.records);
     GLINT_CHECK(!records.empty(), kBadPrediction, "{}: no records", info.records);
     text += (info.title.empty() ? "" : "\n") + results_part(info, records);
   }
-  return text;
+  return in_lines(text);
 }
 
 std::string readme_results(const ResultsInfo& info, std::vector<Record> records) {
   records = shown_records(info, std::move(records));
-  const auto definitions = table_definitions();
-  const auto summary =
-      std::find_if(definitions.begin(), definitions.end(), [](const TableDefinition& definition) {
-        return definition.id == "summary";
-      });
-  const std::string table = table_markdown(build_table(*summary, records));
-  return fmt::format(  // without the table's heading
-      "{}\n{}- All tables: [docs/RESULTS.md](docs/RESULTS.md)\n",
-      table.substr(table.find('\n') + 1),
-      facts(info, records)
-  );
+  const std::string text = table_markdown(front_page_table(records));
+  return in_lines(fmt::format(  // without the table's heading
+      "\n{}\n{}{}- All tables, with intervals: "
+      "[docs/results/RESULTS.md](docs/results/RESULTS.md)\n",
+      text.substr(text.find('|')),
+      source_text(info),
+      remarks_text(info)
+  ));
 }
 
 std::string with_results(const std::string& readme, const std::string& results) {

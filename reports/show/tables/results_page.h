@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// docs/RESULTS.md and the README's table, made from a committed file of records, so that neither
-// can differ from what was measured.
+// docs/results/RESULTS.md and the README's table, made from a committed file of records, so that
+// neither can differ from what was measured.
 #pragma once
 
 #include <string>
@@ -37,12 +37,13 @@ std::vector<fs::path> results_parts(const fs::path& root);
 // Errors (kUsage): unknown fields; kBadReference: no such file.
 ResultsInfo read_results_info(const fs::path& file);
 
-// A part of docs/RESULTS.md: command, scenes, resolution, revisions, dates, machine, tables.
+// A part of docs/results/RESULTS.md: command, scenes, resolution, revisions, dates, machine,
+// tables.
 std::string results_part(const ResultsInfo& info, std::vector<Record> records);
 // The whole page of a project's folder, from docs/results/. Errors (kBadPrediction): no records.
 std::string results_markdown(const fs::path& root);
 
-// The table that the README shows, with one line on where it comes from.
+// The table that the README shows: five columns of the summary, and where it comes from.
 std::string readme_results(const ResultsInfo& info, std::vector<Record> records);
 
 // `readme` with what stands between its two markers replaced. Errors (kBadReference): no markers.

@@ -62,7 +62,8 @@ Interval middle_95(std::vector<double> values);
 // The percentile bootstrap interval of a mean, 95 % [Efron79]: of differences between two methods
 // on the same scenes and seeds it is the paired interval. The seed is fixed, so the same values
 // have the same interval. values: of each scene those of its seeds. Nothing: fewer than
-// kMinBootstrapPairs values, which say nothing. Few scenes make it too narrow (docs/REPORT.md).
+// kMinBootstrapPairs values, which say nothing. Few scenes make it too narrow
+// (docs/reference/reports.md).
 std::optional<Interval> bootstrap_interval(
     std::span<const std::vector<double>> values, std::size_t resamples = kBootstrapResamples
 );

@@ -93,9 +93,8 @@ Json column_json(const TableColumn& column) {
 std::string markdown_rows(const Table& table) {
   std::vector<std::string> header{"Method"}, rule{"---"};
   for (const TableColumn& column : table.columns) {
-    header.push_back(
-        markdown_text(shown_title(column)) + "<br>" + markdown_text(group_title(column))
-    );
+    const std::string group = markdown_text(group_title(column));
+    header.push_back(markdown_text(shown_title(column)) + (group.empty() ? "" : "<br>" + group));
     rule.push_back("---:");
   }
   std::string text = fmt::format("| {} |\n| {} |\n", join(header, " | "), join(rule, " | "));

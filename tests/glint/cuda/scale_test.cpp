@@ -249,7 +249,7 @@ TEST_CASE("Lists of 100,000 surfels are complete and sorted") {
   CHECK(wrong == 0);
 }
 
-// For docs/gpu_raster.md: test_glint_cuda_scale "[counts]".
+// For docs/design/gpu.md: test_glint_cuda_scale "[counts]".
 TEST_CASE("Pairs, slots and rows of 100,000 surfels", "[.counts]") {
   const OnHost on_host;
   for (const double max_opacity : {1.0, 0.1}) {

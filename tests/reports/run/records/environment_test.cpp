@@ -31,8 +31,8 @@ TEST_CASE("flags name no folder") {
   CHECK(build_info().flags.find("$<") == std::string::npos);
 }
 
-TEST_CASE("docs/RECORDS.md has every field of the environment") {
-  const std::string text = read_file("docs/RECORDS.md");  // tests run there
+TEST_CASE("docs/reference/records.md has every field of the environment") {
+  const std::string text = read_file("docs/reference/records.md");  // tests run there
   const std::size_t begin = text.find("## Environment");
   REQUIRE(begin != std::string::npos);
   const std::string section = text.substr(begin, text.find("\n## ", begin + 1) - begin);

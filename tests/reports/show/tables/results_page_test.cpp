@@ -8,12 +8,12 @@
 using namespace glint;
 using namespace glint::test;
 
-TEST_CASE("docs/RESULTS.md and the README's table are what the committed records give") {
+TEST_CASE("docs/results/RESULTS.md and the README's table are what the committed records give") {
   const ResultsInfo info = read_results_info(results_parts(".").front());
   const auto records = read_records(info.records);
   REQUIRE(!records.empty());
   INFO("run `glint-bench results` and commit what it writes");
-  CHECK(read_file("docs/RESULTS.md") == results_markdown("."));
+  CHECK(read_file("docs/results/RESULTS.md") == results_markdown("."));
   const std::string readme = read_file("README.md");
   CHECK(readme == with_results(readme, readme_results(info, records)));
 }
