@@ -124,7 +124,9 @@ class TwoDgs final : public MethodOf<TwoDgsConfig> {
     return result;
   }
 
-  void draw(const Camera& camera) override { set_.forward(camera, sh_degree_); }
+  const Image& picture(const Camera& camera) override {
+    return set_.forward(camera, sh_degree_).features;
+  }
 
   void load(const std::string& folder) override {
     MethodOf::load(folder);

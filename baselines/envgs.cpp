@@ -228,7 +228,7 @@ class EnvGs final : public MethodOf<EnvGsConfig> {
     return out;
   }
 
-  void draw(const Camera& camera) override { forward(camera); }
+  const Image& picture(const Camera& camera) override { return forward(camera); }
 
   void load(const std::string& folder) override {
     MethodOf::load(folder);

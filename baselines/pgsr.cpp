@@ -46,7 +46,7 @@ class Pgsr final : public MethodOf<PlanarConfig> {
     add_depth_modes(set_.pass().rasterizer, maps);
     return maps;
   }
-  void draw(const Camera& camera) override { model_.draw(camera); }
+  const Image& picture(const Camera& camera) override { return model_.draw(camera).features; }
   void load(const std::string& folder) override {
     MethodOf::load(folder);
     model_.use_all_degrees();

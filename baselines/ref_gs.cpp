@@ -169,9 +169,9 @@ class RefGs final : public MethodOf<RefGsConfig> {
     return out;
   }
 
-  void draw(const Camera& camera) override {
+  const Image& picture(const Camera& camera) override {
     background_ = {};
-    forward(camera);
+    return forward(camera);
   }
 
   void save(const std::string& folder) const override {

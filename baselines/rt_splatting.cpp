@@ -211,7 +211,7 @@ class RtSplatting final : public MethodOf<RtSplattingConfig> {
     return out;
   }
 
-  void draw(const Camera& camera) override { forward(camera); }
+  const Image& picture(const Camera& camera) override { return forward(camera); }
 
   void save(const std::string& folder) const override {
     MethodOf::save(folder);

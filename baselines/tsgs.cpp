@@ -165,7 +165,7 @@ class Tsgs final : public MethodOf<TsgsConfig> {
 
   MapSet render(const Camera& camera) override { return rendered(camera, {}); }
   MapSet render_view(const View& view) override { return rendered(view.camera, glass_mask(view)); }
-  void draw(const Camera& camera) override { model_.draw(camera); }
+  const Image& picture(const Camera& camera) override { return model_.draw(camera).features; }
   void save(const std::string& folder) const override {
     MethodOf::save(folder);
     if (lobes_) write_safetensors(fs::path(folder) / kLobesFile, {}, lobes_->tensors("lobes"));

@@ -87,6 +87,14 @@ add_library(pangocairo INTERFACE)  # not its flags: a precompiled header has to 
 target_include_directories(pangocairo SYSTEM INTERFACE ${PANGOCAIRO_INCLUDE_DIRS})
 target_link_libraries(pangocairo INTERFACE ${PANGOCAIRO_LINK_LIBRARIES})
 
+# Web server of the viewer: headers alone.
+find_path(GLINT_BOOST_INCLUDE boost/beast/websocket.hpp)
+if(GLINT_BOOST_INCLUDE)
+  add_library(boost_beast INTERFACE)
+  target_include_directories(boost_beast SYSTEM INTERFACE ${GLINT_BOOST_INCLUDE})
+  target_link_libraries(boost_beast INTERFACE Threads::Threads)
+endif()
+
 # Meshes; its config forgets to look for Eigen, which is found above.
 find_package(Open3D QUIET CONFIG)
 

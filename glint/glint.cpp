@@ -130,7 +130,7 @@ class Glint final : public MethodOf<GlintConfig> {
     model_.backward(dL_dimage_, dL_dtransparency_, !frozen_, dL_dinterface_);
     update(iteration, stats);
     phase_.planes = false;
-    stats.sets = sets();
+    stats.sets = set_sizes();
     stats.num_surfels = num_surfels();
     return stats;
   }
@@ -141,7 +141,9 @@ class Glint final : public MethodOf<GlintConfig> {
     if (config_.oracle && GivenSurface::fits(view.truth)) phase.truth = &view.truth;
     return model_.render(view.camera, config_, phase);
   }
-  void draw(const Camera& camera) override { model_.forward(camera, config_, phase_); }
+  const Image& picture(const Camera& camera) override {
+    return model_.forward(camera, config_, phase_);
+  }
 
   void load(const std::string& folder) override {
     MethodOf::load(folder);
@@ -164,7 +166,7 @@ class Glint final : public MethodOf<GlintConfig> {
   }
   std::size_t num_surfels() const override {
     std::size_t sum = 0;
-    for (const auto& [name, count] : sets()) sum += count;
+    for (const auto& [name, count] : set_sizes()) sum += count;
     return sum;
   }
   std::vector<std::string> notes() const override {
@@ -182,11 +184,11 @@ class Glint final : public MethodOf<GlintConfig> {
     return TrainableSet(points, initial, training_on(*scene_, rates, densify));
   }
   // Surfels of the sets that take part in some step.
-  std::map<std::string, std::size_t> sets() const {
-    std::map<std::string, std::size_t> sets = {{"interface", model_.interface.cloud().size()}};
-    if (config_.with_transmission) sets["transmission"] = model_.transmission.cloud().size();
-    if (config_.with_reflection) sets["reflection"] = model_.reflection.cloud().size();
-    return sets;
+  std::map<std::string, std::size_t> set_sizes() const {
+    std::map<std::string, std::size_t> sizes = {{"interface", model_.interface.cloud().size()}};
+    if (config_.with_transmission) sizes["transmission"] = model_.transmission.cloud().size();
+    if (config_.with_reflection) sizes["reflection"] = model_.reflection.cloud().size();
+    return sizes;
   }
   void check_oracle() const {
     if (!config_.oracle) return;

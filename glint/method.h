@@ -15,7 +15,14 @@
 
 namespace glint {
 
+class TrainableSet;
 class TrainingState;
+
+// A set of a method, which is the file NAME.ply.
+struct MethodSet {
+  const char* name;
+  TrainableSet* set;
+};
 
 struct StepStats {
   int iteration = 0;
@@ -47,8 +54,9 @@ class Method {
   // views overrides it; it looks at the view's mask alone, never at its picture, and notes() say
   // so.
   virtual MapSet render_view(const View& view) { return render(view.camera); }
-  // The picture alone, left on the device where it was made: what FPS counts.
-  virtual void draw(const Camera& camera) { render(camera); }
+  // The picture alone, not clamped, left on the device where it was made: what FPS counts and what
+  // moving viewers see. Valid until the next call of any kind.
+  virtual const Image& picture(const Camera& camera) { return picture_ = render(camera)["rgb"]; }
   // Surfel sets as PLY files and whatever else is needed to render again.
   virtual void save(const std::string& folder) const = 0;
   // After initialize(), step() goes on from what is loaded; else it can only be rendered.
@@ -66,9 +74,14 @@ class Method {
   // and it starts anew.
   virtual bool visit_state(TrainingState&) { return false; }
   virtual std::size_t num_surfels() const = 0;
+  // The sets that it renders, by name; they live as long as the method. Empty: it has none.
+  virtual std::vector<MethodSet> sets() const { return {}; }
   virtual std::vector<std::string> warnings() const { return {}; }  // losses off, missing priors
   // What readers of tables have to know of this run, a line each: which masks it was given, say.
   virtual std::vector<std::string> notes() const { return {}; }
+
+ private:
+  Image picture_;
 };
 
 // Registered with GLINT_REGISTER(MethodSpec, ...); all of them: Registry<MethodSpec>::all().

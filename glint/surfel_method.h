@@ -16,12 +16,6 @@
 
 namespace glint {
 
-// A set of a method, which is the file NAME.ply.
-struct MethodSet {
-  const char* name;
-  TrainableSet* set;
-};
-
 class SurfelMethod : public Method {
  public:
   void save(const std::string& folder) const override;
@@ -29,6 +23,7 @@ class SurfelMethod : public Method {
   void check_finite() const override;
   bool visit_state(TrainingState& state) override;
   std::size_t num_surfels() const override;
+  std::vector<MethodSet> sets() const override { return sets_; }
   std::vector<std::string> warnings() const final { return warnings_; }
 
  protected:

@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "glint/core/stoppable.h"
+
 #if !defined(GLINT_STD_THREADS)
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -21,7 +23,15 @@ int hardware_threads() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 int requested_threads = 0;  // 0: all cores
+thread_local const std::function<bool()>* asked_first = nullptr;
+
+void ask_first() {
+  if (asked_first != nullptr && (*asked_first)()) throw LoopsStopped();
+}
 }  // namespace
+
+StoppableLoops::StoppableLoops(const std::function<bool()>& stop) { asked_first = &stop; }
+StoppableLoops::~StoppableLoops() { asked_first = nullptr; }
 
 int num_threads() { return requested_threads > 0 ? requested_threads : hardware_threads(); }
 
@@ -40,6 +50,7 @@ namespace detail {
 void parallel_blocks(
     std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body
 ) {
+  ask_first();
   grain = std::max<std::size_t>(1, grain);
   const std::size_t num_blocks = (n + grain - 1) / grain;
   const auto run_block = [&](std::size_t i) { body(i * grain, std::min(n, (i + 1) * grain)); };
@@ -59,6 +70,7 @@ namespace detail {
 void parallel_blocks(
     std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body
 ) {
+  ask_first();
   grain = std::max<std::size_t>(1, grain);
   std::atomic<std::size_t> next{0};
   std::exception_ptr failure;

@@ -42,6 +42,7 @@ void add_depth_estimates(const RasterOutput& output, MapSet& maps) {
 
 void add_depth_modes(Rasterizer& rasterizer, MapSet& maps) {
   rasterizer.depth_modes(DepthModeSettings{}, maps["first_mode"], maps["last_mode"]);
+  maps["alpha"] = rasterizer.output().alpha;
 }
 
 void plane_depth_map(

@@ -18,8 +18,8 @@ void expected_depth_map_vjp(
 // with 0 where nothing was hit: what every method's depth behind glass is scored by, besides its
 // own.
 void add_depth_estimates(const RasterOutput& output, MapSet& maps);
-// The maps "first_mode" and "last_mode" of what was rasterised last (depth_modes.h), which is what
-// the method's depth is of. Made after the pass, pixel by pixel: for renders, not for training.
+// The maps "first_mode" and "last_mode" (depth_modes.h) and "alpha" of what was rasterised last,
+// which is what the method's depth is of. Made after the pass, pixel by pixel: for renders, not for training.
 void add_depth_modes(Rasterizer& rasterizer, MapSet& maps);
 // Depth of each pixel's plane (plane_depth.h), [H][W][1]; 0: none. distance, normal: composited.
 void plane_depth_map(

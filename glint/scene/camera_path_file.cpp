@@ -182,6 +182,16 @@ Camera read_frame(
   );
 }
 
+Json lens_json(const Camera& lens) {
+  return {
+      {"width", lens.width},
+      {"height", lens.height},
+      {"fx", lens.fx},
+      {"fy", lens.fy},
+      {"cx", lens.cx},
+      {"cy", lens.cy}};
+}
+
 Json matrix_json(const Camera& camera) {
   const Vec3d center = camera.center();
   const Mat3d axes = transpose(camera.rotation_cam_from_world);
@@ -194,20 +204,20 @@ Json matrix_json(const Camera& camera) {
 
 }  // namespace
 
+Json camera_to_json(const Camera& camera) {
+  Json json = lens_json(camera);
+  json["world_from_cam"] = matrix_json(camera);
+  return json;
+}
+
+Camera camera_from_json(const Json& json, const Camera& lens, const std::string& where) {
+  return read_frame(json, Json::object(), lens, where);
+}
+
 void write_camera_path(const fs::path& file, const CameraPath& path) {
   Json json = {{"schema", kSchema}, {"axes", "OpenCV: x right, y down, z forward"}};
   if (path.fps > 0) json["fps"] = path.fps;
-  if (!path.cameras.empty()) {
-    const Camera& lens = path.cameras.front();
-    json.update(
-        {{"width", lens.width},
-         {"height", lens.height},
-         {"fx", lens.fx},
-         {"fy", lens.fy},
-         {"cx", lens.cx},
-         {"cy", lens.cy}}
-    );
-  }
+  if (!path.cameras.empty()) json.update(lens_json(path.cameras.front()));
   json["frames"] = Json::array();
   for (const Camera& camera : path.cameras)
     json["frames"].push_back({{"world_from_cam", matrix_json(camera)}});

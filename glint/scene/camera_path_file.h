@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "glint/core/config.h"
 #include "glint/core/files.h"
 #include "glint/scene/camera.h"
 
@@ -15,6 +16,12 @@ struct CameraPath {
   std::vector<Camera> cameras;
   double fps = 0;  // frames a second; 0: the file does not say
 };
+
+// A frame of our own file with its lens: width, height, fx, fy, cx, cy, world_from_cam.
+Json camera_to_json(const Camera& camera);
+// A frame of any of the three files; what it does not say of the lens is that of `lens`. `where`
+// opens the messages of errors (kBadPrediction): as below.
+Camera camera_from_json(const Json& json, const Camera& lens, const std::string& where);
 
 // {"schema": 1, "fps": .., "width": .., "height": .., "fx": .., "fy": .., "cx": .., "cy": ..,
 //  "frames": [{"world_from_cam": [[4 numbers] x 4]}, ..]}: the lens is that of the first camera.

@@ -42,6 +42,8 @@ void write_png(const fs::path& path, ByteView image);
 void write_png(const fs::path& path, ImageView image);
 // Floats times 65535; 1 channel.
 void write_png16(const fs::path& path, ImageView grey);
+// The bytes of a JPEG of 1 or 3 channels; quality from 1 to 100. Errors (kEnvironment): no memory.
+std::string jpeg_bytes(ByteView image, int quality);
 // float32 channels: Z for 1, R G B for 3 (or X Y Z when `xyz`), scan lines, ZIP.
 void write_exr(const fs::path& path, ImageView image, bool xyz = false);
 void write_npy(const fs::path& path, ImageView image);

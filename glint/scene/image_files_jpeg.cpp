@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "glint/core/error.h"
+#include "glint/scene/image_files.h"
 #include "glint/scene/image_files_formats.h"
 
 namespace glint {
@@ -64,6 +65,31 @@ Image detail::decode_jpeg(const fs::path& path, const std::string& file) {
       [&](unsigned char value) { return unit_value(value, 255); }
   );
   return picture;
+}
+
+std::string jpeg_bytes(ByteView image, int quality) {
+  const std::unique_ptr<void, Destroy> encoder(tjInitCompress());
+  const bool grey = image.channels == 1;
+  const int subsampling = grey ? TJSAMP_GRAY : TJSAMP_420;
+  std::string bytes(tjBufSize(image.width, image.height, subsampling), '\0');
+  auto* begin = reinterpret_cast<unsigned char*>(bytes.data());
+  unsigned long size = bytes.size();
+  const bool made = encoder != nullptr && tjCompress2(
+                                              encoder.get(),
+                                              image.data,
+                                              image.width,
+                                              0,
+                                              image.height,
+                                              grey ? TJPF_GRAY : TJPF_RGB,
+                                              &begin,
+                                              &size,
+                                              subsampling,
+                                              quality,
+                                              TJFLAG_NOREALLOC | TJFLAG_FASTDCT
+                                          ) == 0;
+  GLINT_CHECK(made, kEnvironment, "no JPEG of {} x {} pixels", image.width, image.height);
+  bytes.resize(size);
+  return bytes;
 }
 
 }  // namespace glint

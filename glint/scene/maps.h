@@ -40,6 +40,7 @@ struct MapRow {
   std::string_view truth;    // folder of a dataset's gt/
   std::string_view prior;    // folder of its diffrens/
   bool shown = true;         // false: stored and scored, but in no picture, figure or page
+  bool kept = true;          // false: rendered for the viewer alone, in no file
 
   constexpr int channels() const { return channels_of(kind); }
   constexpr std::string_view stored_file() const { return file.empty() ? picture : file; }
@@ -58,6 +59,8 @@ inline constexpr MapRow kSurfaces[] = {
     {"glass", "Glass", kMask, "", "", "glass", "glass"},
     {"transparency", "Transparency t", kShare, "transparency.exr", "", "", ""},
     {"specularity", "Specularity k_s", kShare, "specularity.exr", "", "", ""},
+    // How much of the pixel the surfels cover whose depth is reported.
+    {"alpha", "Coverage alpha", kShare, "", "", "", "", true, false},
     // The first surface that is not glass along the straight ray.
     {"behind_depth", "Depth behind glass", kDepth, "behind_depth.exr", "", "behind_depth", ""},
     // The same of every method by one rule each, for fair scores: of the set that stands for what

@@ -174,6 +174,7 @@ class Training {
     done_.seconds += seconds_since(start);
     done_.iterations = i + 1;
     for (const std::string& event : stats.events) note(i, event);
+    if (options_.after_step) options_.after_step(method_, stats);
     if (!is_told(i)) return;
     check(stats);
     last_ = stats;

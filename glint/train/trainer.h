@@ -19,6 +19,8 @@ struct TrainOptions {
   double checkpoint_seconds = 300;  // between checkpoints, at least; 0: one after every step
   std::string identity;             // of the run: only its own checkpoint is gone on from
   std::string title = "train";      // of the progress line
+  // Called after each step, before its checkpoint; what it throws ends the training.
+  std::function<void(Method&, const StepStats&)> after_step;
 };
 
 struct TrainReport {

@@ -4,7 +4,7 @@
 #include "glint/core/interrupt.h"
 #include "glint/core/progress.h"
 #include "metrics/tools/numeric_options.h"
-#include "reports/verbs/single_cell.h"
+#include "reports/verbs/open_viewer.h"
 
 namespace glint {
 
@@ -20,15 +20,22 @@ std::string void_steps_text(const Json& steps) {
   );
 }
 
-int run_train(
-    CommonOptions common, const NewCellOptions& options, const std::string& transmission
-) {
-  if (!transmission.empty()) common.set.push_back("transmission=" + transmission);
+struct TrainArguments : NewCellOptions {
+  std::string transmission;
+  bool view = false;
+  ViewerPlace place;
+};
+
+int run_train(CommonOptions common, const TrainArguments& options) {
+  if (!options.transmission.empty())
+    common.set.push_back("transmission=" + options.transmission);
   install_interrupt_handler();
   const SingleCell single = new_single_cell(common, options);
   const std::string folder = single.spec.folder.string();
   try {
-    const auto method = train_stage(single.spec, single.scene);
+    const AfterStep watched =
+        options.view ? watch_training(common, options.place, single) : AfterStep();
+    const auto method = train_stage(single.spec, single.scene, watched);
     const TrainCost cost = trained_cost(single.spec).value();
     if (common.json)
       print_json(
@@ -60,20 +67,19 @@ int run_train(
 }
 
 void add_train_verb(CommandLine& line) {
-  auto options = std::make_shared<NewCellOptions>();
-  auto transmission = std::make_shared<std::string>();
+  auto options = std::make_shared<TrainArguments>();
   CLI::App* verb = line.add_verb(
       line.app,
       "train",
       "train one method on one dataset",
-      [=, &line] { return run_train(line.common, *options, *transmission); },
+      [=, &line] { return run_train(line.common, *options); },
       kWorkOptions | kOutOption | kDataOption | kSeedOption | kIterationsOption | kSetOption |
           kCheckpointOption
   );
   verb->add_option("--dataset", options->dataset, "dataset folder or packed scene")->required();
   verb->add_option("--method", options->method, "method id")->capture_default_str();
   verb->add_option("--run", options->run, "run folder; else OUT/single/runs/SCENE/METHOD/SEED");
-  verb->add_option("--transmission", *transmission, "glint: raster or trace")
+  verb->add_option("--transmission", options->transmission, "glint: raster or trace")
       ->check(CLI::IsMember({"raster", "trace"}));
   verb->add_flag("--force", options->force, "train again in a folder that holds a run");
   verb->add_option("--max-pixels", options->max_pixels, "shrink images below this area")
@@ -84,6 +90,9 @@ void add_train_verb(CommandLine& line) {
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1.0))
       ->excludes("--max-pixels");
+  CLI::Option* view =
+      verb->add_flag("--view", options->view, "watch it in a browser while it goes on");
+  add_viewer_options(*verb, options->place, view);
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST_CASE("a new map is a panel of strips, a layer of the page with values, and 
   const View& view = f.scene.test.front();
   const LayerMaps maps = rendered_layers(view_folder(f.run, view.name), &view);
   CHECK(probe_values(maps, 1)[kId]["bits"] == 16);
-  const Json layers = layers_json({});
+  const Json layers = layers_json(page_layers(), {});
   CHECK(std::any_of(layers.begin(), layers.end(), [](const Json& layer) {
     return layer["id"] == kId && layer["title"] == "Extra" && layer["style"] == "depth";
   }));

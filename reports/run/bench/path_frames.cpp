@@ -63,7 +63,11 @@ void clear_path_folder(const fs::path& folder) {
   }
 }
 
-DepthScale scale_of(Method& method, const Scene& scene, const std::vector<Camera>& cameras) {
+}  // namespace
+
+DepthScale path_depth_scale(
+    Method& method, const Scene& scene, const std::vector<Camera>& cameras
+) {
   const DepthScale scale = depth_scale({}, scene.test);
   if (scale.from_truth) return scale;
   std::vector<View> frames(std::min(kDepthFrames, cameras.size()));
@@ -72,57 +76,84 @@ DepthScale scale_of(Method& method, const Scene& scene, const std::vector<Camera
   return depth_scale({}, frames);
 }
 
-class FrameWriter {
- public:
-  FrameWriter(const PathFrames& options, std::vector<MapRow> maps, DepthScale scale)
-      : options_(options), maps_(std::move(maps)), scale_(scale) {}
+namespace {
+
+std::vector<std::string> ids_of(const std::vector<MapRow>& rows) {
+  std::vector<std::string> ids;
+  for (const MapRow& row : rows) ids.emplace_back(row.id);
+  return ids;
+}
+
+}  // namespace
+
+struct PathRendering::Frames {
+  Method& method;
+  PathFrames options;
+  std::vector<MapRow> maps;
+  DepthScale scale;
+  PathResult result;
 
   void write(std::size_t frame, const MapSet& output) const {
     std::vector<TitledPicture> pictures;
-    for (const MapRow& row : maps_) {
+    for (const MapRow& row : maps) {
       const Image& map = output[row];
       if (map.empty()) continue;
-      const fs::path file = options_.folder / row.id / fmt::format("{:04}", frame);
-      pictures.push_back({std::string(row.title), layer_picture(layer_of(row), map, scale_)});
+      const fs::path file = options.folder / row.id / fmt::format("{:04}", frame);
+      pictures.push_back({std::string(row.title), layer_picture(layer_of(row), map, scale)});
       write_png(file.string() + ".png", pictures.back().picture);
-      if (options_.values && !row.file.empty())
+      if (options.values && !row.file.empty())
         write_exr(file.string() + ".exr", map, row.kind == MapKind::kNormal);
     }
     if (frame_sheet.here() && !pictures.empty())
       write_png(
-          options_.folder / "layers" / fmt::format("{:04}.png", frame), frame_sheet(pictures)
+          options.folder / "layers" / fmt::format("{:04}.png", frame), frame_sheet(pictures)
       );
   }
-
- private:
-  const PathFrames& options_;
-  std::vector<MapRow> maps_;
-  DepthScale scale_;
 };
 
-}  // namespace
-
-PathResult render_path(Method& method, const Scene& scene, const PathFrames& options) {
+PathRendering::PathRendering(Method& method, const Scene& scene, PathFrames options) {
   const std::vector<Camera>& cameras = options.path.cameras;
   GLINT_CHECK(!cameras.empty(), kUsage, "a path without frames");
   const std::vector<MapRow> rows = chosen_maps(method.render(cameras.front()), options.maps);
   clear_path_folder(options.folder);
   write_camera_path(options.folder / kPathFile, options.path);
-  const FrameWriter writer(options, rows, scale_of(method, scene, cameras));
-  PathResult result;
-  for (const MapRow& row : rows) result.maps.emplace_back(row.id);
-  Progress progress("render path", cameras.size());
-  for (const Camera& camera : cameras) {
-    throw_if_interrupted();
-    writer.write(result.frames++, method.render(camera));
-    progress.advance();
-  }
-  const fs::path video = options.folder / "layers.mp4";
+  const DepthScale scale = path_depth_scale(method, scene, cameras);
+  frames_ = std::make_unique<Frames>(
+      Frames{method, std::move(options), rows, scale, {0, ids_of(rows), {}, {}}}
+  );
+}
+
+PathRendering::~PathRendering() = default;
+
+std::size_t PathRendering::done() const { return frames_->result.frames; }
+std::size_t PathRendering::count() const { return frames_->options.path.cameras.size(); }
+
+void PathRendering::next() {
+  const std::size_t frame = frames_->result.frames;
+  frames_->write(frame, frames_->method.render(frames_->options.path.cameras[frame]));
+  ++frames_->result.frames;
+}
+
+PathResult PathRendering::finish() {
+  PathResult& result = frames_->result;
+  const fs::path& folder = frames_->options.folder;
+  const fs::path video = folder / "layers.mp4";
   result.no_video = frame_sheet.here()
-                        ? write_video(options.folder / "layers/%04d.png", options.path.fps, video)
+                        ? write_video(folder / "layers/%04d.png", frames_->options.path.fps, video)
                         : "this lean build draws no layers side by side";
   if (result.no_video.empty()) result.video = video;
   return result;
+}
+
+PathResult render_path(Method& method, const Scene& scene, const PathFrames& options) {
+  PathRendering rendering(method, scene, options);
+  Progress progress("render path", rendering.count());
+  while (rendering.done() < rendering.count()) {
+    throw_if_interrupted();
+    rendering.next();
+    progress.advance();
+  }
+  return rendering.finish();
 }
 
 }  // namespace glint

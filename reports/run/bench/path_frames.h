@@ -3,11 +3,13 @@
 // by side, and a video of that.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "glint/method.h"
 #include "glint/scene/camera_path_file.h"
+#include "reports/show/pictures/depth_scale.h"
 
 namespace glint {
 
@@ -23,6 +25,26 @@ struct PathResult {
   std::vector<std::string> maps;  // ids, in the order of the table
   fs::path video;                 // empty: none
   std::string no_video;           // why
+};
+
+// The range of depths of a path's pictures: that of the true depths of the test views, else of
+// eight of these cameras.
+DepthScale path_depth_scale(Method& method, const Scene& scene, const std::vector<Camera>& cameras);
+
+// A path frame by frame, for those who have other things to do in between. Errors: render_path()'s.
+class PathRendering {
+ public:
+  PathRendering(Method& method, const Scene& scene, PathFrames options);
+  ~PathRendering();
+
+  std::size_t done() const;
+  std::size_t count() const;
+  void next();          // while done() < count()
+  PathResult finish();  // the video
+
+ private:
+  struct Frames;
+  std::unique_ptr<Frames> frames_;
 };
 
 // FOLDER/path.json (the cameras), FOLDER/<map>/0000.png, ... as the page colours them, in one range

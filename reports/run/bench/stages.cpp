@@ -80,7 +80,7 @@ void render_stage(const RunSpec& spec, const Scene& scene, Method& method) {
 
 double measure_fps(Method& method, const Scene& scene, const TimingOptions& options) {
   const auto render = [&](int frame) {
-    method.draw(scene.test[static_cast<std::size_t>(frame) % scene.test.size()].camera);
+    method.picture(scene.test[static_cast<std::size_t>(frame) % scene.test.size()].camera);
     synchronize();
   };
   for (int frame = 0; frame < options.warmup; ++frame) render(frame);

@@ -17,10 +17,15 @@ struct TimingOptions {
   int frames = 50, warmup = 5;
 };
 
+// Looks at a training after each step (TrainOptions::after_step).
+using AfterStep = std::function<void(Method&, const StepStats&)>;
+
 // Trains into spec.folder, from scratch or from where an earlier training of the same document was
 // stopped: config.json, log.jsonl, checkpoints, the method's files, then env.json with seconds and
 // peak memory. Errors: trainer.h's; clear_run_folder()'s.
-std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene);
+std::unique_ptr<Method> train_stage(
+    const RunSpec& spec, const Scene& scene, const AfterStep& after_step = {}
+);
 
 // The trained method of a run folder. Errors (kBadPrediction): not trained, files damaged.
 std::unique_ptr<Method> load_trained(const RunSpec& spec);

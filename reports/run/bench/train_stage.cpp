@@ -31,7 +31,9 @@ TrainOptions train_options(const RunSpec& spec) {
 
 }  // namespace
 
-std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
+std::unique_ptr<Method> train_stage(
+    const RunSpec& spec, const Scene& scene, const AfterStep& after_step
+) {
   const fs::path checkpoint = spec.folder / kCheckpointFile;
   const bool goes_on = !spec.anew && is_checkpoint_of(checkpoint, stage_key(spec.train_document));
   if (!goes_on && !spec.anew && is_there(checkpoint))
@@ -41,7 +43,9 @@ std::unique_ptr<Method> train_stage(const RunSpec& spec, const Scene& scene) {
   write_run_spec(spec, method->config());
   reset_peak_memory();
   reset_device_peak();
-  const TrainReport report = train(*method, scene, train_options(spec));
+  TrainOptions options = train_options(spec);
+  options.after_step = after_step;
+  const TrainReport report = train(*method, scene, options);
   auto files =
       save_in_place(spec.folder, [&](const fs::path& folder) { method->save(folder.string()); });
   write_trained(

@@ -43,6 +43,8 @@ std::vector<std::string> video_command(const fs::path& pattern, double fps, cons
       plain_name(video)};
 }
 
+bool video_program_is_here() { return run_command({"ffmpeg", "-version"}).has_value(); }
+
 std::string write_video(const fs::path& pattern, double fps, const fs::path& video) {
   const fs::path temporary = unfinished_path(video);
   const auto result = run_command(video_command(pattern, fps, temporary));

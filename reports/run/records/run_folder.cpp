@@ -42,7 +42,7 @@ void check_map(const fs::path& folder, const MapRow& row, const Image& map, Imag
       row.channels()
   );
   GLINT_CHECK(
-      !row.stored_file().empty(),
+      !row.kept || !row.stored_file().empty(),
       kBadPrediction,
       "{}: the method rendered {}, for which the table of maps (glint/scene/maps.h) has no file",
       folder.string(),

@@ -90,7 +90,7 @@ class SceneWriter {
     Json json = {{"name", scene_.name}, {"dataset", scene_.dataset}};
     json["note"] = note_;
     json["depth_from_truth"] = scale_.from_truth;
-    json["layers"] = layers_json(scale_);
+    json["layers"] = layers_json(page_layers(), scale_);
     json["metrics"] = metric_ids();
     json["views"] = write_views();
     json["runs"] = Json::array();

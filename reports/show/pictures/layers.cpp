@@ -71,10 +71,6 @@ class Collector {
     if (size_ == ImageSize{}) size_ = map.size();
     if (!map.empty() && map.size() == size_) maps_.emplace(id, std::move(map));
   }
-  const Image* find(const std::string& id) const {
-    const auto it = maps_.find(id);
-    return it == maps_.end() ? nullptr : &it->second;
-  }
   LayerMaps take() { return std::move(maps_); }
 
  private:
@@ -148,17 +144,25 @@ std::vector<PageLayer> page_layers() {
   return layers;
 }
 
+void add_errors(const View& view, LayerMaps& maps) {
+  const auto fitting = [&](const char* id, const Image& truth) -> const Image* {
+    const auto map = maps.find(id);
+    const bool fits = map != maps.end() && !truth.empty() && map->second.size() == truth.size();
+    return fits ? &map->second : nullptr;
+  };
+  if (const Image* rgb = fitting("rgb", view.rgb)) maps["error"] = error_map(*rgb, view.rgb);
+  const Image& true_normal = view.truth["normal"];
+  if (const Image* normal = fitting("normal", true_normal))
+    maps["angle"] = angle_map(*normal, true_normal);
+}
+
 LayerMaps rendered_layers(const fs::path& view_folder, const View* view) {
   Collector layers(view ? view->rgb.size() : ImageSize{});
   for (const MapRow& row : maps())
     if (!row.shown_file().empty()) layers.add(row.id, read_layer(view_folder, row));
-  if (view == nullptr) return layers.take();
-  if (const Image* rgb = layers.find("rgb")) layers.add("error", error_map(*rgb, view->rgb));
-  const Image& true_normal = view->truth["normal"];
-  const Image* normal = layers.find("normal");
-  if (normal != nullptr && true_normal.size() == normal->size())
-    layers.add("angle", angle_map(*normal, true_normal));
-  return layers.take();
+  LayerMaps found = layers.take();
+  if (view != nullptr) add_errors(*view, found);
+  return found;
 }
 
 Image rendered_layer(const fs::path& view_folder, const std::string& id, const View& view) {
@@ -215,9 +219,17 @@ Image layer_picture(const PageLayer& layer, const Image& map, const DepthScale& 
   return map;
 }
 
-Json layers_json(const DepthScale& scale) {
+std::vector<MapRow> maps_in(const MapSet& maps) {
+  std::vector<MapRow> rows;
+  maps.for_each([&](const MapRow& row, const Image&) {
+    if (row.shown) rows.push_back(row);
+  });
+  return rows;
+}
+
+Json layers_json(const std::vector<PageLayer>& layers, const DepthScale& scale) {
   Json json = Json::array();
-  for (const PageLayer& layer : page_layers()) {
+  for (const PageLayer& layer : layers) {
     Json entry = {{"id", layer.id}, {"title", layer.title}, {"style", style_name(layer.style)}};
     if (layer.style != LayerStyle::kPicture && layer.style != LayerStyle::kNormal) {
       const ColorRange range = range_of(layer.style, scale);

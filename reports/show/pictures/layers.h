@@ -35,6 +35,8 @@ inline constexpr float kPageErrorHigh = 0.25f, kPageAngleHigh = 45;
 // need `view`; nullptr: the truth is not at hand.
 using LayerMaps = std::map<std::string, Image>;
 LayerMaps rendered_layers(const fs::path& view_folder, const View* view);
+// Adds "error" and "angle" to maps of this view's size, where it has the truth.
+void add_errors(const View& view, LayerMaps& maps);
 // One of them; empty where that would be absent.
 Image rendered_layer(const fs::path& view_folder, const std::string& id, const View& view);
 // Is there a file for it? It may be damaged.
@@ -44,8 +46,11 @@ LayerMaps true_layers(const View& view);
 
 Image layer_picture(const PageLayer& layer, const Image& map, const DepthScale& scale);
 
+// Maps of the set that are shown, in the order of the table.
+std::vector<MapRow> maps_in(const MapSet& maps);
+
 // Id, title, style, and for colour maps unit, limits, colours at equal steps from low to high, and
 // the decimals of the values that the page's probe has.
-Json layers_json(const DepthScale& scale);
+Json layers_json(const std::vector<PageLayer>& layers, const DepthScale& scale);
 
 }  // namespace glint

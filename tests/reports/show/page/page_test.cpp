@@ -391,7 +391,7 @@ TEST_CASE("depths of all methods of a scene have one range") {
 
 TEST_CASE("the colour bar has the colours of the pictures") {
   const DepthScale scale{1, 3, true};
-  for (const Json& layer : layers_json(scale)) {
+  for (const Json& layer : layers_json(page_layers(), scale)) {
     if (!layer.contains("colors")) continue;
     INFO(layer["id"]);
     const auto layers = page_layers();
