@@ -159,7 +159,7 @@ export class MockServer {
       const text = `${this.hello.runs[run].title} ${layer}`;
       images.push(await this.painter.jpeg(size, color ?? kColors[layer] ?? "#707070", text));
     }
-    const numbers = { ms: 12.3, pixels_per_second: 2.6e6, surfels: 90930, drawn: 54321, iteration };
+    const numbers = { ms: 12.3, pixels_per_second: 2.6e6, surfels: 90930, iteration };
     const header = { type: "frame", serial: look.serial, whole, size, ...numbers };
     this.sent = header;
     this.socket.send(Buffer.from(packFrame(header, images)));

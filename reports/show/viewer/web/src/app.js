@@ -95,8 +95,9 @@ export class App {
   // The next view of the same split, or the one before.
   step(direction) {
     const from = this.state.view ?? this.lastView;
-    const split = from?.split ?? this.hello.views[0]?.split;
-    const views = this.hello.views.filter((view) => view.split === split);
+    const { views: all } = this.hello;
+    const split = from?.split ?? (all.some((view) => view.split === "test") ? "test" : "train");
+    const views = all.filter((view) => view.split === split);
     if (views.length === 0) return;
     const at = views.findIndex(({ index }) => index === from?.index);
     const next = at < 0 ? 0 : (at + direction + views.length) % views.length;
@@ -177,10 +178,11 @@ export class App {
     }
   }
 
-  // After the greeting of a server that was away.
-  greet(hello) {
+  // A greeting: of a server that was away, and knows of no look, or because a training has more
+  // layers than before.
+  greet(hello, isNew) {
     this.hello = hello;
-    this.sent = null;
+    if (isNew) this.sent = null;
     this.changed();
   }
 
@@ -234,6 +236,7 @@ export class App {
     if (message.type === "state") this.training = message;
     if (message.type === "path") this.saved = message;
     if (message.type === "video") this.video = message;
+    if (message.type === "error" && !this.video?.of) this.video = null; // it did not begin
     if (message.type === "pick" && message.point) this.change({ pivot: message.point });
     this.changed();
   }

@@ -17,11 +17,15 @@ const content = h("div", { class: "content" });
 const notices = new Notices(() => connection.open());
 let hello = null;
 let viewer = null;
+let isGreeted = false; // by this connection
 
 const connection = new Connection({
   onMessage: receive,
   onFrame: (buffer) => frames.receive(buffer),
-  onStatus: (status, wait) => notices.connection(status, wait),
+  onStatus: (status, wait) => {
+    if (status === "open") isGreeted = false;
+    notices.connection(status, wait);
+  },
 });
 connection.serial = 0; // of the last look, over all connections
 
@@ -84,14 +88,15 @@ function greet(message) {
   const isSame = hello && namesOf(hello) === namesOf(message);
   hello = message;
   document.title = `${hello.title} · GLINT Bench`;
-  if (isSame && viewer) viewer.app.greet(hello);
-  else openByAddress();
+  if (isSame && viewer) viewer.app.greet(hello, !isGreeted);
+  else if (!isSame) openByAddress();
+  isGreeted = true;
 }
 
 function receive(message) {
   if (message.type === "hello") greet(message);
-  else if (message.type === "error") notices.say(message.message);
-  else if (viewer) viewer.app.receive(message);
+  else viewer?.app.receive(message);
+  if (message.type === "error") notices.say(message.message);
 }
 
 function savedTheme() {

@@ -77,7 +77,8 @@ export function layersPanel(app) {
       sideChoice(app),
     ]);
     const shown = app.layerOf(app.side);
-    keyed(list, [app.side, app.pane().run, shown.id, Boolean(view), names], () => layerList(app));
+    const ids = app.layersOf().map(({ id }) => id);
+    keyed(list, [app.side, app.pane().run, shown.id, Boolean(view), ids], () => layerList(app));
     keyed(legend, [app.pane().run, shown, names], () => legendOf(shown));
     keyed(resolution, [size, Boolean(view)], () => [
       h("span", { class: "quiet" }, "Resolution"),

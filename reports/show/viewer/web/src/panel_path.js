@@ -121,9 +121,9 @@ function actions(path) {
 const command = (text) =>
   h("div", { class: "command" }, h("code", {}, text), copyButton(text, "Copy", { class: "small" }));
 
-function videoState({ done, of, name, error }) {
+function videoState({ done, of, name, file, error }) {
   if (error) return h("p", { class: "bad" }, `No video: ${error}`);
-  if (name) {
+  if (file) {
     const href = serverUrl("/video", { name });
     return h("p", {}, h("a", { href, download: `${name}.mp4`, id: "video-link" }, `Video: ${name}.mp4`));
   }

@@ -11,6 +11,7 @@ const short = (text) => text.replace(/^(-?)0\./, "$1.");
 // A number, three of a colour or vector, or nothing.
 export function valueText(value, layer) {
   if (value === null || value === undefined) return "–";
+  if (layer.style === "depth" && value === 0) return "–"; // nothing there
   if (!Array.isArray(value)) return value.toFixed(layer.decimals ?? kPlainDecimals);
   const decimals = layer.style === "normal" ? kVectorDecimals : kColorDecimals;
   return value.map((part) => short(part.toFixed(decimals))).join(" ");
@@ -31,7 +32,7 @@ function columnsOf(app, { panes, truth }) {
   return truth ? [...unique, { title: "Truth", values: truth }] : unique;
 }
 
-const titleOf = ({ title, unit }) => (unit ? `${title} (${unit})` : title);
+const titleOf = ({ title, unit }) => (unit ? `${title}, ${unit}` : title);
 
 function table(app, probe) {
   const columns = columnsOf(app, probe);

@@ -8,9 +8,12 @@ function clock(seconds) {
 }
 
 export function trainingPanel(app) {
+  // The server says nothing while it rests, so what was asked for counts as done.
   const pause = button("Pause", () => {
     const paused = !app.training?.paused;
-    app.connection.send({ type: "pause", paused });
+    if (!app.connection.send({ type: "pause", paused })) return;
+    app.training = { ...app.training, paused };
+    app.changed();
   });
   pause.id = "pause";
   const progress = h("progress", { "aria-label": "Progress of the training" });
@@ -19,12 +22,15 @@ export function trainingPanel(app) {
   const update = () => {
     element.hidden = !app.hello.training;
     if (element.hidden) return;
-    const { iteration = 0, seconds = 0, paused = false } = app.training ?? {};
+    const { iteration = 0, seconds, paused = false } = app.training ?? {};
     const { iterations } = app.hello.training;
     Object.assign(progress, { max: iterations, value: iteration });
-    keyed(text, [iteration, seconds, paused], () =>
-      `${thousands(iteration)} of ${thousands(iterations)} · ${clock(seconds)}${paused ? " · paused" : ""}`,
-    );
+    const parts = [
+      `${thousands(iteration)} of ${thousands(iterations)}`,
+      seconds > 0 && clock(seconds),
+      paused && "paused",
+    ];
+    keyed(text, parts, () => parts.filter(Boolean).join(" · "));
     pause.textContent = paused ? "Go on" : "Pause";
   };
   return { element, update };

@@ -15,7 +15,7 @@ export function statusText(app, rate) {
     `${ms.toFixed(ms < 10 ? 1 : 0)} ms`,
     rate > 0 && `${rate.toFixed(rate < 10 ? 1 : 0)} fps`,
     latency !== undefined && `${Math.round(latency)} ms to the screen`,
-    `${thousands(drawn)} of ${thousands(surfels)} surfels`,
+    `${drawn === undefined ? "" : `${thousands(drawn)} of `}${thousands(surfels)} surfels`,
   ]
     .filter(Boolean)
     .join("  ·  ");

@@ -101,6 +101,7 @@ export class Viewer {
         }),
         button("◐ Theme", this.toggleTheme, { class: "small", id: "theme" }),
         button("? Keys", () => showHelp(), { class: "small", id: "help", title: "keys (?)" }),
+        button("Hide", () => this.togglePanel(), { class: "small", id: "hide", title: "hide (h)" }),
       ),
     );
   }
@@ -111,11 +112,11 @@ export class Viewer {
 
   #build() {
     this.status = h("p", { class: "status" });
-    this.fold = button("Panel", () => this.togglePanel(), {
-      ...{ class: "small", id: "fold", title: "show or hide the panel (h)" },
+    this.unfold = button("Panel", () => this.togglePanel(), {
+      ...{ class: "small", id: "unfold", title: "show the panel (h)" },
     });
     this.stageArea = h("div", { class: "stage-area" }, this.picture.element);
-    const bar = h("div", { class: "status-bar" }, this.status, this.fold);
+    const bar = h("div", { class: "status-bar" }, this.status, this.unfold);
     const panel = h(
       "aside",
       { class: "panel", id: "panel", "aria-label": "Panel" },
@@ -127,13 +128,17 @@ export class Viewer {
     replace(this.container, this.layout);
   }
 
+  // The focus goes where the panel comes back from.
   togglePanel() {
-    this.#showPanel(this.layout.dataset.panel !== "open");
+    const open = this.layout.dataset.panel !== "open";
+    const held = this.layout.querySelector(".panel").contains(document.activeElement);
+    this.#showPanel(open);
+    if (!open && held) this.unfold.focus();
   }
 
   #showPanel(open) {
     this.layout.dataset.panel = open ? "open" : "folded";
-    this.fold.setAttribute("aria-expanded", String(open));
+    this.unfold.hidden = open;
   }
 
   show(header, bitmaps) {
