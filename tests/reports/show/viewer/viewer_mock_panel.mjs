@@ -124,7 +124,7 @@ async function testTraining(page, server, { shot, wholeShown }) {
   await wholeShown(page, server);
   server.tell({ type: "state", iteration: 1200, seconds: 75, paused: false });
   await until(
-    async () => (await textOf(page, "#training")).includes("1,200 of 30,000 · 1:15 min"),
+    async () => (await textOf(page, "#training")).includes("1,200 / 30,000 · 1:15 min"),
     "how far it is",
   );
   const shown = server.of("shown").length;

@@ -14,9 +14,9 @@ const kMotions = [
   { keys: [], shown: ["Shift"], help: "with these: faster", run: nothing },
   { keys: [], shown: ["left drag", "one finger"], help: "turn, or orbit", run: nothing },
   { keys: [], shown: ["right drag", "two fingers"], help: "move across", run: nothing },
-  { keys: [], shown: ["wheel"], help: "nearer or further (orbit), speed (fly)", run: nothing },
+  { keys: [], shown: ["wheel"], help: "distance (orbit), speed (fly)", run: nothing },
   { keys: [], shown: ["pinch"], help: "nearer or further", run: nothing },
-  { keys: [], shown: ["double click"], help: "the pivot, which orbits are about", run: nothing },
+  { keys: [], shown: ["double click"], help: "sets the pivot", run: nothing },
 ];
 
 export function viewerKeys(viewer) {
@@ -30,14 +30,14 @@ export function viewerKeys(viewer) {
     { keys: ["]"], help: "next view", run: () => app.step(1) },
     { keys: ["f"], help: "cameras of the views", run: () => app.set({ frusta: !app.state.frusta }) },
     { keys: kDigits, shown: ["1", "…", "9"], help: "layer", run: ({ key }) => app.setLayer(key - 1) },
-    { keys: ["x"], help: "layers of the other side", run: () => app.toggleSide() },
+    { keys: ["x"], help: "keys for the other side", run: () => app.toggleSide() },
     {
       keys: ["c"],
-      help: "the photo beside, in a view",
+      help: "the photo beside",
       run: () => app.setRight(app.state.right ? null : "photo"),
     },
-    { keys: ["k"], help: "add a key to the path", run: () => path.add() },
+    { keys: ["k"], help: "add to the path", run: () => path.add() },
     { keys: ["p"], help: "play the path", run: () => path.player.toggle() },
-    { keys: ["h"], help: "show or hide the panel", run: () => viewer.togglePanel() },
+    { keys: ["h"], help: "the panel", run: () => viewer.togglePanel() },
   ];
 }

@@ -26,9 +26,8 @@ export function trainingPanel(app) {
     const { iterations } = app.hello.training;
     Object.assign(progress, { max: iterations, value: iteration });
     const parts = [
-      `${thousands(iteration)} of ${thousands(iterations)}`,
+      `${thousands(iteration)} / ${thousands(iterations)}`,
       seconds > 0 && clock(seconds),
-      paused && "paused",
     ];
     keyed(text, parts, () => parts.filter(Boolean).join(" · "));
     pause.textContent = paused ? "Go on" : "Pause";
