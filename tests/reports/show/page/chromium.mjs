@@ -22,7 +22,7 @@ export const launchBrowser = ({ webgl = true } = {}) =>
 // addresses other than `allowed` (a pattern).
 export async function newPage(browser, allowed, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, ...options });
-  context.setDefaultTimeout(120_000); // pictures and WebGL in software, on machines that do other work
+  context.setDefaultTimeout(120_000); // WebGL in software, on machines that do other work
   const page = await context.newPage();
   await page.addInitScript(() => {
     // ImageData of a PNG in base64.

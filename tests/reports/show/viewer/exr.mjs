@@ -1,5 +1,5 @@
-// Reads the EXR files that glint-bench writes: scan lines of float32 channels, ZIP or not compressed
-// [openexr.com, "OpenEXR File Layout"].
+// Reads the EXR files that glint-bench writes: scan lines of float32 channels, by ZIP or not
+// compressed [openexr.com, "OpenEXR File Layout"].
 import { readFileSync } from "node:fs";
 import { inflateSync } from "node:zlib";
 
@@ -30,7 +30,7 @@ function readHeader(file) {
 // Names, in the order of the file.
 function channelsOf(list) {
   const names = [];
-  for (let at = 0; list[at] !== 0; ) {
+  for (let at = 0; list[at] !== 0;) {
     const [name, rest] = textAt(list, at);
     if (list.readUInt32LE(rest) !== kFloat) throw new Error(`channel ${name} is not float32`);
     names.push(name);

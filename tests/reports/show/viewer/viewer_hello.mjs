@@ -3,7 +3,10 @@ import { cameraOf, lookAt } from "../../../../reports/show/viewer/web/src/camera
 
 const kUp = [0, 0, 1];
 const kColors = Array.from({ length: 256 }, (_, i) => {
-  const part = (share) => Math.round(255 * share).toString(16).padStart(2, "0");
+  const part = (share) =>
+    Math.round(255 * share)
+      .toString(16)
+      .padStart(2, "0");
   return `#${part(i / 255)}${part(0.4 + 0.4 * (i / 255))}${part(0.6 - 0.4 * (i / 255))}`;
 });
 

@@ -1,5 +1,5 @@
-// A server in the test's own hands: greets, answers looks with painted frames by the protocol's rules,
-// and does what a real one hardly does: goes away, is late, sends nonsense.
+// A server in the test's own hands: greets, answers looks with painted frames by the protocol's
+// rules, and does what a real one hardly does: goes away, is late, sends nonsense.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { packFrame } from "../../../../reports/show/viewer/web/src/protocol.js";

@@ -25,7 +25,10 @@ async function testLateFrames(page, server, { wholeShown }) {
   assert.match(await textOf(page, ".toast"), /frame could not be read/);
   await until(() => server.of("shown").length > shown + 1, "a damaged picture is answered, too");
   server.raw([9, 0, 0, 0, 1]);
-  await until(async () => (await textOf(page, ".toast")).includes("ends within its header"), "torn");
+  await until(
+    async () => (await textOf(page, ".toast")).includes("ends within its header"),
+    "torn",
+  );
   assert.ok(near(await colorAt(page, 0.9, 0.1), "#2a788e"), "the picture stays");
 }
 

@@ -104,7 +104,10 @@ async function testPath(page, server, { shot, wholeShown }) {
   const command = "glint-bench render --run out/small --path tour.json";
   server.tell({ type: "path", file: "out/tour.json", command });
   await until(async () => (await textOf(page, ".command code")) === command, "the command");
-  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#path-download")]);
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.click("#path-download"),
+  ]);
   assert.equal(download.suggestedFilename(), "path.json");
   const file = JSON.parse(readFileSync(await download.path(), "utf8"));
   assert.deepEqual([file.schema, file.frames.length, file.width], [1, 24, 240]);

@@ -60,7 +60,10 @@ async function testMotion(page, server) {
   await page.mouse.wheel(0, -300);
   await until(async () => (await textOf(page, "#speed + output")) !== speed, "the wheel is speed");
   const serials = server.of("look").map(({ serial }) => serial);
-  assert.ok(serials.every((serial, i) => i === 0 || serial > serials[i - 1]), "serials ascend");
+  assert.ok(
+    serials.every((serial, i) => i === 0 || serial > serials[i - 1]),
+    "serials ascend",
+  );
 }
 
 async function testOrbit(page, server) {
@@ -172,7 +175,11 @@ async function testTouch(page, server) {
   const touch = (type, points) =>
     client.send("Input.dispatchTouchEvent", {
       type,
-      touchPoints: points.map(([u, v], id) => ({ x: box.x + u * box.width, y: box.y + v * box.height, id })),
+      touchPoints: points.map(([u, v], id) => ({
+        x: box.x + u * box.width,
+        y: box.y + v * box.height,
+        id,
+      })),
     });
   const before = server.last("look");
   await touch("touchStart", [[0.4, 0.5]]);

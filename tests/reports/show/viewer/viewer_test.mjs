@@ -1,7 +1,7 @@
-// The viewer's page and its server in headless Chromium. Arguments: glint-bench, a folder of a store
-// with runs of 2dgs and glint on room_1, folder for screenshots.
+// The viewer's page and its server in headless Chromium. Arguments: glint-bench, a folder of a
+// store with runs of 2dgs and glint on one scene, folder for screenshots.
 import assert from "node:assert/strict";
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { launchBrowser } from "../page/chromium.mjs";
 import { readExr } from "./exr.mjs";
 import { boxOf, breathe, drag, hold, openPage, shotsInto, textOf, until } from "./viewer_page.mjs";
@@ -9,7 +9,8 @@ import { socketStatus, startServer } from "./viewer_server.mjs";
 
 const [bench, store, shots] = process.argv.slice(2);
 const shot = shotsInto(shots);
-const runOf = (method) => `${store}/runs/room_1/${method}/0`;
+const [scene] = readdirSync(`${store}/runs`);
+const runOf = (method) => `${store}/runs/${scene}/${method}/0`;
 const kChannels = { rgb: ["R", "G", "B"], normal: ["X", "Y", "Z"] };
 const kPixels = [
   [0.1, 0.2],
@@ -71,7 +72,10 @@ async function testMotion(page, heard) {
   await drag(page, [0.5, 0.5], [0.6, 0.5]);
   await rests(page, heard);
   const serials = heard.frames.map(({ serial }) => serial);
-  assert.ok(serials.every((serial, i) => i === 0 || serial >= serials[i - 1]), "in order");
+  assert.ok(
+    serials.every((serial, i) => i === 0 || serial >= serials[i - 1]),
+    "in order",
+  );
   const box = await boxOf(page);
   await page.keyboard.press("f");
   await page.mouse.dblclick(box.x + 0.5 * box.width, box.y + 0.6 * box.height);
@@ -81,7 +85,9 @@ async function testMotion(page, heard) {
 }
 
 async function testLayers(page, heard) {
-  await page.selectOption("#view", { label: "Test view 0000" }).catch(() => page.keyboard.press("]"));
+  await page
+    .selectOption("#view", { label: "Test view 0000" })
+    .catch(() => page.keyboard.press("]"));
   await rests(page, heard);
   const { layers } = heard.texts.find(({ type }) => type === "hello").runs[0];
   assert.ok(layers.length >= 10, `glint has ${layers.length} layers`);
@@ -172,9 +178,7 @@ async function testSurfels(page, heard) {
 
 const colorSum = (page) =>
   page.locator(".frame-canvas").evaluate((canvas) => {
-    const { data } = canvas
-      .getContext("2d")
-      .getImageData(0, 0, canvas.width, canvas.height);
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
     return data.reduce((sum, value) => sum + value, 0);
   });
 

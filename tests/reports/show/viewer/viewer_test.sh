@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # viewer_test.sh GLINT_BENCH [SCREENSHOT_FOLDER [STORE]]: the viewer's page in headless Chromium, against
 # `glint-bench view` of two small runs, or of those of a store that is there (OUT/NAME, with 2dgs and glint on
-# room_1). viewer_test.sh --mock [SCREENSHOT_FOLDER]: against a mock server.
+# one scene). viewer_test.sh --mock [SCREENSHOT_FOLDER]: against a mock server.
 # Exit code 77 (skipped) where the browser, Node.js or playwright-core are absent.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

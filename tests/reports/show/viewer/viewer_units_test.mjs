@@ -7,7 +7,11 @@ import * as frusta from "../../../../reports/show/viewer/web/src/frusta.js";
 import * as look from "../../../../reports/show/viewer/web/src/look.js";
 import * as motions from "../../../../reports/show/viewer/web/src/motions.js";
 import { pathCameras, pathFile } from "../../../../reports/show/viewer/web/src/path_file.js";
-import { packFrame, parseFrame, waitAfter } from "../../../../reports/show/viewer/web/src/protocol.js";
+import {
+  packFrame,
+  parseFrame,
+  waitAfter,
+} from "../../../../reports/show/viewer/web/src/protocol.js";
 import { Spline } from "../../../../reports/show/viewer/web/src/spline.js";
 import * as states from "../../../../reports/show/viewer/web/src/state.js";
 import { pinch } from "../../../../reports/show/viewer/web/src/touch.js";
@@ -204,7 +208,10 @@ test("frames come out as they were packed; torn ones do not", () => {
   const bytes = packFrame({ type: "frame", serial: 7, size: [2, 1] }, images);
   const { header, images: found } = parseFrame(bytes.buffer);
   assert.equal(header.serial, 7);
-  assert.deepEqual(found.map((image) => [...image]), [[1, 2, 3], [4]]);
+  assert.deepEqual(
+    found.map((image) => [...image]),
+    [[1, 2, 3], [4]],
+  );
   for (const length of [0, 3, 4, 20, bytes.length - 1])
     assert.throws(() => parseFrame(bytes.slice(0, length).buffer), /frame|JSON/);
 });
@@ -227,7 +234,10 @@ test("a look is what the server expects", () => {
   const snapped = look.lookOf(kHello, state, [900, 700]);
   assert.deepEqual(snapped.panes, [{ run: 0, layer: "error" }], "a photo is no pane");
   assert.deepEqual(snapped.size, [kHello.views[0].camera.width, kHello.views[0].camera.height]);
-  near(look.cameraOfLook(kHello, free).world_from_cam.flat(), kHello.views[0].camera.world_from_cam.flat());
+  near(
+    look.cameraOfLook(kHello, free).world_from_cam.flat(),
+    kHello.views[0].camera.world_from_cam.flat(),
+  );
 });
 
 class Params {

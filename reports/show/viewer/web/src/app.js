@@ -2,9 +2,9 @@
 import { addressOf, keepAddress } from "../../../page/web/src/address.js";
 import { levelled } from "./camera.js";
 import { cameraOfLook, lookOf, sawView, shownLayer, viewOf } from "./look.js";
+import { Prober } from "./prober.js";
 import { addressValues, firstRig, upOf } from "./state.js";
 
-const kProbeMs = 100;
 const kMostLooks = 64; // of which it is kept what they asked for
 
 export class App {
@@ -16,7 +16,8 @@ export class App {
     this.side = "left"; // which the layer keys are for
     this.keys = []; // of the path: {pose, fov}
     this.shown = null; // {header, look, camera, latency}
-    this.probe = null;
+    this.prober = new Prober(this);
+    this.probe = null; // its last answer
     this.training = null; // the last word of it
     this.video = null;
     this.saved = null; // the answer to a path
@@ -196,7 +197,7 @@ export class App {
       latency: asked && !asked.answered ? performance.now() - asked.sent : this.shown?.latency,
     };
     if (asked) asked.answered = true;
-    if (header.whole) this.askProbe();
+    if (header.whole) this.prober.ask();
     this.changed();
   }
 
@@ -204,27 +205,8 @@ export class App {
   point(at) {
     this.pointer = at;
     if (!at) this.probe = null;
-    this.askProbe();
+    this.prober.ask();
     this.changed();
-  }
-
-  // At most ten a second; the last position is asked in any case.
-  askProbe() {
-    if (this.probeTimer) return;
-    const wait = Math.max(0, kProbeMs - (performance.now() - (this.probed ?? -kProbeMs)));
-    this.probeTimer = setTimeout(() => {
-      this.probeTimer = null;
-      this.#sendProbe();
-    }, wait);
-  }
-
-  #sendProbe() {
-    const header = this.shown?.header;
-    if (this.stopped || !this.pointer || !header?.whole || header.serial !== this.connection.serial)
-      return;
-    this.probed = performance.now();
-    const [x, y] = this.pointer;
-    this.connection.send({ type: "probe", serial: header.serial, x, y });
   }
 
   pick([x, y]) {

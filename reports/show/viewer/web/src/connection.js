@@ -24,7 +24,8 @@ async function isTokenWrong() {
 }
 
 export class Connection {
-  // onMessage(object); onFrame(ArrayBuffer); onStatus("open" | "lost" | "refused", ms to the next try)
+  // onMessage(object); onFrame(ArrayBuffer); onStatus(status, ms to the next try), of which the
+  // status is "open", "lost" or "refused"
   constructor({ onMessage, onFrame, onStatus }) {
     Object.assign(this, { onMessage, onFrame, onStatus, failures: 0 });
   }

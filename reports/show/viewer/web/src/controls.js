@@ -34,7 +34,7 @@ export class Controls {
     on("pointermove", (event) => this.#moved(event));
     on("pointerup", (event) => this.#release(event));
     on("pointercancel", (event) => this.#release(event));
-    on("pointerleave", () => this.pointers.size === 0 && actions.point(null));
+    on("pointerleave", (event) => this.#leave(event));
     on("dblclick", (event) => actions.pick(...this.#shares(event)));
     on("contextmenu", (event) => event.preventDefault());
     on("wheel", (event) => this.#wheel(event), { passive: false });
@@ -99,8 +99,14 @@ export class Controls {
     const pressed = this.pointers.delete(event.pointerId);
     this.element.classList.remove("dragged");
     const isClick = event.type === "pointerup" && event.button === 0;
-    if (pressed && isClick && this.travelled < kDragPixels)
-      this.actions.click(...this.#shares(event));
+    if (!pressed || !isClick || this.travelled >= kDragPixels) return;
+    this.actions.point(this.#shares(event));
+    this.actions.click(...this.#shares(event));
+  }
+
+  // A finger has no place between touches: where it tapped stays pointed at.
+  #leave({ pointerType }) {
+    if (this.pointers.size === 0 && pointerType !== "touch") this.actions.point(null);
   }
 
   #wheel(event) {

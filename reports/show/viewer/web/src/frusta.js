@@ -26,7 +26,8 @@ export const segmentsOf = ({ apex, corners }) => [
 // The part of a segment before the camera in pixels: [[x, y], [x, y]]; null: none.
 export function projectedSegment(camera, [from, to]) {
   const pose = poseOf(camera.world_from_cam);
-  const depth = (point) => sub(point, pose.position).reduce((s, v, i) => s + v * pose.forward[i], 0);
+  const depth = (point) =>
+    sub(point, pose.position).reduce((s, v, i) => s + v * pose.forward[i], 0);
   const [a, b] = [depth(from), depth(to)];
   if (a < kNear && b < kNear) return null;
   const at = (share) => add(from, scaled(sub(to, from), share));

@@ -28,8 +28,17 @@ export function viewerKeys(viewer) {
     { keys: ["r"], help: "back to the first view", run: () => app.reset() },
     { keys: ["["], help: "view before", run: () => app.step(-1) },
     { keys: ["]"], help: "next view", run: () => app.step(1) },
-    { keys: ["f"], help: "cameras of the views", run: () => app.set({ frusta: !app.state.frusta }) },
-    { keys: kDigits, shown: ["1", "…", "9"], help: "layer", run: ({ key }) => app.setLayer(key - 1) },
+    {
+      keys: ["f"],
+      help: "cameras of the views",
+      run: () => app.set({ frusta: !app.state.frusta }),
+    },
+    {
+      keys: kDigits,
+      shown: ["1", "…", "9"],
+      help: "layer",
+      run: ({ key }) => app.setLayer(key - 1),
+    },
     { keys: ["x"], help: "keys for the other side", run: () => app.toggleSide() },
     {
       keys: ["c"],

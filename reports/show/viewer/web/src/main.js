@@ -82,7 +82,9 @@ const namesOf = ({ runs }) => JSON.stringify(runs.map(({ name }) => name));
 
 function greet(message) {
   if (message.version !== kVersion) {
-    notices.say(`The server speaks version ${message.version}, this page ${kVersion}; load it again.`);
+    notices.say(
+      `The server speaks version ${message.version}, this page ${kVersion}; load it again.`,
+    );
     return;
   }
   const isSame = hello && namesOf(hello) === namesOf(message);

@@ -32,7 +32,8 @@ export class Notices {
     const text = h("span", {});
     const show = () => {
       const seconds = Math.max(0, Math.ceil((end - performance.now()) / 1000));
-      text.textContent = `Connection lost. ${seconds > 0 ? `Trying again in ${seconds} s.` : "Trying again."}`;
+      const next = seconds > 0 ? ` in ${seconds} s` : "";
+      text.textContent = `Connection lost. Trying again${next}.`;
     };
     show();
     this.counter = setInterval(show, 500);

@@ -80,15 +80,24 @@ export class Overlay {
       this.#stroke(camera, segmentsOf(frustum), kColors[this.views[i].split], 0.5, 1);
     });
     const frustum = this.frusta[this.hovered];
-    if (frustum) this.#stroke(camera, segmentsOf(frustum), kColors[this.views[this.hovered].split], 1, 2);
+    if (frustum)
+      this.#stroke(camera, segmentsOf(frustum), kColors[this.views[this.hovered].split], 1, 2);
   }
 
   #drawPath(camera, keys) {
-    const points = new Spline(keys).frames(kPathSteps * keys.length).map(({ pose }) => pose.position);
+    const points = new Spline(keys)
+      .frames(kPathSteps * keys.length)
+      .map(({ pose }) => pose.position);
     const lines = points.slice(1).map((point, i) => [points[i], point]);
     this.#stroke(camera, lines, kColors.path, 0.9, 1.5);
     for (const { pose, fov } of keys) {
-      const lens = { width: 16, height: 9, fx: 8 / Math.tan((fov * Math.PI) / 360), cx: 8, cy: 4.5 };
+      const lens = {
+        width: 16,
+        height: 9,
+        fx: 8 / Math.tan((fov * Math.PI) / 360),
+        cx: 8,
+        cy: 4.5,
+      };
       const { right, down, forward, position } = pose;
       const world_from_cam = [0, 1, 2].map((i) => [right[i], down[i], forward[i], position[i]]);
       const frustum = frustumOf({ ...lens, fy: lens.fx, world_from_cam }, this.depth);

@@ -16,9 +16,17 @@ function viewChoice(app) {
   const now = app.state.view ? views.indexOf(viewOf(app.hello, app.state.view)) : "";
   const choose = (value) => app.snap(value === "" ? null : views[Number(value)]);
   return [
-    button("‹", () => app.step(-1), { id: "previous", title: "previous view ([)", "aria-label": "Previous view" }),
+    button("‹", () => app.step(-1), {
+      id: "previous",
+      title: "previous view ([)",
+      "aria-label": "Previous view",
+    }),
     select("View", [["", "free"], ...choices], now, choose, "view"),
-    button("›", () => app.step(1), { id: "next", title: "next view (])", "aria-label": "Next view" }),
+    button("›", () => app.step(1), {
+      id: "next",
+      title: "next view (])",
+      "aria-label": "Next view",
+    }),
   ];
 }
 
@@ -70,7 +78,10 @@ export function cameraPanel(app) {
     ...{ id: "speed", min: -2, max: 2, step: 0.01 },
     oninput: (value) => app.change({ speed: 10 ** value }),
   });
-  const reset = button("Reset", () => app.reset(), { id: "reset", title: "back to the first view (r)" });
+  const reset = button("Reset", () => app.reset(), {
+    id: "reset",
+    title: "back to the first view (r)",
+  });
   const frusta = h("div", {});
   const update = () => {
     const { view, rig, up } = app.state;

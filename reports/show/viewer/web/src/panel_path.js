@@ -11,7 +11,14 @@ const kSecondsOfKey = 2;
 
 function numberField(title, id, value, [min, max], onchange) {
   const input = h("input", {
-    ...{ type: "number", id, min: String(min), max: String(max), step: "any", value: String(value) },
+    ...{
+      type: "number",
+      id,
+      min: String(min),
+      max: String(max),
+      step: "any",
+      value: String(value),
+    },
     onchange: () => {
       const number = Number(input.value);
       onchange(Math.min(max, Math.max(min, number > 0 ? number : value)));
@@ -100,7 +107,9 @@ function settings(path) {
   return h(
     "div",
     { class: "line" },
-    numberField("Seconds", "path-seconds", path.length(), [0.1, 600], (seconds) => set({ seconds })),
+    numberField("Seconds", "path-seconds", path.length(), [0.1, 600], (seconds) =>
+      set({ seconds }),
+    ),
     numberField("fps", "path-fps", path.fps, [1, 120], (fps) => set({ fps })),
     h("label", { class: "field" }, h("span", {}, "Name"), name),
   );
@@ -111,9 +120,15 @@ function actions(path) {
   return h(
     "div",
     { class: "line" },
-    button(isPlaying ? "Stop" : "Play", () => path.player.toggle(), { id: "path-play", title: "play (p)" }),
+    button(isPlaying ? "Stop" : "Play", () => path.player.toggle(), {
+      id: "path-play",
+      title: "play (p)",
+    }),
     button("Save", () => path.save(false), { id: "path-save", title: "on the server's machine" }),
-    button("path.json", () => path.download(), { id: "path-download", title: "download the cameras" }),
+    button("path.json", () => path.download(), {
+      id: "path-download",
+      title: "download the cameras",
+    }),
     path.app.hello.video && button("Video", () => path.save(true), { id: "path-video" }),
   );
 }
@@ -125,7 +140,11 @@ function videoState({ done, of, name, file, error }) {
   if (error) return h("p", { class: "bad" }, `No video: ${error}`);
   if (file) {
     const href = serverUrl("/video", { name });
-    return h("p", {}, h("a", { href, download: `${name}.mp4`, id: "video-link" }, `Video: ${name}.mp4`));
+    return h(
+      "p",
+      {},
+      h("a", { href, download: `${name}.mp4`, id: "video-link" }, `Video: ${name}.mp4`),
+    );
   }
   return h(
     "label",
@@ -146,8 +165,10 @@ export function pathPanel(app) {
     const { keys, saved, video } = app;
     const numbers = keys.map(({ pose, fov }) => [...pose.position, ...pose.forward, fov]);
     keyed(list, numbers, () => keys.map((_, i) => keyRow(path, i)));
-    keyed(tools, [keys.length, path.player.playing, path.length(), path.fps, app.hello.video], () =>
-      keys.length > 0 ? [settings(path), actions(path)] : null,
+    keyed(
+      tools,
+      [keys.length, path.player.playing, path.length(), path.fps, app.hello.video],
+      () => (keys.length > 0 ? [settings(path), actions(path)] : null),
     );
     keyed(answer, [saved, video], () => [
       saved && [h("p", { class: "note" }, `Saved: ${saved.file}`), command(saved.command)],

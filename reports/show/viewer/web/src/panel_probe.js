@@ -28,7 +28,9 @@ function layersOf(app, columns) {
 
 function columnsOf(app, { panes, truth }) {
   const columns = panes.map(({ run, values }) => ({ title: app.runTitle(run), values }));
-  const unique = columns.filter(({ title }, i) => columns.findIndex((c) => c.title === title) === i);
+  const unique = columns.filter(
+    ({ title }, i) => columns.findIndex((c) => c.title === title) === i,
+  );
   return truth ? [...unique, { title: "Truth", values: truth }] : unique;
 }
 
@@ -47,7 +49,15 @@ function table(app, probe) {
   return h(
     "table",
     { class: "values" },
-    h("thead", {}, h("tr", {}, head.map((title) => h("th", { scope: "col" }, title)))),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        head.map((title) => h("th", { scope: "col" }, title)),
+      ),
+    ),
     h("tbody", {}, layersOf(app, columns).map(row)),
   );
 }
@@ -63,5 +73,8 @@ export function probePanel(app) {
         : h("p", { class: "note" }, "Point at the picture at rest to read its values."),
     ]);
   };
-  return { element: h("section", { class: "probe-box", "aria-label": "Pixel values" }, body), update };
+  return {
+    element: h("section", { class: "probe-box", "aria-label": "Pixel values" }, body),
+    update,
+  };
 }

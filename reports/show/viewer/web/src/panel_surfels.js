@@ -20,7 +20,8 @@ function scaleSliders(app, names) {
       ...{ id: `scale-${name}`, min: 0, max: kMostScale, step: 0.05, first: 1 },
       oninput: (value) => app.set({ scales: { ...app.state.scales, [name]: value } }),
     });
-    element.update = () => element.set(app.state.scales[name], `× ${app.state.scales[name].toFixed(2)}`);
+    element.update = () =>
+      element.set(app.state.scales[name], `× ${app.state.scales[name].toFixed(2)}`);
     return element;
   });
 }
@@ -31,7 +32,11 @@ function cutChoice(app) {
   const { axis, flipped } = app.state.cut;
   const choices = [
     ["", "Off"],
-    ...kCutAxes.map((name) => [name, name === "view" ? "View" : name, name === "view" ? "along the view as it is now" : null]),
+    ...kCutAxes.map((name) => [
+      name,
+      name === "view" ? "View" : name,
+      name === "view" ? "along the view as it is now" : null,
+    ]),
   ];
   const choose = (name) =>
     setCut(app, { axis: name || null, direction: app.state.rig.pose.forward });
@@ -49,13 +54,20 @@ function counts(app) {
     h(
       "tbody",
       {},
-      app.shownRuns().map((run) => [
-        h("tr", {}, h("th", {}, app.runTitle(app.hello.runs.indexOf(run))), h("td", {}, thousands(run.total))),
-        Object.entries(run.surfels).length > 1 &&
-          Object.entries(run.surfels).map(([name, count]) =>
-            h("tr", { class: "part" }, h("th", {}, name), h("td", {}, thousands(count))),
+      app
+        .shownRuns()
+        .map((run) => [
+          h(
+            "tr",
+            {},
+            h("th", {}, app.runTitle(app.hello.runs.indexOf(run))),
+            h("td", {}, thousands(run.total)),
           ),
-      ]),
+          Object.entries(run.surfels).length > 1 &&
+            Object.entries(run.surfels).map(([name, count]) =>
+              h("tr", { class: "part" }, h("th", {}, name), h("td", {}, thousands(count))),
+            ),
+        ]),
     ),
   );
 }
@@ -69,7 +81,12 @@ export function surfelsPanel(app) {
     oninput: (share) => setCut(app, { share }),
   });
   const numbers = h("div", {});
-  const again = button("Scales to 1", () => app.set({ scales: Object.fromEntries(Object.keys(kScaleTitles).map((name) => [name, 1])) }), { class: "small", id: "scales-reset" });
+  const again = button(
+    "Scales to 1",
+    () =>
+      app.set({ scales: Object.fromEntries(Object.keys(kScaleTitles).map((name) => [name, 1])) }),
+    { class: "small", id: "scales-reset" },
+  );
   let sliders = [];
   const update = () => {
     const runs = app.shownRuns();
@@ -85,7 +102,11 @@ export function surfelsPanel(app) {
     );
     offset.hidden = !plane.axis;
     if (plane.axis) offset.set(plane.share, cutText(plane, app.hello.scene));
-    keyed(numbers, [runs, runs.map((run) => run.name)], () => counts(app));
+    keyed(
+      numbers,
+      runs.map(({ name, total }) => [name, total]),
+      () => counts(app),
+    );
   };
   return { element: section("Surfels", [styles, scales, cut, offset, numbers]), update };
 }

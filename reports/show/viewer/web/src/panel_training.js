@@ -18,7 +18,9 @@ export function trainingPanel(app) {
   pause.id = "pause";
   const progress = h("progress", { "aria-label": "Progress of the training" });
   const text = h("p", { class: "number" });
-  const element = section("Training", [progress, h("div", { class: "line" }, pause, text)], { id: "training" });
+  const element = section("Training", [progress, h("div", { class: "line" }, pause, text)], {
+    id: "training",
+  });
   const update = () => {
     element.hidden = !app.hello.training;
     if (element.hidden) return;

@@ -8,7 +8,10 @@ const rounded = (value) => Number(value.toPrecision(9));
 
 function compact({ world_from_cam, ...lens }) {
   const numbers = Object.entries(lens).map(([name, value]) => [name, rounded(value)]);
-  return { world_from_cam: world_from_cam.map((row) => row.map(rounded)), ...Object.fromEntries(numbers) };
+  return {
+    world_from_cam: world_from_cam.map((row) => row.map(rounded)),
+    ...Object.fromEntries(numbers),
+  };
 }
 
 // Cameras of the frames of a way through the keys.

@@ -16,10 +16,12 @@ export class Picture {
   constructor({ onSplit, onResize }) {
     this.onSplit = onSplit;
     this.panes = []; // ImageBitmap; a photo is an image
-    this.split = 50;
+    this.split = null; // percent
     this.canvas = h("canvas", { class: "frame-canvas" });
     this.overlay = h("canvas", { class: "overlay", "aria-hidden": "true" });
-    this.labels = ["left", "right"].map((side) => h("span", { class: `label ${side}`, hidden: true }));
+    this.labels = ["left", "right"].map((side) =>
+      h("span", { class: `label ${side}`, hidden: true }),
+    );
     this.tip = h("span", { class: "label tip", hidden: true });
     this.divider = this.#divider();
     this.element = h(
@@ -83,6 +85,7 @@ export class Picture {
   }
 
   setSplit(percent) {
+    if (this.split === percent) return;
     this.split = percent;
     this.divider.style.left = `${percent}%`;
     this.divider.setAttribute("aria-valuenow", String(Math.round(percent)));

@@ -1,5 +1,6 @@
-// A smooth way of the camera through keys: Catmull-Rom polynomials [Catmull74] of position, quaternion
-// and angle of view, on knots as far apart as the keys; the same curve as `render --path spline`.
+// A smooth way of the camera through keys: Catmull-Rom polynomials [Catmull74] of position,
+// quaternion and angle of view, on knots as far apart as the keys; the same curve as
+// `render --path spline`.
 import { numbersOf, poseOfNumbers } from "./camera.js";
 import { dot, length, scaled, sub } from "./vectors.js";
 

@@ -37,8 +37,7 @@ function nothingCard(choice, choose) {
   );
 }
 
-const column = (title, cards) =>
-  h("fieldset", { class: "column" }, h("legend", {}, title), cards);
+const column = (title, cards) => h("fieldset", { class: "column" }, h("legend", {}, title), cards);
 
 // open(left, right): indices of runs; right is null where there is one side.
 export function showStart(container, hello, open) {

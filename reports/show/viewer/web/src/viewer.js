@@ -120,10 +120,24 @@ export class Viewer {
     const panel = h(
       "aside",
       { class: "panel", id: "panel", "aria-label": "Panel" },
-      h("div", { class: "panel-scroll" }, this.#header(), this.panels.map(({ element }) => element)),
+      h(
+        "div",
+        { class: "panel-scroll" },
+        this.#header(),
+        this.panels.map(({ element }) => element),
+      ),
       this.probe.element,
     );
-    this.layout = h("div", { class: "layout" }, h("main", { class: "stage" }, this.stageArea, bar), panel);
+    this.layout = h(
+      "div",
+      { class: "layout" },
+      h("main", { class: "stage" }, this.stageArea, bar),
+      panel,
+    );
+    // A list that was chosen from by the mouse gives the keys back to the picture.
+    panel.addEventListener("change", ({ target }) => {
+      if (target.tagName === "SELECT" && !target.matches(":focus-visible")) target.blur();
+    });
     this.#showPanel(!window.matchMedia(kNarrow).matches);
     replace(this.container, this.layout);
   }
