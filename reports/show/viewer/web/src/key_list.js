@@ -14,7 +14,7 @@ const kMotions = [
   { keys: [], shown: ["Shift"], help: "with these: faster", run: nothing },
   { keys: [], shown: ["left drag", "one finger"], help: "turn, or orbit", run: nothing },
   { keys: [], shown: ["right drag", "two fingers"], help: "move across", run: nothing },
-  { keys: [], shown: ["wheel"], help: "distance (orbit), speed (fly)", run: nothing },
+  { keys: [], shown: ["wheel"], help: "distance, or speed", run: nothing },
   { keys: [], shown: ["pinch"], help: "nearer or further", run: nothing },
   { keys: [], shown: ["double click"], help: "sets the pivot", run: nothing },
 ];

@@ -95,9 +95,9 @@ export class Viewer {
         "div",
         { class: "line" },
         this.toRuns && button("Runs", this.toRuns, { class: "small", id: "runs" }),
-        copyButton(() => this.link(), "Copy link", {
+        copyButton(() => this.link(), "Link", {
           ...{ class: "small", id: "link" },
-          title: "what is shown now, without the token",
+          title: "copies a link to what is shown, without the token",
         }),
         button("◐ Theme", this.toggleTheme, { class: "small", id: "theme" }),
         button("? Keys", () => showHelp(), { class: "small", id: "help", title: "keys (?)" }),
