@@ -3,15 +3,7 @@
 # Exit code 77 (skipped) where the browser, Node.js or playwright-core are absent.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-
-skip() {
-  echo "skipped: $1; scripts/setup_extras.sh installs it"
-  exit 77
-}
-command -v node >/dev/null || skip "no node"
-[ "$(node -p 'parseInt(process.versions.node)')" -ge 20 ] || skip "node is older than 20"
-[ -d "$here/node_modules/playwright-core" ] || skip "no playwright-core"
-chromium=$(command -v chromium || command -v chromium-browser) || skip "no chromium"
+source "$here/browser_tools.sh"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -24,7 +16,7 @@ mkdir -p "$work/single"
 cp -r "$work/browser" "$work/single/"
 "$1" report --profile "$here/browser.toml" --out "$work/single" --data "$work/data" --quiet --single-file >/dev/null
 run_tests() {
-  CHROMIUM="$chromium" node "$here/browser_test.mjs" \
+  node "$here/browser_test.mjs" \
     "$work/browser/report/index.html" "$work/single/browser/report/index.html" "${2:-$work/shots}"
 }
 run_tests "$@"

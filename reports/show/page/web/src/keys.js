@@ -3,10 +3,14 @@ import { h } from "./dom.js";
 
 const kGlobal = [];
 let viewKeys = [];
+let titles = ["This view", "Everywhere"];
 
-// [{keys: ["j", "ArrowDown"], help: "next frame", run: (event) => ...}]
+// [{keys: ["j", "ArrowDown"], help: "next frame", run: (event) => ...}]; `shown`: other names for
+// the list.
 export const setGlobalKeys = (keys) => kGlobal.push(...keys);
 export const setViewKeys = (keys) => (viewKeys = keys);
+// Of the list: the view's keys, then the others.
+export const setKeyTitles = (view, others) => (titles = [view, others]);
 
 const kTyping = ["INPUT", "SELECT", "TEXTAREA"];
 
@@ -22,11 +26,16 @@ function belongsToControl(event) {
   return onControl && [" ", "Enter"].includes(event.key);
 }
 
+// Does the page have the key, and not the browser, a control or a dialog?
+export function isForPage(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey) return false;
+  if (isTyping(event) || belongsToControl(event)) return false;
+  return !document.querySelector("dialog[open]");
+}
+
 export function startKeys() {
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (isTyping(event) || belongsToControl(event) || document.querySelector("dialog[open]"))
-      return;
+    if (!isForPage(event)) return;
     const entry = [...viewKeys, ...kGlobal].find(({ keys }) => keys.includes(event.key));
     if (!entry) return;
     event.preventDefault();
@@ -39,11 +48,11 @@ const shownKey = (key) =>
 
 function keyRows(title, keys) {
   if (keys.length === 0) return null;
-  const rows = keys.map(({ keys: names, help }) => [
+  const rows = keys.map(({ keys: names, help, shown = names }) => [
     h(
       "dt",
       {},
-      names.map((name) => h("kbd", {}, shownKey(name))),
+      shown.map((name) => h("kbd", {}, shownKey(name))),
     ),
     h("dd", {}, help),
   ]);
@@ -55,8 +64,8 @@ export function showHelp() {
     "dialog",
     { class: "help", "aria-label": "Keyboard", onclose: () => dialog.remove() },
     h("h2", {}, "Keyboard"),
-    keyRows("This view", viewKeys),
-    keyRows("Everywhere", kGlobal),
+    keyRows(titles[0], viewKeys),
+    keyRows(titles[1], kGlobal),
     h("form", { method: "dialog" }, h("button", { class: "primary" }, "Close (Esc)")),
   );
   document.body.append(dialog);

@@ -4,7 +4,7 @@ import { h } from "./dom.js";
 const kBallSize = 44;
 
 // A ball seen from the front in the colours of normals.
-function normalBall() {
+export function normalBall() {
   const canvas = h("canvas", {
     width: kBallSize,
     height: kBallSize,
@@ -28,6 +28,16 @@ function normalBall() {
 
 const limit = (value, unit) =>
   `${Number(value.toPrecision(3))}${unit === "°" ? "" : " "}${unit}`.trim();
+
+// Lowest value, its colours, highest value.
+export const colorbar = ({ low, high, unit, colors }) => [
+  h("span", { class: "limit" }, limit(low, unit)),
+  h("span", {
+    class: "colorbar",
+    style: { background: `linear-gradient(90deg, ${colors.join(", ")})` },
+  }),
+  h("span", { class: "limit" }, limit(high, unit)),
+];
 
 const kNotes = {
   depth: "black: nothing there",
@@ -62,12 +72,7 @@ export function legend(layer, depthFromTruth) {
   return h(
     "div",
     { class: "legend" },
-    h("span", { class: "limit" }, limit(layer.low, layer.unit)),
-    h("span", {
-      class: "colorbar",
-      style: { background: `linear-gradient(90deg, ${layer.colors.join(", ")})` },
-    }),
-    h("span", { class: "limit" }, limit(layer.high, layer.unit)),
+    colorbar(layer),
     h("span", { class: "note" }, notes.filter(Boolean).join(" · ")),
   );
 }
