@@ -56,10 +56,9 @@ int WebPage::try_open(int port, const WebRequest& wanted) {
     if (!wanted.host.empty()) request.set(http::field::host, wanted.host);
     if (!wanted.origin.empty()) request.set(http::field::origin, wanted.origin);
   }));
-  websocket::response_type response;
   beast::error_code error;
-  state.stream.handshake(response, own_host(port), wanted.target, error);
-  return static_cast<int>(response.result_int());
+  state.stream.handshake(own_host(port), wanted.target, error);
+  return error ? ask(port, wanted).status : 101;
 }
 
 WebPage::WebPage(int port, const std::string& target) : state_(std::make_unique<State>()) {

@@ -20,7 +20,7 @@ WebReply ask(int port, const WebRequest& request);
 
 class WebPage {
  public:
-  // Status 101, or what the server said instead.
+  // Status 101, or that of a plain request where it is declined.
   static int try_open(int port, const WebRequest& request);
 
   WebPage(int port, const std::string& target);

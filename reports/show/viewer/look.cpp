@@ -79,7 +79,7 @@ CutPlane cut_of(const Json& json) {
   const Json normal = list_of(json, "normal", 3, 3);
   CutPlane cut;
   for (int i = 0; i < 3; ++i)
-    cut.normal[i] = number_in({{"normal", normal[static_cast<std::size_t>(i)]}}, "normal", -1, 1);
+    cut.normal[i] = number_in({{"normal", normal[static_cast<std::size_t>(i)]}}, "normal", -1e3, 1e3);
   const double length = std::sqrt(length2(cut.normal));
   GLINT_CHECK(length > 0, kUsage, "normal: no direction");
   cut.normal = (1 / length) * cut.normal;

@@ -12,7 +12,7 @@ namespace glint {
 
 // "rgb" (a surfel's constant colour, darker the more it is turned away), "depth" and "normal" of
 // the nearest surfels of all sets; fainter than 0.05 they are left out. A disc reaches to one
-// standard deviation; a point is three pixels wide.
+// standard deviation; a point is about three pixels wide.
 MapSet draw_surfels(
     const std::vector<MethodSet>& sets,
     const Camera& camera,

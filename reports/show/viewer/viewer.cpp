@@ -308,7 +308,7 @@ bool Viewer::answer_question() {
 Json Viewer::answer(ClientId client, const Json& question) {
   if (type_of(question) != "path") return of_pixel(client, question);
   GLINT_CHECK(options_.iterations == 0, kUsage, "path: after the training");
-  const Json run = question.value("run", Json(0));
+  const Json run = question.value("run", Json(0u));
   GLINT_CHECK(
       run.is_number_unsigned() && run.get<std::size_t>() < runs_.size(),
       kUsage,

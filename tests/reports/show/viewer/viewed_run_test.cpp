@@ -106,7 +106,7 @@ TEST_CASE("a snapped view has its errors, other cameras have none") {
   REQUIRE(snapped.contains("error"));
   REQUIRE(snapped.contains("angle"));
   float sum = 0;
-  for (std::size_t c = 0; c < 3; ++c)
+  for (int c = 0; c < 3; ++c)
     sum += std::abs(std::clamp(snapped.at("rgb").at(5, 6, c), 0.0f, 1.0f) - view.rgb.at(5, 6, c));
   CHECK(snapped.at("error").at(5, 6) == Approx(sum / 3));
   CHECK_FALSE(run.layers(look, look.camera, nullptr).contains("error"));
