@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "glint/core/stoppable.h"
+#include "glint/train/trainer.h"
+#include "reports/run/bench/stages.h"
 #include "reports/show/viewer/viewed_run.h"
 #include "tests/support/all_trained.h"
 #include "tests/support/same_bytes.h"
@@ -95,6 +97,29 @@ TEST_CASE("all methods: a frame that was stopped anywhere leaves no trace in the
     const LayerMaps after = run.layers(look, look.camera, nullptr);
     for (const auto& [name, map] : expected) REQUIRE(same_bytes(map, after.at(name)));
   }
+}
+
+TEST_CASE("all methods: a training that is looked at ends with the same bytes") {
+  const auto id = GENERATE(from_range(all_trained()));
+  CAPTURE(id);
+  const auto trained = [&](const AfterStep& after_step) {
+    const auto method = create_method(id);
+    TrainOptions options;
+    options.run = {.iterations = 12, .seed = 1};
+    options.after_step = after_step;
+    train(*method, small_room(), options);
+    return saved_bytes(*method);
+  };
+  const Look look = look_at_room();
+  int looked = 0;
+  const std::string watched = trained([&](Method& method, const StepStats&) {
+    ViewedRun run({id, id, id, "nowhere"}, method, small_room(), true);
+    run.layers(look, look.camera, &small_room().test.front());
+    run.layers_for("rgb", look, look.camera);
+    ++looked;
+  });
+  CHECK(looked == 12);
+  CHECK(watched == trained({}));
 }
 
 TEST_CASE("a snapped view has its errors, other cameras have none") {
