@@ -22,7 +22,8 @@ bool has_display() {
 void warn_of_host(const std::string& host) {
   if (host.starts_with("127.") || host == "localhost" || host == "::1") return;
   log::warn(fmt::format(
-      "--host {}: others in the network can reach the viewer, unencrypted; the token in its address "
+      "--host {}: others in the network can reach the viewer, unencrypted; the token in its "
+      "address "
       "is what keeps them out",
       host
   ));
@@ -80,9 +81,7 @@ AfterStep watch_training(
           single.scene,
           true
       );
-      *viewer = open_viewer(
-          common, place, single.scene, std::move(runs), spec.options.iterations
-      );
+      *viewer = open_viewer(common, place, single.scene, std::move(runs), spec.options.iterations);
     }
     (*viewer)->between_steps(stats.iteration + 1);
   };

@@ -27,8 +27,7 @@ struct TrainArguments : NewCellOptions {
 };
 
 int run_train(CommonOptions common, const TrainArguments& options) {
-  if (!options.transmission.empty())
-    common.set.push_back("transmission=" + options.transmission);
+  if (!options.transmission.empty()) common.set.push_back("transmission=" + options.transmission);
   install_interrupt_handler();
   const SingleCell single = new_single_cell(common, options);
   const std::string folder = single.spec.folder.string();

@@ -32,7 +32,9 @@ bool is_run(const std::string& path) {
 }
 
 // A model of another program is read into a run of its own, which goes when the viewer does.
-OpenedRun open_model(const CommonOptions& common, const std::string& path, const std::string& data) {
+OpenedRun open_model(
+    const CommonOptions& common, const std::string& path, const std::string& data
+) {
   GLINT_CHECK(
       !data.empty(),
       kUsage,

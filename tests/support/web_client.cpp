@@ -30,8 +30,7 @@ WebReply ask(int port, const WebRequest& wanted) {
   asio::io_context context;
   tcp::socket socket(context);
   socket.connect(at(port));
-  http::request<http::empty_body> request{
-      http::string_to_verb(wanted.method), wanted.target, 11};
+  http::request<http::empty_body> request{http::string_to_verb(wanted.method), wanted.target, 11};
   request.set(http::field::host, wanted.host.empty() ? own_host(port) : wanted.host);
   if (!wanted.origin.empty()) request.set(http::field::origin, wanted.origin);
   http::write(socket, request);
@@ -40,7 +39,10 @@ WebReply ask(int port, const WebRequest& wanted) {
   parser.body_limit(64 << 20);
   http::read(socket, buffer, parser);
   const auto& reply = parser.get();
-  return {static_cast<int>(reply.result_int()), std::string(reply[http::field::content_type]), reply.body()};
+  return {
+      static_cast<int>(reply.result_int()),
+      std::string(reply[http::field::content_type]),
+      reply.body()};
 }
 
 struct WebPage::State {

@@ -105,9 +105,7 @@ struct PathRendering::Frames {
         write_exr(file.string() + ".exr", map, row.kind == MapKind::kNormal);
     }
     if (frame_sheet.here() && !pictures.empty())
-      write_png(
-          options.folder / "layers" / fmt::format("{:04}.png", frame), frame_sheet(pictures)
-      );
+      write_png(options.folder / "layers" / fmt::format("{:04}.png", frame), frame_sheet(pictures));
   }
 };
 
@@ -118,9 +116,8 @@ PathRendering::PathRendering(Method& method, const Scene& scene, PathFrames opti
   clear_path_folder(options.folder);
   write_camera_path(options.folder / kPathFile, options.path);
   const DepthScale scale = path_depth_scale(method, scene, cameras);
-  frames_ = std::make_unique<Frames>(
-      Frames{method, std::move(options), rows, scale, {0, ids_of(rows), {}, {}}}
-  );
+  frames_ = std::make_unique<Frames>(Frames{
+      method, std::move(options), rows, scale, {0, ids_of(rows), {}, {}}});
 }
 
 PathRendering::~PathRendering() = default;

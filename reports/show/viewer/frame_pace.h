@@ -14,7 +14,7 @@ namespace glint {
 using ViewerClock = std::chrono::steady_clock;
 using ViewerTime = ViewerClock::time_point;
 
-inline constexpr double kMovingFps = 30;  // aimed at
+inline constexpr double kMovingFps = 30;     // aimed at
 inline constexpr double kRestSeconds = 0.2;  // without a new look: the camera rests
 inline constexpr int kMovingQuality = 40, kWholeQuality = 70;  // of JPEG
 

@@ -20,8 +20,7 @@ Json member(const Json& json, const char* field) {
 // A number of an object within limits.
 double number_in(const Json& json, const char* field, double low, double high) {
   const Json value = member(json, field);
-  const bool fits =
-      value.is_number() && value.get<double>() >= low && value.get<double>() <= high;
+  const bool fits = value.is_number() && value.get<double>() >= low && value.get<double>() <= high;
   GLINT_CHECK(
       fits, kUsage, "{}: {}, expected a number from {} to {}", field, value.dump(), low, high
   );
@@ -58,7 +57,8 @@ Camera camera_of(const Json& json) {
 LightScales scales_of(const Json& json) {
   LightScales scales;
   const auto read = [&](const char* field, float& scale) {
-    if (!member(json, field).is_null()) scale = static_cast<float>(number_in(json, field, 0, kMaxScale));
+    if (!member(json, field).is_null())
+      scale = static_cast<float>(number_in(json, field, 0, kMaxScale));
   };
   read("reflection", scales.reflection);
   read("transmission", scales.transmission);
@@ -79,7 +79,8 @@ CutPlane cut_of(const Json& json) {
   const Json normal = list_of(json, "normal", 3, 3);
   CutPlane cut;
   for (int i = 0; i < 3; ++i)
-    cut.normal[i] = number_in({{"normal", normal[static_cast<std::size_t>(i)]}}, "normal", -1e3, 1e3);
+    cut.normal[i] =
+        number_in({{"normal", normal[static_cast<std::size_t>(i)]}}, "normal", -1e3, 1e3);
   const double length = std::sqrt(length2(cut.normal));
   GLINT_CHECK(length > 0, kUsage, "normal: no direction");
   cut.normal = (1 / length) * cut.normal;
@@ -87,8 +88,8 @@ CutPlane cut_of(const Json& json) {
   return cut;
 }
 
-Pane pane_of(const Json& json, const LookLimits& limits) {
-  Pane pane;
+LookPane pane_of(const Json& json, const LookLimits& limits) {
+  LookPane pane;
   pane.run = index_in(json, "run", limits.runs);
   const Json layer = member(json, "layer");
   GLINT_CHECK(layer.is_string(), kUsage, "layer: expected an id");

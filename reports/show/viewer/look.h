@@ -27,7 +27,7 @@ struct CutPlane {
 
 enum class SurfelStyle { kImage, kDiscs, kPoints };
 
-struct Pane {
+struct LookPane {
   std::size_t run = 0;
   std::string layer = "rgb";
 };
@@ -36,7 +36,7 @@ struct Look {
   std::uint64_t serial = 0;
   Camera camera;               // of a whole frame
   std::optional<ViewId> view;  // snapped to: the camera is that view's
-  std::vector<Pane> panes;     // one or two, of the same camera
+  std::vector<LookPane> panes;     // one or two, of the same camera
   LightScales scales;
   SurfelStyle style = SurfelStyle::kImage;
   std::optional<CutPlane> cut;

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "glint/core/parallel.h"
-#include "glint/render/project.h"
 #include "glint/render/map_ops.h"
+#include "glint/render/project.h"
 #include "glint/train/trainable_set.h"
 
 namespace glint {
@@ -42,8 +42,7 @@ CameraOf<float> camera_of(const Camera& c) {
 SurfelGeometry<float> geometry_of(const SurfelCloud& cloud, std::size_t i) {
   const float* s = cloud.log_scales.data() + 2 * i;
   const float* q = cloud.rotations.data() + 4 * i;
-  return {
-      get3(cloud.means.data(), i), {std::exp(s[0]), std::exp(s[1])}, {q[0], q[1], q[2], q[3]}};
+  return {get3(cloud.means.data(), i), {std::exp(s[0]), std::exp(s[1])}, {q[0], q[1], q[2], q[3]}};
 }
 
 Vec3f color_of(const SurfelCloud& cloud, std::size_t i) {

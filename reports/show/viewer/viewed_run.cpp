@@ -95,11 +95,9 @@ LayerMaps ViewedRun::layers(const Look& look, const Camera& camera, const View* 
   return layers;
 }
 
-LayerMaps ViewedRun::layers_for(
-    const std::string& layer, const Look& look, const Camera& camera
-) {
-  const bool alone = layer == "rgb" && look.scales == LightScales{} &&
-                     look.style == SurfelStyle::kImage;
+LayerMaps ViewedRun::layers_for(const std::string& layer, const Look& look, const Camera& camera) {
+  const bool alone =
+      layer == "rgb" && look.scales == LightScales{} && look.style == SurfelStyle::kImage;
   if (!alone) return layers(look, camera, nullptr);
   if (!training_) cut_.apply(look.cut);
   LayerMaps maps;

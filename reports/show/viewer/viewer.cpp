@@ -30,7 +30,7 @@ Json error_message(const std::exception& error) {
   return {{"type", "error"}, {"message", error.what()}};
 }
 
-// Header, then the pictures (docs/VIEWER.md).
+// How long the header is (32 bits, low byte first), the header, the pictures.
 std::string packed_frame(const Json& header, const std::vector<std::string>& pictures) {
   const std::string text = header.dump();
   const auto length = static_cast<std::uint32_t>(text.size());
@@ -60,9 +60,8 @@ Viewer::Viewer(const ViewerOptions& options, const Scene& scene, std::vector<Vie
   };
   handlers.text = [this](ClientId client, const std::string& message) { receive(client, message); };
   const std::lock_guard lock(mutex_);  // nobody is served before there is a server
-  server_ = open_web_server(
-      WebOptions{options.host, options.port, random_token()}, std::move(handlers)
-  );
+  server_ =
+      open_web_server(WebOptions{options.host, options.port, random_token()}, std::move(handlers));
 }
 
 Viewer::~Viewer() { server_.reset(); }
@@ -118,8 +117,7 @@ void Viewer::between_steps(int iteration) {
   {
     const std::lock_guard lock(mutex_);
     if (pages_.empty()) return;
-    for (auto& [client, page] : pages_)
-      page.pace.model_changed(kTrainingShare, ViewerClock::now());
+    for (auto& [client, page] : pages_) page.pace.model_changed(kTrainingShare, ViewerClock::now());
   }
   find_new_layers();
   tell_state(iteration);
@@ -197,7 +195,7 @@ std::optional<Viewer::FrameJob> Viewer::next_frame() {
 std::vector<LayerMaps> Viewer::layers_of(const FrameJob& job) {
   const bool whole = job.kind == FrameKind::kWhole;
   std::vector<LayerMaps> layers;
-  for (const Pane& pane : job.look.panes) {
+  for (const LookPane& pane : job.look.panes) {
     const bool again = !layers.empty() && pane.run == job.look.panes[0].run;
     ViewedRun& run = runs_[pane.run];
     if (again && (whole || layers[0].contains(pane.layer)))
@@ -242,9 +240,7 @@ void Viewer::sent(const FrameJob& job, std::vector<LayerMaps> layers, double sec
   const std::lock_guard lock(mutex_);
   const auto page = pages_.find(job.client);
   if (page == pages_.end()) return;
-  page->second.pace.sent(
-      job.kind, job.look.serial, job.camera.size(), seconds, ViewerClock::now()
-  );
+  page->second.pace.sent(job.kind, job.look.serial, job.camera.size(), seconds, ViewerClock::now());
   if (job.kind != FrameKind::kWhole) return;
   page->second.layers = std::move(layers);
   page->second.whole = job.look;

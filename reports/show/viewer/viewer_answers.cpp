@@ -85,9 +85,9 @@ bool is_object(const Orbit& orbit, const Scene& scene) {
       if (p[i] < low[i] || p[i] > high[i]) return false;
     return true;
   };
-  const auto within = std::count_if(
-      scene.train.begin(), scene.train.end(), [&](const View& v) { return inside(v.camera.center()); }
-  );
+  const auto within = std::count_if(scene.train.begin(), scene.train.end(), [&](const View& v) {
+    return inside(v.camera.center());
+  });
   return orbit.radius > 0 && 2 * static_cast<std::size_t>(within) < scene.train.size();
 }
 
@@ -176,8 +176,7 @@ Json Viewer::hello() const {
       {"fps", kMovingFps},
       {"runs", runs},
       {"views", views},
-      {"training",
-       options_.iterations > 0 ? Json{{"iterations", options_.iterations}} : Json()}};
+      {"training", options_.iterations > 0 ? Json{{"iterations", options_.iterations}} : Json()}};
 }
 
 Json Viewer::probe(const Client& page, const Json& question) const {

@@ -186,7 +186,8 @@ class BeastServer final : public WebServer {
 // One request and its answer; the connection ends with it.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket socket, BeastServer& server) : stream_(std::move(socket)), server_(server) {
+  Connection(tcp::socket socket, BeastServer& server)
+      : stream_(std::move(socket)), server_(server) {
     parser_.body_limit(kMaxRequestBytes);
     parser_.header_limit(kMaxRequestBytes);
   }
@@ -249,7 +250,9 @@ asio::ip::address address_of(const std::string& host) {
 }
 
 void BeastServer::listen() {
-  const tcp::endpoint endpoint(address_of(options_.host), static_cast<unsigned short>(options_.port));
+  const tcp::endpoint endpoint(
+      address_of(options_.host), static_cast<unsigned short>(options_.port)
+  );
   boost::system::error_code error;
   acceptor_.open(endpoint.protocol(), error);
   if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
@@ -283,19 +286,14 @@ void BeastServer::open_socket(beast::tcp_stream stream, Request request) {
 }
 
 void BeastServer::send(ClientId client, std::string message, bool text) {
-  asio::post(
-      context_,
-      [this, client, text, message = std::move(message)]() mutable {
-        const auto found = clients_.find(client);
-        const auto socket = found == clients_.end() ? nullptr : found->second.lock();
-        if (socket != nullptr) socket->send(std::move(message), text);
-      }
-  );
+  asio::post(context_, [this, client, text, message = std::move(message)]() mutable {
+    const auto found = clients_.find(client);
+    const auto socket = found == clients_.end() ? nullptr : found->second.lock();
+    if (socket != nullptr) socket->send(std::move(message), text);
+  });
 }
 
-std::optional<HttpAnswer> BeastServer::refusal(
-    const Request& request, const Target& target
-) const {
+std::optional<HttpAnswer> BeastServer::refusal(const Request& request, const Target& target) const {
   const std::string host(view_of(request[http::field::host]));
   if (!is_own_host(host, port_, options_.host))
     return HttpAnswer{403, "text/plain; charset=utf-8", "403: not the address of this server\n"};

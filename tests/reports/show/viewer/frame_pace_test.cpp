@@ -15,8 +15,8 @@ struct Page {
   ViewerTime now{std::chrono::seconds(100)};
 
   void pass(double seconds) {
-    now += std::chrono::duration_cast<ViewerClock::duration>(std::chrono::duration<double>(seconds)
-    );
+    now +=
+        std::chrono::duration_cast<ViewerClock::duration>(std::chrono::duration<double>(seconds));
   }
   FrameKind due() const { return pace.due(now); }
 };

@@ -21,7 +21,9 @@ Camera camera_in_front() {
 }
 
 // A surfel that faces the camera at (x, 0, z), of this radius and grey.
-void add_disc(SurfelCloud& cloud, float x, float z, float radius, float grey, float opacity = 0.9f) {
+void add_disc(
+    SurfelCloud& cloud, float x, float z, float radius, float grey, float opacity = 0.9f
+) {
   const std::size_t i = cloud.size();
   cloud.resize(i + 1);
   put3(cloud.means.data(), i, {x, 0, z});
@@ -64,7 +66,8 @@ TEST_CASE("the nearer surfel is seen, whatever the order") {
     add_disc(*cloud, 0, first ? 2 : 4, 0.5f, first ? 0.2f : 0.9f);
     add_disc(*cloud, 0, first ? 4 : 2, 0.5f, first ? 0.9f : 0.2f);
   }
-  const MapSet a = drawn(near_first, SurfelStyle::kDiscs), b = drawn(far_first, SurfelStyle::kDiscs);
+  const MapSet a = drawn(near_first, SurfelStyle::kDiscs),
+               b = drawn(far_first, SurfelStyle::kDiscs);
   CHECK(a["rgb"].at(kSide / 2, kSide / 2) == Approx(0.2f));
   CHECK(std::equal(a["rgb"].values().begin(), a["rgb"].values().end(), b["rgb"].values().begin()));
 }

@@ -145,10 +145,9 @@ TEST_CASE("of a training nothing is cut") {
   Look look = look_at_room();
   CHECK(run.json()["cut"] == false);
   look.cut = CutPlane{{0, 0, 1}, 0};
-  CHECK(
-      error_of(ExitCode::kUsage, [&] { run.layers(look, look.camera, nullptr); }).find("trained") !=
-      std::string::npos
-  );
+  CHECK(error_of(ExitCode::kUsage, [&] {
+          run.layers(look, look.camera, nullptr);
+        }).find("trained") != std::string::npos);
   look.style = SurfelStyle::kDiscs;  // drawn, not rendered: nothing is changed for it
   CHECK_NOTHROW(run.layers(look, look.camera, nullptr));
 }

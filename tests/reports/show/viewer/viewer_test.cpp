@@ -42,7 +42,8 @@ Json look(int serial, const char* layer = "rgb") {
       {"serial", serial},
       {"size", {64, 48}},
       {"camera",
-       {{"world_from_cam", {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, {"fov_x", 60}}},
+       {{"world_from_cam", {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}},
+        {"fov_x", 60}}},
       {"panes", {{{"run", 0}, {"layer", layer}}}}};
 }
 
@@ -70,7 +71,9 @@ class Page {
   }
   void say(const Json& json) { socket_->send(json.dump()); }
   void shown(const Frame& frame) { say({{"type", "shown"}, {"serial", frame.header["serial"]}}); }
-  WebReply get(const std::string& path) const { return ask(port_, {path + "&" + query_.substr(1), ""}); }
+  WebReply get(const std::string& path) const {
+    return ask(port_, {path + "&" + query_.substr(1), ""});
+  }
   bool quiet(double seconds) { return !socket_->read(seconds).has_value(); }
 
  private:
@@ -96,10 +99,10 @@ struct Served {
         scene,
         iterations > 0
     );
-    viewer = std::make_unique<Viewer>(
-        ViewerOptions{"127.0.0.1", 0, iterations}, scene, std::move(runs)
-    );
-    if (iterations == 0) thread = std::thread([this] { viewer->serve([this] { return ended.load(); }); });
+    viewer =
+        std::make_unique<Viewer>(ViewerOptions{"127.0.0.1", 0, iterations}, scene, std::move(runs));
+    if (iterations == 0)
+      thread = std::thread([this] { viewer->serve([this] { return ended.load(); }); });
   }
   ~Served() {
     ended = true;
@@ -221,7 +224,9 @@ TEST_CASE("a video is made between other frames, and without ffmpeg its reason i
   const Served served;
   Page page(served.viewer->address());
   const Json camera = camera_to_json(served.scene.train[0].camera);
-  page.say({{"type", "path"}, {"name", "tour"}, {"video", true}, {"cameras", {camera, camera, camera}}});
+  page.say(
+      {{"type", "path"}, {"name", "tour"}, {"video", true}, {"cameras", {camera, camera, camera}}}
+  );
   Json told;
   do told = page.message("video");
   while (told["file"].is_null() && told["error"].is_null());

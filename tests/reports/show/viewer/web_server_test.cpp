@@ -39,7 +39,9 @@ struct EchoServer {
     server = open_web_server(WebOptions{std::move(host), 0, kToken}, std::move(handlers));
   }
   int port() const { return server->port(); }
-  WebReply get(const std::string& path) const { return ask(port(), {path + "?token=" + kToken, ""}); }
+  WebReply get(const std::string& path) const {
+    return ask(port(), {path + "?token=" + kToken, ""});
+  }
 };
 
 template <class F>
@@ -168,12 +170,15 @@ TEST_CASE("a port that is taken and a host that is none are errors that say so")
   CHECK_THAT(
       error_of(
           ExitCode::kUsage,
-          [&] { open_web_server(WebOptions{"127.0.0.1", echo.port(), kToken}, {}); }
+          [&] {
+            open_web_server(WebOptions{"127.0.0.1", echo.port(), kToken}, {});
+          }
       ),
       Contains("choose another --port")
   );
   CHECK_THAT(
-      error_of(ExitCode::kUsage, [] { EchoServer("no.such.host"); }), Contains("expected an address")
+      error_of(ExitCode::kUsage, [] { EchoServer("no.such.host"); }),
+      Contains("expected an address")
   );
 }
 
