@@ -34,9 +34,9 @@ struct LookPane {
 
 struct Look {
   std::uint64_t serial = 0;
-  Camera camera;               // of a whole frame
-  std::optional<ViewId> view;  // snapped to: the camera is that view's
-  std::vector<LookPane> panes;     // one or two, of the same camera
+  Camera camera;                // of a whole frame
+  std::optional<ViewId> view;   // snapped to: the camera is that view's
+  std::vector<LookPane> panes;  // one or two, of the same camera
   LightScales scales;
   SurfelStyle style = SurfelStyle::kImage;
   std::optional<CutPlane> cut;
