@@ -170,10 +170,12 @@ export function pathPanel(app) {
       [keys.length, path.player.playing, path.length(), path.fps, app.hello.video],
       () => (keys.length > 0 ? [settings(path), actions(path)] : null),
     );
+    const before = answer.builtFor;
     keyed(answer, [saved, video], () => [
       saved && [h("p", { class: "note" }, `Saved: ${saved.file}`), command(saved.command)],
       video && videoState(video),
     ]);
+    if (before && before !== answer.builtFor) answer.scrollIntoView({ block: "nearest" });
   };
   const element = section("Camera path", [add, list, tools, answer], { open: false, id: "path" });
   return { element, update, path };

@@ -1,6 +1,6 @@
 // Numbers of the pixel under the pointer: each layer of the panes, and the truth of a view.
 import { h } from "../../../page/web/src/dom.js";
-import { keyed } from "./parts.js";
+import { keyed, kNarrow } from "./parts.js";
 
 const kColorDecimals = 3;
 const kVectorDecimals = 2;
@@ -17,33 +17,37 @@ export function valueText(value, layer) {
   return value.map((part) => short(part.toFixed(decimals))).join(" ");
 }
 
-// Layers with a value in any column, in the order of the runs' lists.
-function layersOf(app, columns) {
+// Of the runs that are shown, in the order of their lists.
+function layersOf(runs) {
   const layers = new Map();
-  for (const run of app.shownRuns())
+  for (const run of runs)
     for (const layer of run.layers) if (!layers.has(layer.id)) layers.set(layer.id, layer);
-  const has = (id) => columns.some(({ values }) => values?.[id] !== undefined);
-  return [...layers.values()].filter(({ id }) => has(id));
+  return [...layers.values()];
 }
 
-function columnsOf(app, { panes, truth }) {
-  const columns = panes.map(({ run, values }) => ({ title: app.runTitle(run), values }));
-  const unique = columns.filter(
-    ({ title }, i) => columns.findIndex((c) => c.title === title) === i,
-  );
-  return truth ? [...unique, { title: "Truth", values: truth }] : unique;
+// A run each, then the truth of a view; without values while nothing is pointed at, so that the
+// table keeps its size.
+function columnsOf(app) {
+  const { probe, hello, state } = app;
+  const columns = app.shownRuns().map((run) => {
+    const index = hello.runs.indexOf(run);
+    const values = probe?.panes.find((pane) => pane.run === index)?.values;
+    return { title: app.runTitle(index), values };
+  });
+  return state.view ? [...columns, { title: "Truth", values: probe?.truth }] : columns;
 }
 
 const titleOf = ({ title, unit }) => (unit ? `${title}, ${unit}` : title);
 
-function table(app, probe) {
-  const columns = columnsOf(app, probe);
+function table(app) {
+  const columns = columnsOf(app);
+  const text = (values, layer) => (app.probe ? valueText(values?.[layer.id], layer) : "");
   const row = (layer) =>
     h(
       "tr",
       { "data-layer": layer.id },
       h("th", { scope: "row" }, titleOf(layer)),
-      columns.map(({ values }) => h("td", {}, valueText(values?.[layer.id], layer))),
+      columns.map(({ values }) => h("td", {}, text(values, layer))),
     );
   const head = ["", ...columns.map(({ title }) => title)];
   return h(
@@ -58,23 +62,19 @@ function table(app, probe) {
         head.map((title) => h("th", { scope: "col" }, title)),
       ),
     ),
-    h("tbody", {}, layersOf(app, columns).map(row)),
+    h("tbody", {}, layersOf(app.shownRuns()).map(row)),
   );
 }
 
 export function probePanel(app) {
+  const summary = h("summary", {});
   const body = h("div", {});
+  const open = !window.matchMedia(kNarrow).matches;
   const update = () => {
-    const { probe } = app;
-    keyed(body, [probe, app.state.left.run, app.state.right], () => [
-      h("h2", {}, probe ? `Pixel ${probe.x}, ${probe.y}` : "Pixel"),
-      probe
-        ? table(app, probe)
-        : h("p", { class: "note" }, "Point at the picture at rest to read its values."),
-    ]);
+    const { probe, state } = app;
+    summary.textContent = probe ? `Pixel ${probe.x}, ${probe.y}` : "Pixel under the pointer";
+    const layers = app.shownRuns().map((run) => [run.name, run.layers.length]);
+    keyed(body, [probe, layers, Boolean(state.view)], () => table(app));
   };
-  return {
-    element: h("section", { class: "probe-box", "aria-label": "Pixel values" }, body),
-    update,
-  };
+  return { element: h("details", { class: "probe-box", open }, summary, body), update };
 }

@@ -1,9 +1,17 @@
 // Pieces of the panel.
 import { h, replace } from "../../../page/web/src/dom.js";
 
+export const kNarrow = "(max-width: 50rem)"; // as in narrow.css
+
 // A part of the panel that folds.
 export function section(title, children, { open = true, id } = {}) {
   return h("details", { class: "section", open, id }, h("summary", {}, title), children);
+}
+
+// Of what is the same in another build of a list; null: nothing is.
+function selectorOf({ id, dataset }) {
+  if (id) return `#${CSS.escape(id)}`;
+  return dataset.value === undefined ? null : `[data-value="${CSS.escape(dataset.value)}"]`;
 }
 
 // Builds the contents of `container` anew when `key` is another; what had the focus keeps it.
@@ -12,12 +20,9 @@ export function keyed(container, key, build) {
   if (container.builtFor === text) return;
   container.builtFor = text;
   const focused = container.contains(document.activeElement) ? document.activeElement : null;
-  const { id, dataset } = focused ?? {};
+  const selector = focused && selectorOf(focused);
   replace(container, build());
-  const again = id
-    ? container.querySelector(`#${CSS.escape(id)}`)
-    : dataset?.value && container.querySelector(`[data-value="${CSS.escape(dataset.value)}"]`);
-  again?.focus();
+  if (selector) container.querySelector(selector)?.focus();
 }
 
 // A labelled range with its value beside it. oninput(number); double click: `first` again.

@@ -12,12 +12,10 @@ import { pathPanel } from "./panel_path.js";
 import { probePanel } from "./panel_probe.js";
 import { surfelsPanel } from "./panel_surfels.js";
 import { trainingPanel } from "./panel_training.js";
-import { button } from "./parts.js";
+import { button, kNarrow } from "./parts.js";
 import { Picture } from "./picture.js";
 import { statusText } from "./status.js";
 import { clamp } from "./vectors.js";
-
-const kNarrow = "(max-width: 50rem)";
 
 export class Viewer {
   // rate(): frames a second; toRuns: back to the start page, or null
