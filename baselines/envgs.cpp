@@ -212,7 +212,7 @@ class EnvGs final : public MethodOf<EnvGsConfig> {
 
   MapSet render(const Camera& camera) override {
     MapSet out;
-    out["rgb"] = forward(camera);
+    out["rgb"] = forward(camera, step_of_render());
     const GlassBuffer& buffer = transport_.buffer();
     out["depth"] = buffer.depth;
     out["normal"] = buffer.normal;
@@ -228,7 +228,8 @@ class EnvGs final : public MethodOf<EnvGsConfig> {
     return out;
   }
 
-  const Image& picture(const Camera& camera) override { return forward(camera); }
+  const Image& picture(const Camera& camera) override { return forward(camera, step_of_render()); }
+  void render_quickly(bool quickly) override { quickly_ = quickly; }
 
   void load(const std::string& folder) override {
     MethodOf::load(folder);
@@ -260,6 +261,10 @@ class EnvGs final : public MethodOf<EnvGsConfig> {
     warn_without_points(*scene_, "envgs", warnings_);
   }
 
+  // Quick renders share mirrored rays, as training does.
+  std::optional<int> step_of_render() const {
+    return quickly_ ? std::optional<int>(MirrorCutoffs::kSharingStep) : std::nullopt;
+  }
   // step: of training, or none.
   const Image& forward(const Camera& camera, std::optional<int> step = {}) {
     GlassOptions options;
@@ -290,6 +295,7 @@ class EnvGs final : public MethodOf<EnvGsConfig> {
   ViewSampler views_;
   TrainableSet base_, environment_;
   ReflectionBootstrap bootstrap_;
+  bool quickly_ = false;
   bool with_environment_ = true;  // step() says; when nothing is left to train: all there is
   int base_degree_ = 3, environment_degree_ = 3;
   GlassTransport transport_;

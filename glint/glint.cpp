@@ -135,15 +135,18 @@ class Glint final : public MethodOf<GlintConfig> {
     return stats;
   }
 
-  MapSet render(const Camera& camera) override { return model_.render(camera, config_, phase_); }
+  MapSet render(const Camera& camera) override {
+    return model_.render(camera, config_, phase_of_render());
+  }
   MapSet render_view(const View& view) override {
-    GlintPhase phase = phase_;
+    GlintPhase phase = phase_of_render();
     if (config_.oracle && GivenSurface::fits(view.truth)) phase.truth = &view.truth;
     return model_.render(view.camera, config_, phase);
   }
   const Image& picture(const Camera& camera) override {
-    return model_.forward(camera, config_, phase_);
+    return model_.forward(camera, config_, phase_of_render());
   }
+  void render_quickly(bool quickly) override { quickly_ = quickly; }
 
   void load(const std::string& folder) override {
     MethodOf::load(folder);
@@ -175,6 +178,12 @@ class Glint final : public MethodOf<GlintConfig> {
   }
 
  private:
+  // A step of training that shares mirrored rays stands for quick renders.
+  GlintPhase phase_of_render() const {
+    GlintPhase phase = phase_;
+    if (quickly_) phase.step = MirrorCutoffs::kSharingStep;
+    return phase;
+  }
   TrainableSet new_set(
       const PointCloud& points,
       const InitialSurfels& initial,
@@ -297,7 +306,7 @@ class Glint final : public MethodOf<GlintConfig> {
   ViewSampler views_;
   GlintModel model_;
   GlintPhase phase_;
-  bool frozen_ = false;
+  bool frozen_ = false, quickly_ = false;
   static constexpr std::size_t kTransparencyChannel = 0;  // of the interface's extra ones
   PhotometricLoss photometric_;
   PlanarLosses planes_;

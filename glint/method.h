@@ -57,6 +57,9 @@ class Method {
   // The picture alone, not clamped, left on the device where it was made: what FPS counts and what
   // moving viewers see. Valid until the next call of any kind.
   virtual const Image& picture(const Camera& camera) { return picture_ = render(camera)["rgb"]; }
+  // From now on the two above are quicker where that is possible, and as near to what they were as
+  // training takes it: for viewers that move.
+  virtual void render_quickly(bool) {}
   // Surfel sets as PLY files and whatever else is needed to render again.
   virtual void save(const std::string& folder) const = 0;
   // After initialize(), step() goes on from what is loaded; else it can only be rendered.

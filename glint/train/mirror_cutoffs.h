@@ -36,6 +36,8 @@ struct MirrorCutoffs {
       "0: growth counts all steps, shared rays too");
     v("mirror_near", near, "metres that a mirrored ray passes before it meets any");
   }
+  // One that shares rays, if any does.
+  static constexpr int kSharingStep = 1;
   bool shares() const { return share_below > 0; }
   // Whether density control looks at this step, in which no ray is shared then.
   bool observes(int step) const {

@@ -33,6 +33,18 @@ std::vector<PageLayer> layers_in(const MapSet& found, const View& view) {
 
 bool needs_view(const PageLayer& layer) { return layer.id == "error" || layer.id == "angle"; }
 
+// The method renders quickly while it lives.
+class QuickRenders {
+ public:
+  explicit QuickRenders(Method& method) : method_(method) { method_.render_quickly(true); }
+  ~QuickRenders() { method_.render_quickly(false); }
+  QuickRenders(const QuickRenders&) = delete;
+  QuickRenders& operator=(const QuickRenders&) = delete;
+
+ private:
+  Method& method_;
+};
+
 void hide(const CutPlane& cut, SurfelCloud& cloud) {
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (is_cut(cut, get3(cloud.means.data(), i))) cloud.opacity_logits.data()[i] = kHidden;
@@ -96,9 +108,10 @@ LayerMaps ViewedRun::layers(const Look& look, const Camera& camera, const View* 
 }
 
 LayerMaps ViewedRun::layers_for(const std::string& layer, const Look& look, const Camera& camera) {
-  const bool alone =
+  const QuickRenders quick(method_);
+  const bool picture_alone =
       layer == "rgb" && look.scales == LightScales{} && look.style == SurfelStyle::kImage;
-  if (!alone) return layers(look, camera, nullptr);
+  if (!picture_alone) return layers(look, camera, nullptr);
   if (!training_) cut_.apply(look.cut);
   LayerMaps maps;
   maps["rgb"] = method_.picture(camera);

@@ -40,7 +40,8 @@ class ViewedRun {
   // Everything that the run has of this look, seen by `camera`; `snapped`: whose view it is, which
   // brings "error" and "angle". Errors (kUsage): a cut where nothing may be changed.
   LayerMaps layers(const Look& look, const Camera& camera, const View* snapped);
-  // Only what this layer needs: less work where that is the picture alone.
+  // For a camera that moves: only what this layer needs, as quickly as the method can
+  // (Method::render_quickly()).
   LayerMaps layers_for(const std::string& layer, const Look& look, const Camera& camera);
   // [H][W][3] in [0, 1]; mid-grey where the run has no such layer here.
   Image picture(const LayerMaps& maps, const std::string& layer, ImageSize size) const;
