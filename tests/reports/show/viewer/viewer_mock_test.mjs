@@ -137,13 +137,13 @@ async function testProbe(page, server) {
   assert.ok(server.of("probe").length - count <= 2 + 10 * seconds, "at most ten a second");
   await until(
     async () =>
-      (await textOf(page, ".probe-box summary")) === `Pixel ${Math.floor(0.69 * 240)}, 13`,
+      (await textOf(page, ".layer-head .layer-title")) === `Pixel ${Math.floor(0.69 * 240)}, 13`,
     "the pixel's numbers",
   );
-  const row = (id) => page.locator(`.values [data-layer="${id}"]`).innerText();
-  assert.match(await row("rgb"), /^Image\s+\.500 \.250 \.69\d\s+\.125 \.250 \.375$/);
-  assert.match(await row("depth"), /^Depth, m\s+2\.500\s+2\.000$/);
-  assert.match(await row("transparency"), /^Transparency t\s+–\s+–$/, "nothing there");
+  const row = (id) => page.locator(`.layer[data-value="${id}"] .value`).allInnerTexts();
+  assert.match((await row("rgb")).join(), /^\.500 \.250 \.69\d,\.125 \.250 \.375$/);
+  assert.deepEqual(await row("depth"), ["2.500 m", "2.000 m"]);
+  assert.deepEqual(await row("transparency"), ["–", "–"], "nothing there");
   await page.mouse.move(5, 5);
   await hold(page, "s", () => server.last("look").view === null, "a motion leaves the view");
   assert.equal(server.last("look").panes[0].layer, "rgb", "where there is no truth: the image");

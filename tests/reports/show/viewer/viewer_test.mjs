@@ -144,7 +144,7 @@ async function testProbe(page, heard) {
     }
     assert.ok(probe.truth.rgb.length === 3, "the truth, too");
   }
-  await page.waitForSelector(".values tbody tr");
+  await page.waitForSelector(".layer .value:not(:empty)");
   await shot(page, "probe");
   await page.mouse.move(2, 2);
   console.log(`ok: ${compared} values of pixels equal those of render`);

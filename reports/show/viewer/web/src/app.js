@@ -146,7 +146,7 @@ export class App {
     if (layer && (!layer.needs_view || this.state.view)) this.setPane(side, { layer: layer.id });
   }
 
-  layerOf(side) {
+  layerOf(side = this.side) {
     return shownLayer(this.hello, this.state[side], this.state.view);
   }
 

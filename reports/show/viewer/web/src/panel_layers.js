@@ -1,35 +1,9 @@
-// Which layer of which run is shown, what its colours mean, what it is compared with.
+// Which layer of which run is shown, its numbers, what its colours mean, what it is compared with.
 import { h, segmented, select } from "../../../page/web/src/dom.js";
 import { colorbar, normalBall } from "../../../page/web/src/legend.js";
+import { layerList } from "./layer_list.js";
 import { kResolutions } from "./look.js";
 import { keyed, section } from "./parts.js";
-
-const kKeyed = 9; // layers that have a number key
-
-function layerButton(app, layer, number) {
-  const isFree = !layer.needs_view || app.state.view;
-  return h(
-    "button",
-    {
-      type: "button",
-      class: "layer",
-      "data-value": layer.id,
-      disabled: !isFree,
-      title: isFree ? null : "compares with the truth: go to a view",
-      "aria-pressed": String(layer.id === app.layerOf(app.side).id),
-      onclick: () => app.setLayer(number),
-    },
-    h("span", { class: "layer-key" }, number < kKeyed ? String(number + 1) : ""),
-    layer.title,
-  );
-}
-
-const layerList = (app) =>
-  h(
-    "div",
-    { class: "layers", role: "group", "aria-label": "Layers" },
-    app.layersOf().map((layer, i) => layerButton(app, layer, i)),
-  );
 
 function legendOf(layer) {
   if (layer.style === "normal")
@@ -65,7 +39,7 @@ function runChoice(app) {
 
 export function layersPanel(app) {
   const top = h("div", { class: "rows" });
-  const list = h("div", {});
+  const list = layerList(app);
   const legend = h("div", { class: "legend" });
   const resolution = h("div", { class: "line" });
   const update = () => {
@@ -77,13 +51,12 @@ export function layersPanel(app) {
       sideChoice(app),
     ]);
     const shown = app.layerOf(app.side);
-    const ids = app.layersOf().map(({ id }) => id);
-    keyed(list, [app.side, app.pane().run, shown.id, Boolean(view), ids], () => layerList(app));
+    list.update();
     keyed(legend, [app.pane().run, shown, names], () => legendOf(shown));
     keyed(resolution, [size, Boolean(view)], () => [
       h("span", { class: "quiet" }, "Resolution"),
       segmented("Resolution", kResolutions, size, (id) => app.set({ resolution: id })),
     ]);
   };
-  return { element: section("Layers", [top, list, legend, resolution]), update };
+  return { element: section("Layers", [top, list.element, legend, resolution]), update };
 }

@@ -4,7 +4,7 @@ import { cutText, kCutAxes } from "./cut.js";
 import { button, keyed, section, slider, thousands } from "./parts.js";
 import { kScaleTitles } from "./state.js";
 
-const kStyleTitles = { image: "Image", discs: "Discs", points: "Points" };
+export const kStyleTitles = { image: "Image", discs: "Discs", points: "Points" };
 const kMostScale = 4;
 
 const union = (lists) => [...new Set(lists.flat())];
@@ -76,7 +76,7 @@ export function surfelsPanel(app) {
   const styles = h("div", { class: "line" });
   const scales = h("div", {});
   const cut = h("div", { class: "line" });
-  const offset = slider("Stays", {
+  const offset = slider("Offset", {
     ...{ id: "cut-share", min: 0, max: 1, step: 0.005 },
     oninput: (share) => setCut(app, { share }),
   });

@@ -9,8 +9,7 @@ import { Overlay } from "./overlay.js";
 import { cameraPanel, photoUrl, viewTitle } from "./panel_camera.js";
 import { layersPanel } from "./panel_layers.js";
 import { pathPanel } from "./panel_path.js";
-import { probePanel } from "./panel_probe.js";
-import { surfelsPanel } from "./panel_surfels.js";
+import { kStyleTitles, surfelsPanel } from "./panel_surfels.js";
 import { trainingPanel } from "./panel_training.js";
 import { button, kNarrow } from "./parts.js";
 import { Picture } from "./picture.js";
@@ -29,7 +28,6 @@ export class Viewer {
     this.panels = [trainingPanel, layersPanel, cameraPanel, surfelsPanel, pathPanel].map((make) =>
       make(app),
     );
-    this.probe = probePanel(app);
     this.path = this.panels.at(-1).path;
     this.controls = new Controls(this.picture.element, this.#actions());
     this.#build();
@@ -124,7 +122,6 @@ export class Viewer {
         this.#header(),
         this.panels.map(({ element }) => element),
       ),
-      this.probe.element,
     );
     this.layout = h(
       "div",
@@ -171,7 +168,7 @@ export class Viewer {
       pivot: state.rig.mode === "orbit" ? state.rig.pivot : null,
     });
     this.status.textContent = statusText(this.app, this.rate());
-    for (const panel of [...this.panels, this.probe]) panel.update();
+    for (const panel of this.panels) panel.update();
   }
 
   // The photo of the view as the right side; where none is snapped to there is nothing.
@@ -189,9 +186,10 @@ export class Viewer {
   }
 
   #labels() {
-    const { left, right } = this.app.state;
+    const { left, right, style } = this.app.state;
+    const drawn = style === "image" ? "" : ` · ${kStyleTitles[style]}`;
     const title = (side) =>
-      `${this.app.runTitle(this.app.state[side].run)} · ${this.app.layerOf(side).title}`;
+      `${this.app.runTitle(this.app.state[side].run)} · ${this.app.layerOf(side).title}${drawn}`;
     if (right?.photo) return [title("left"), this.photoUrl && "Photo"];
     return [left && title("left"), right && title("right")];
   }
