@@ -77,7 +77,9 @@ def train(
 
     dataset: folder or packed file, or a Scene (in memory alone)
     method: id (methods())
+    iterations: steps; schedules scale with them
     run: folder of the run, which goes on there if it was stopped; None: in memory, no file is written
+    seed: of the initial surfels and of the order of the views
     settings: fields of the method (`glint-bench methods ID`), {"name": value}
     callback: called as callback(step, run) every `callback_every` steps and after the last. step: {"iteration":
         from 0, "loss", "psnr" in dB of this step's view, "num_surfels", "terms", "sets", "events"}; on a GPU

@@ -77,9 +77,9 @@ class Metrics(FolderCase):
 
     def test_a_depth_in_other_units_is_told(self):
         truth = 1 + 3 * RNG.random((*SIZE, 1), dtype=np.float32)
-        with self.assertWarnsRegex(glint_bench.GlintWarning, "is it in mm"):
+        with self.assertWarnsRegex(glint_bench.GlintWarning, "millimetres"):
             scores = glint_bench.depth(1000 * truth, truth)
-        self.assertIn("is it in mm", scores["images"][0]["warnings"][0])
+        self.assertIn("millimetres", scores["images"][0]["warnings"][0])
 
     def test_normal(self):
         normals = RNG.standard_normal((*SIZE, 3)).astype(np.float32)
