@@ -81,7 +81,7 @@ py::object score_mesh(
     const std::vector<Camera>& cameras,
     const std::string& protocol
 ) {
-  SurfaceInput of_reference = surface_of(reference, "reference");
+  SurfaceInput of_reference = surface_of(reference, "truth");
   SurfaceInput of_prediction = with_exit_code(ExitCode::kBadPrediction, [&] {
     return surface_of(prediction, "prediction");
   });

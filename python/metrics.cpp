@@ -48,7 +48,9 @@ py::object item_of(const py::list& items, std::size_t i) {
   return items[items.size() == 1 ? 0 : i];
 }
 
+// `names`: what Python calls both sides.
 std::vector<MapPair> pairs_of(
+    const std::pair<std::string, std::string>& names,
     const py::list& predictions,
     const py::list& references,
     const py::list& masks,
@@ -59,9 +61,9 @@ std::vector<MapPair> pairs_of(
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     MapPair& pair = pairs[i];
     const std::string at = pairs.size() == 1 ? "" : fmt::format("[{}]", i);
-    pair.files = {std::to_string(i), "prediction" + at, "reference" + at, {}, {}};
-    pair.prediction = image_of(predictions[i], "prediction" + at, channels);
-    pair.reference = image_of(references[i], "reference" + at, channels);
+    pair.files = {std::to_string(i), names.first + at, names.second + at, {}, {}};
+    pair.prediction = image_of(predictions[i], names.first + at, channels);
+    pair.reference = image_of(references[i], names.second + at, channels);
     pair.mask = mask_of(item_of(masks, i), "mask");
     pair.glass = mask_of(item_of(glass, i), "glass");
   }
@@ -76,6 +78,7 @@ Json document_of(const MetricTool& tool, std::vector<ImageScores> images) {
 
 py::object score_arrays(
     const std::string& name,
+    const std::pair<std::string, std::string>& names,
     const py::list& predictions,
     const py::list& references,
     const py::list& masks,
@@ -85,7 +88,7 @@ py::object score_arrays(
 ) {
   const auto tool = make_tool(name);
   std::vector<MapPair> pairs =
-      pairs_of(predictions, references, masks, glass, name == "depth" ? 1 : 3);
+      pairs_of(names, predictions, references, masks, glass, name == "depth" ? 1 : 3);
   for (MapPair& pair : pairs) pair.family = family;
   const auto look_for_signals = [] {
     const py::gil_scoped_acquire locked;

@@ -90,6 +90,7 @@ def train(dataset: str | Scene, callback: Callable[[dict[str, Any], Run], Any] |
 def read_records(path: str) -> list[dict[str, Any]]: ...
 def score_arrays(
     tool: str,
+    names: tuple[str, str],
     predictions: list[Any],
     references: list[Any],
     masks: list[Any],

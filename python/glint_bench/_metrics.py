@@ -32,7 +32,7 @@ def psnr(
     Returns {"mean": {"psnr": dB, "psnr@glass": ...}, "images": [{"metrics": ..., "warnings": ...}],
     "protocol": {"psnr": ...}, "summary": {"num_identical": ...}, ...}.
     """
-    return _score("psnr", render, truth, mask, glass, [], 1 if eight_bit else 0)
+    return _score("psnr", "render", render, truth, mask, glass, [], 1 if eight_bit else 0)
 
 
 def ssim(
@@ -51,7 +51,7 @@ def ssim(
 
     Returns psnr()'s dict with "ssim-3dgs", "ssim-wang".
     """
-    return _score("ssim", render, truth, mask, glass, ["--variant", variant])
+    return _score("ssim", "render", render, truth, mask, glass, ["--variant", variant])
 
 
 def lpips(
@@ -78,7 +78,7 @@ def lpips(
     args = ["--range", range]
     args += ["--weights", str(weights)] if weights is not None else []
     args += ["--net", net] if net is not None else []
-    return _score("lpips", render, truth, mask, glass, args)
+    return _score("lpips", "render", render, truth, mask, glass, args)
 
 
 def depth(
@@ -109,7 +109,7 @@ def depth(
     args += ["--max-depth", repr(float(max_depth))] if max_depth is not None else []
     args += ["--release"] if release else []
     args += ["--ray", *(repr(float(number)) for number in ray)] if ray is not None else []
-    return _score("depth", prediction, truth, mask, glass, args)
+    return _score("depth", "prediction", prediction, truth, mask, glass, args)
 
 
 def normal(
@@ -131,7 +131,7 @@ def normal(
     Returns psnr()'s dict with "normal-mae", "normal-median" (degrees), shares below angles (%), ...
     """
     args = ["--axes", axes, "--reference-axes", reference_axes]
-    return _score("normal", prediction, truth, mask, glass, args)
+    return _score("normal", "prediction", prediction, truth, mask, glass, args)
 
 
 def mesh(
@@ -223,20 +223,19 @@ def _listed(images: Images | None) -> list[Any]:
 
 def _score(
     tool: str,
+    name: str,
     prediction: Images,
-    reference: Images,
+    truth: Images,
     mask: Images | None,
     glass_mask: Images | None,
     args: list[str],
     family: int = 0,
 ) -> dict[str, Any]:
-    predictions, references = _listed(prediction), _listed(reference)
+    predictions, truths = _listed(prediction), _listed(truth)
     masks, glasses = _listed(mask), _listed(glass_mask)
-    if not predictions or len(predictions) != len(references):
-        raise ValueError(
-            f"{len(predictions)} predictions and {len(references)} references; expected as many, and one at least"
-        )
-    for name, given in (("mask", masks), ("glass", glasses)):
+    if not predictions or len(predictions) != len(truths):
+        raise ValueError(f"{name}: {len(predictions)}, truth: {len(truths)} images; expected as many, and one at least")
+    for side, given in (("mask", masks), ("glass", glasses)):
         if len(given) not in (0, 1, len(predictions)):
-            raise ValueError(f"{name}: {len(given)} for {len(predictions)} images; expected one, or one for each")
-    return _glint_bench.score_arrays(tool, predictions, references, masks, glasses, args, family)
+            raise ValueError(f"{side}: {len(given)} for {len(predictions)} images; expected one, or one for each")
+    return _glint_bench.score_arrays(tool, (name, "truth"), predictions, truths, masks, glasses, args, family)

@@ -174,43 +174,43 @@ class Refusals(unittest.TestCase):
 
     def test_types(self):
         self.check(
-            TypeError, "prediction: dtype float64; expected float32: give prediction.astype(numpy.float32)",
+            TypeError, "render: dtype float64; expected float32: give render.astype(numpy.float32)",
             picture().astype(np.float64),
         )
         self.check(
             TypeError,
-            "prediction: dtype uint8; expected float32 in [0, 1]: give prediction.astype(numpy.float32) / 255",
+            "render: dtype uint8; expected float32 in [0, 1]: give render.astype(numpy.float32) / 255",
             np.zeros((*SIZE, 3), np.uint8),
         )
-        self.check(TypeError, "prediction: builtins.str; expected a NumPy array: give numpy.asarray(prediction)", "a.png")
+        self.check(TypeError, "render: builtins.str; expected a NumPy array: give numpy.asarray(render)", "a.png")
 
     def test_shapes(self):
         cases = {
-            "shape (3, 37, 53); expected [H][W][3]; channels come last: give numpy.moveaxis(prediction, 0, -1)":
+            "shape (3, 37, 53); expected [H][W][3]; channels come last: give numpy.moveaxis(render, 0, -1)":
                 np.moveaxis(picture(), -1, 0),
-            "shape (2, 37, 53, 3); expected [H][W][3]; several images are a list: give list(prediction)":
+            "shape (2, 37, 53, 3); expected [H][W][3]; several images are a list: give list(render)":
                 np.stack([picture()] * 2),
-            "shape (37, 53, 4); expected [H][W][3]; without alpha: give prediction[..., :3]":
+            "shape (37, 53, 4); expected [H][W][3]; without alpha: give render[..., :3]":
                 np.zeros((*SIZE, 4), np.float32),
-            "shape (37, 53); expected [H][W][3]; grey to three channels: give numpy.stack([prediction] * 3, axis=-1)":
+            "shape (37, 53); expected [H][W][3]; grey to three channels: give numpy.stack([render] * 3, axis=-1)":
                 np.zeros(SIZE, np.float32),
         }
         for text, array in cases.items():
-            self.check(ValueError, "prediction: " + text, array)
+            self.check(ValueError, "render: " + text, array)
 
     def test_what_a_refusal_says_is_enough(self):
         prediction = np.moveaxis((picture() * 255).astype(np.uint8), -1, 0)
-        mended = np.moveaxis(prediction.astype(np.float32) / 255, 0, -1)
+        mended = np.moveaxis(render.astype(np.float32) / 255, 0, -1)
         self.assertIn("psnr", glint_bench.psnr(mended, picture())["mean"])
 
     def test_sizes(self):
-        with self.assertRaisesRegex(glint_bench.GlintError, "prediction: 50 x 37 pixels, but reference has 53 x 37") as raised:
+        with self.assertRaisesRegex(glint_bench.GlintError, "render: 50 x 37 pixels, but truth has 53 x 37") as raised:
             glint_bench.psnr(picture()[:, :50], picture())
         self.assertEqual(raised.exception.code, "bad_prediction")
         self.assertEqual(raised.exception.cure, "render at the reference's size")
         with self.assertRaisesRegex(glint_bench.GlintError, "mask: mask of 3 x 3 pixels"):
             glint_bench.psnr(picture(), picture(), np.ones((3, 3), bool))
-        with self.assertRaisesRegex(ValueError, "2 predictions and 1 references"):
+        with self.assertRaisesRegex(ValueError, "render: 2, truth: 1 images"):
             glint_bench.psnr([picture()] * 2, [picture()])
 
     def test_options_are_those_of_the_programs(self):
