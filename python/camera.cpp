@@ -138,10 +138,10 @@ cx, cy: principal point, pixels; the middle where not given
 rotation_cam_from_world: [3][3], rows are the camera's axes in the world; the unit matrix where not given
 translation_cam_from_world: [3], metres)";
 
-}  // namespace
+using CameraClass = py::class_<Camera>;
 
-void add_camera(py::module_& module) {
-  py::class_<Camera>(module, "Camera", kCameraHelp)
+void add_making(CameraClass& camera) {
+  camera
       .def(
           py::init(&make_camera),
           py::arg("width"),
@@ -166,37 +166,44 @@ void add_camera(py::module_& module) {
           "A camera at eye [3] that looks at target [3], metres; up [3] points up in the picture. "
           "fov_x_deg: horizontal field of view, degrees."
       )
-      .def_readonly("width", &Camera::width, "pixels")
-      .def_readonly("height", &Camera::height, "pixels")
-      .def_readonly("fx", &Camera::fx, "pixels")
-      .def_readonly("fy", &Camera::fy, "pixels")
-      .def_readonly("cx", &Camera::cx, "pixels")
-      .def_readonly("cy", &Camera::cy, "pixels")
-      .def_property_readonly(
-          "rotation_cam_from_world",
-          [](const Camera& camera) { return array_of(camera.rotation_cam_from_world); },
-          "float64 [3][3]"
-      )
-      .def_property_readonly(
-          "translation_cam_from_world",
-          [](const Camera& camera) { return array_of(camera.translation_cam_from_world); },
-          "float64 [3], metres"
-      )
-      .def_property_readonly(
-          "center",
-          [](const Camera& camera) { return array_of(camera.center()); },
-          "float64 [3]: where the camera stands, metres, world"
-      )
       .def(
           "with_size",
-          [](const Camera& camera, int width, int height) {
-            check_lens(width, height, camera.fx, camera.fy);
-            return with_size(camera, {width, height});
+          [](const Camera& lens, int width, int height) {
+            check_lens(width, height, lens.fx, lens.fy);
+            return with_size(lens, {width, height});
           },
           py::arg("width"),
           py::arg("height"),
           "The same at another size in pixels: the horizontal field of view stays, rows above and "
           "below come or go."
+      );
+}
+
+void add_lens(CameraClass& camera) {
+  camera.def_readonly("width", &Camera::width, "pixels")
+      .def_readonly("height", &Camera::height, "pixels")
+      .def_readonly("fx", &Camera::fx, "pixels")
+      .def_readonly("fy", &Camera::fy, "pixels")
+      .def_readonly("cx", &Camera::cx, "pixels")
+      .def_readonly("cy", &Camera::cy, "pixels");
+}
+
+void add_pose(CameraClass& camera) {
+  camera
+      .def_property_readonly(
+          "rotation_cam_from_world",
+          [](const Camera& self) { return array_of(self.rotation_cam_from_world); },
+          "float64 [3][3]"
+      )
+      .def_property_readonly(
+          "translation_cam_from_world",
+          [](const Camera& self) { return array_of(self.translation_cam_from_world); },
+          "float64 [3], metres"
+      )
+      .def_property_readonly(
+          "center",
+          [](const Camera& self) { return array_of(self.center()); },
+          "float64 [3]: where the camera stands, metres, world"
       )
       .def(
           "project",
@@ -204,8 +211,17 @@ void add_camera(py::module_& module) {
           py::arg("points"),
           "float64 [N][3]: x and y in pixels and z in metres of points [N][3], metres, world. What "
           "has no z above 0 is behind the camera."
-      )
-      .def("__repr__", &camera_text);
+      );
+}
+
+}  // namespace
+
+void add_camera(py::module_& module) {
+  CameraClass camera(module, "Camera", kCameraHelp);
+  add_making(camera);
+  add_lens(camera);
+  add_pose(camera);
+  camera.def("__repr__", &camera_text);
 }
 
 }  // namespace glint::python

@@ -96,26 +96,31 @@ constexpr const char* kRenderHelp =
 "behind_depth" [H][W][1], "interface", "transmission", "reflection", "transmitted", "reflected" [H][W][3].
 A View, not its Camera, is for methods that were published with a mask of glass as input at test views.)";
 
-void add_class(py::module_& module) {
-  py::class_<Run, RunPointer>(module, "Run", kRunHelp)
-      .def(
-          "render",
-          [](Run& self, const Camera& camera) {
-            return rendered(self, [&](Method& method) { return method.render(camera); });
-          },
-          py::arg("camera"),
-          kRenderHelp
-      )
+using RunClass = py::class_<Run, RunPointer>;
+
+void add_rendering(RunClass& run) {
+  run.def(
+         "render",
+         [](Run& self, const Camera& camera) {
+           return rendered(self, [&](Method& method) { return method.render(camera); });
+         },
+         py::arg("camera"),
+         kRenderHelp
+  )
       .def(
           "render",
           [](Run& self, const ViewOfScene& view) {
             return rendered(self, [&](Method& method) { return method.render_view(*view.view); });
           },
           py::arg("view")
-      )
-      .def_property_readonly(
-          "method", [](const Run& self) { return self.method_id; }, "str: id, \"glint\""
-      )
+      );
+}
+
+// What it is.
+void add_identity(RunClass& run) {
+  run.def_property_readonly(
+         "method", [](const Run& self) { return self.method_id; }, "str: id, \"glint\""
+  )
       .def_property_readonly(
           "folder",
           [](const Run& self) -> py::object {
@@ -133,13 +138,25 @@ void add_class(py::module_& module) {
       .def_property_readonly(
           "scene", [](const Run& self) { return SceneHandle{self.scene}; }, "Scene"
       )
-      .def_property_readonly(
-          "config",
-          [](Run& self) {
-            return to_python(of_method(self, [](Method& method) { return method.config(); }));
-          },
-          "dict: every setting of the method (`glint-bench methods ID`)"
-      )
+      .def("__repr__", [](const Run& self) {
+        return fmt::format(
+            "Run({} on {}{})",
+            self.method_id,
+            self.scene->name,
+            self.folder.empty() ? "" : ", " + self.folder
+        );
+      });
+}
+
+// What its method says of itself.
+void add_state(RunClass& run) {
+  run.def_property_readonly(
+         "config",
+         [](Run& self) {
+           return to_python(of_method(self, [](Method& method) { return method.config(); }));
+         },
+         "dict: every setting of the method (`glint-bench methods ID`)"
+  )
       .def_property_readonly(
           "num_surfels",
           [](Run& self) {
@@ -161,21 +178,16 @@ void add_class(py::module_& module) {
             return texts_to_python(of_method(self, [](Method& method) { return method.notes(); }));
           },
           "list of str: what readers of tables have to know: which masks it was given"
-      )
-      .def("__repr__", [](const Run& self) {
-        return fmt::format(
-            "Run({} on {}{})",
-            self.method_id,
-            self.scene->name,
-            self.folder.empty() ? "" : ", " + self.folder
-        );
-      });
+      );
 }
 
 }  // namespace
 
 void add_run(py::module_& module) {
-  add_class(module);
+  RunClass run(module, "Run", kRunHelp);
+  add_rendering(run);
+  add_identity(run);
+  add_state(run);
   module.def("load_run", &open_run, py::arg("folder"), py::arg("dataset"));
   module.def(
       "load_model",

@@ -95,18 +95,19 @@ void add_view(py::module_& module) {
       });
 }
 
-void add_scene_class(py::module_& module) {
-  py::class_<SceneHandle>(
-      module, "Scene", "What methods train on and are scored by (load_scene())."
-  )
-      .def_property_readonly(
-          "name", [](const SceneHandle& self) { return text_to_python(self.scene->name); }, "str"
-      )
-      .def_property_readonly(
-          "dataset",
-          [](const SceneHandle& self) { return text_to_python(self.scene->dataset); },
-          "str: \"glassroom\", \"nerfstudio\", ..."
-      )
+using SceneClass = py::class_<SceneHandle>;
+
+py::dict points_of(const py::object& self) {
+  const PointCloud& points = scene_in(self).points;
+  py::dict dict;
+  dict["positions"] = rows_array(points.positions, self);
+  dict["colors"] = rows_array(points.colors, self);
+  if (!points.normals.empty()) dict["normals"] = rows_array(points.normals, self);
+  return dict;
+}
+
+void add_content(SceneClass& scene) {
+  scene
       .def_property_readonly(
           "train",
           [](const SceneHandle& self) { return views_of_scene(self.scene, self.scene->train); },
@@ -119,17 +120,14 @@ void add_scene_class(py::module_& module) {
       )
       .def_property_readonly(
           "points",
-          [](const py::object& self) {
-            const PointCloud& points = scene_in(self).points;
-            py::dict dict;
-            dict["positions"] = rows_array(points.positions, self);
-            dict["colors"] = rows_array(points.colors, self);
-            if (!points.normals.empty()) dict["normals"] = rows_array(points.normals, self);
-            return dict;
-          },
+          &points_of,
           "{\"positions\": [N][3] metres, world; \"colors\": [N][3] in [0, 1]; \"normals\": [N][3] "
           "unit, where there are any}"
-      )
+      );
+}
+
+void add_extent(SceneClass& scene) {
+  scene
       .def_property_readonly(
           "bounds_min",
           [](const SceneHandle& self) { return array_of_vector(self.scene->bounds_min); },
@@ -144,6 +142,18 @@ void add_scene_class(py::module_& module) {
           "spatial_scale",
           [](const SceneHandle& self) { return self.scene->spatial_scale; },
           "float, metres: 1.1 x largest distance of training cameras to their mean"
+      );
+}
+
+void add_identity(SceneClass& scene) {
+  scene
+      .def_property_readonly(
+          "name", [](const SceneHandle& self) { return text_to_python(self.scene->name); }, "str"
+      )
+      .def_property_readonly(
+          "dataset",
+          [](const SceneHandle& self) { return text_to_python(self.scene->dataset); },
+          "str: \"glassroom\", \"nerfstudio\", ..."
       )
       .def_property_readonly(
           "simulated_priors",
@@ -195,7 +205,10 @@ SceneHandle load(
 
 void add_scene(py::module_& module) {
   add_view(module);
-  add_scene_class(module);
+  SceneClass scene(module, "Scene", "What methods train on and are scored by (load_scene()).");
+  add_identity(scene);
+  add_content(scene);
+  add_extent(scene);
   module.def(
       "load_scene",
       &load,

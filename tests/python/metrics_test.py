@@ -199,7 +199,7 @@ class Refusals(unittest.TestCase):
             self.check(ValueError, "render: " + text, array)
 
     def test_what_a_refusal_says_is_enough(self):
-        prediction = np.moveaxis((picture() * 255).astype(np.uint8), -1, 0)
+        render = np.moveaxis((picture() * 255).astype(np.uint8), -1, 0)
         mended = np.moveaxis(render.astype(np.float32) / 255, 0, -1)
         self.assertIn("psnr", glint_bench.psnr(mended, picture())["mean"])
 
