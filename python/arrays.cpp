@@ -124,9 +124,11 @@ Image image_of(py::handle object, const std::string& name, int channels) {
   check_float(array, name);
   check_shape(array, name, channels);
   const auto values = in_order<float>(array);
-  Image image(extent(array, 1), extent(array, 0), channels);
-  std::copy_n(values.data(), image.values().size(), image.data());
-  return image;
+  return {
+      extent(array, 1),
+      extent(array, 0),
+      channels,
+      FloatArray(values.data(), values.data() + values.size())};
 }
 
 MaskImage mask_of(py::handle object, const std::string& name) {

@@ -48,27 +48,24 @@ py::object item_of(const py::list& items, std::size_t i) {
   return items[items.size() == 1 ? 0 : i];
 }
 
-// `names`: what Python calls both sides.
-std::vector<MapPair> pairs_of(
-    const std::pair<std::string, std::string>& names,
-    const py::list& predictions,
-    const py::list& references,
-    const py::list& masks,
-    const py::list& glass,
-    int channels
-) {
-  std::vector<MapPair> pairs(predictions.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    MapPair& pair = pairs[i];
-    const std::string at = pairs.size() == 1 ? "" : fmt::format("[{}]", i);
-    pair.files = {std::to_string(i), names.first + at, names.second + at, {}, {}};
-    pair.prediction = image_of(predictions[i], names.first + at, channels);
-    pair.reference = image_of(references[i], names.second + at, channels);
+// Of both sides, with what Python calls them; one image, or as many of each.
+struct Arrays {
+  std::pair<std::string, std::string> names;
+  py::list predictions, references, masks, glass;
+  int channels;
+
+  MapPair pair(std::size_t i) const {
+    const std::string at = predictions.size() == 1 ? "" : fmt::format("[{}]", i);
+    const std::string prediction = names.first + at, reference = names.second + at;
+    MapPair pair;
+    pair.files = {std::to_string(i), prediction, reference, {}, {}};
+    pair.prediction = image_of(predictions[i], prediction, channels);
+    pair.reference = image_of(references[i], reference, channels);
     pair.mask = mask_of(item_of(masks, i), "mask");
     pair.glass = mask_of(item_of(glass, i), "glass");
+    return pair;
   }
-  return pairs;
-}
+};
 
 // The document that the program prints, without names of files.
 Json document_of(const MetricTool& tool, std::vector<ImageScores> images) {
@@ -76,6 +73,7 @@ Json document_of(const MetricTool& tool, std::vector<ImageScores> images) {
   return report_json(tool, {{}, {}, {}, {}, std::move(images), {}});
 }
 
+// `name` of the tool; `family` of its metrics.
 py::object score_arrays(
     const std::string& name,
     const std::pair<std::string, std::string>& names,
@@ -87,17 +85,17 @@ py::object score_arrays(
     std::size_t family
 ) {
   const auto tool = make_tool(name);
-  std::vector<MapPair> pairs =
-      pairs_of(names, predictions, references, masks, glass, name == "depth" ? 1 : 3);
-  for (MapPair& pair : pairs) pair.family = family;
-  const auto look_for_signals = [] {
-    const py::gil_scoped_acquire locked;
-    check_signals();
-  };
-  std::vector<ImageScores> images = without_gil([&] {
+  const Arrays arrays{names, predictions, references, masks, glass, name == "depth" ? 1 : 3};
+  without_gil([&] {
     set_options(*tool, args);
-    return score_maps(*tool, pairs, look_for_signals);
+    return true;
   });
+  std::vector<ImageScores> images;
+  for (std::size_t i = 0; i < predictions.size(); ++i) {
+    MapPair pair = arrays.pair(i);
+    pair.family = family;
+    images.push_back(without_gil([&] { return score_maps(*tool, std::move(pair), i == 0); }));
+  }
   for (const ImageScores& image : images)
     for (const std::string& warning : image.warnings) warn(warning);
   return to_python(document_of(*tool, std::move(images)));

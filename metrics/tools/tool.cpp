@@ -243,14 +243,6 @@ ImageScores score_pair(const MetricTool& tool, const LoadedPair& pair) {
   return score_regions(tool, pair, load_regions(pair), std::move(warnings));
 }
 
-ImageScores score_map_pair(const MetricTool& tool, const MapPair& pair) {
-  check_sizes(pair);
-  for (const auto& [name, mask] : {std::pair{"mask", &pair.mask}, {"glass", &pair.glass}})
-    check_mask_size(name, *mask, pair.reference.size());
-  const std::vector<Region> regions = evaluation_regions(view_of(pair.glass), view_of(pair.mask));
-  return score_regions(tool, pair, regions, color_warnings(tool, pair));
-}
-
 // work(file) of every file side by side; errors come in the order of the files.
 template <class F>
 auto side_by_side(std::span<const FilePair> files, F&& work) {
@@ -385,18 +377,16 @@ Json MetricTool::protocol(const std::string& metric_id) const {
   return nullptr;
 }
 
-std::vector<ImageScores> score_maps(
-    const MetricTool& tool, std::span<MapPair> pairs, const std::function<void()>& between
-) {
-  std::vector<ImageScores> images;
-  for (MapPair& pair : pairs) {
-    between();
-    tool.prepare_prediction(pair.prediction);
-    tool.prepare_reference(pair.reference);
-    images.push_back(score_map_pair(tool, pair));
-  }
-  if (!images.empty()) add_doubt(tool, pairs.front(), images.front().warnings);
-  return images;
+ImageScores score_maps(const MetricTool& tool, MapPair pair, bool first) {
+  check_sizes(pair);
+  for (const auto& [name, mask] : {std::pair{"mask", &pair.mask}, {"glass", &pair.glass}})
+    check_mask_size(name, *mask, pair.reference.size());
+  tool.prepare_prediction(pair.prediction);
+  tool.prepare_reference(pair.reference);
+  const std::vector<Region> regions = evaluation_regions(view_of(pair.glass), view_of(pair.mask));
+  ImageScores image = score_regions(tool, pair, regions, color_warnings(tool, pair));
+  if (first) add_doubt(tool, pair, image.warnings);
+  return image;
 }
 
 int run_program(

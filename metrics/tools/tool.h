@@ -98,12 +98,10 @@ int run_program(
     const std::function<void()>& body
 );
 
-// As run_tool() scores files, one pair after the other; the options are set, and looked at by
-// check_options(). `between` is called before each. Errors: of run_tool() with the names of the
-// pairs.
-std::vector<ImageScores> score_maps(
-    const MetricTool& tool, std::span<MapPair> pairs, const std::function<void()>& between
-);
+// As run_tool() scores files; the options are set, and looked at by check_options(). `first` of
+// several pairs: the one that is looked at for other conventions. Errors: of run_tool() with the
+// names of the pair.
+ImageScores score_maps(const MetricTool& tool, MapPair pair, bool first = true);
 
 // The whole program but for main(). `args` without the program's name. Results go to `out`, errors
 // and usage to `err`. Returns the exit code.

@@ -59,6 +59,20 @@ class Scenes(RoomCase):
         np.testing.assert_allclose(camera.project(world[None])[0], [x, y, depth], rtol=1e-9)
 
 
+class Lists(unittest.TestCase):
+    def test_control_c_ends_them_before_the_next_image(self):
+        image = np.zeros((540, 960, 3), np.float32)
+
+        def stop(*_):
+            raise KeyboardInterrupt
+
+        before = signal.signal(signal.SIGALRM, stop)
+        self.addCleanup(signal.signal, signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with self.assertRaises(KeyboardInterrupt):
+            glint_bench.ssim([image] * 100_000, [image] * 100_000)  # for hours
+
+
 class Cameras(unittest.TestCase):
     def test_look_at(self):
         camera = glint_bench.Camera.look_at((1, 2, 3), (1, 5, 3), width=60, height=40, fov_x_deg=90)
