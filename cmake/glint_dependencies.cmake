@@ -13,20 +13,28 @@ if(GLINT_TESTS)
   find_package(Catch2 2.13 REQUIRED CONFIG)
 endif()
 
-# libpng, static where there is an archive: a bundle carries as few shared libraries as it can.
+# A library as an archive where there is one: a bundle carries as few shared libraries as it can. Not in the
+# Python module: Debian's archives are for programs.
+function(glint_link_archive target name)
+  find_library(GLINT_${name} NAMES lib${name}.a ${name} REQUIRED)
+  find_library(GLINT_${name}_SHARED NAMES ${name} lib${name}.a REQUIRED)
+  set(in_module $<STREQUAL:$<TARGET_PROPERTY:TYPE>,MODULE_LIBRARY>)
+  target_link_libraries(${target} INTERFACE $<IF:${in_module},${GLINT_${name}_SHARED},${GLINT_${name}}>)
+endfunction()
+
 find_path(GLINT_PNG_INCLUDE png.h REQUIRED)
-find_library(GLINT_PNG_LIBRARY NAMES libpng.a png REQUIRED)
-find_library(GLINT_Z_LIBRARY NAMES libz.a z REQUIRED)
+add_library(glint_z INTERFACE)
+glint_link_archive(glint_z z)
 add_library(glint_png INTERFACE)
 target_include_directories(glint_png SYSTEM INTERFACE ${GLINT_PNG_INCLUDE})
-target_link_libraries(glint_png INTERFACE ${GLINT_PNG_LIBRARY} ${GLINT_Z_LIBRARY})
+glint_link_archive(glint_png png)
+target_link_libraries(glint_png INTERFACE glint_z)
 
 # SHA-256.
 find_path(GLINT_NETTLE_INCLUDE nettle/sha2.h REQUIRED)
-find_library(GLINT_NETTLE_LIBRARY NAMES libnettle.a nettle REQUIRED)
 add_library(glint_nettle INTERFACE)
 target_include_directories(glint_nettle SYSTEM INTERFACE ${GLINT_NETTLE_INCLUDE})
-target_link_libraries(glint_nettle INTERFACE ${GLINT_NETTLE_LIBRARY})
+glint_link_archive(glint_nettle nettle)
 
 # Pictures: libdeflate reads PNG, libpng writes it, libjpeg-turbo, libwebp. None has a CMake config here.
 set(GLINT_IMAGE_CODECS glint_png)
@@ -35,10 +43,9 @@ foreach(codec deflate:libdeflate.h turbojpeg:turbojpeg.h webp:webp/decode.h)
   list(GET codec 0 name)
   list(GET codec 1 header)
   find_path(GLINT_${name}_INCLUDE ${header} REQUIRED)
-  find_library(GLINT_${name} NAMES lib${name}.a ${name} REQUIRED)
   add_library(glint_${name} INTERFACE)
   target_include_directories(glint_${name} SYSTEM INTERFACE ${GLINT_${name}_INCLUDE})
-  target_link_libraries(glint_${name} INTERFACE ${GLINT_${name}})
+  glint_link_archive(glint_${name} ${name})
   list(APPEND GLINT_IMAGE_CODECS glint_${name})
 endforeach()
 

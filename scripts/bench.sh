@@ -12,4 +12,7 @@ case " $* " in
   *" --jobs"* | *" --executor inline"*) ;;
   *) set -- "$@" --jobs "$(nproc)" ;;
 esac
+if [ -d build/release/python/glint_bench ]; then
+  echo "Python: PYTHONPATH=$PWD/build/release/python python3, then: import glint_bench, help(glint_bench) (docs/guide/python.md)" >&2
+fi
 exec build/release/bin/glint-bench all "$@"

@@ -10,6 +10,7 @@ packages=(
   libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libturbojpeg0-dev libdeflate-dev libwebp-dev libtiff-dev libyaml-cpp-dev
   libcairo2-dev libpango1.0-dev fonts-inter
   libassimp-dev libpng-dev nettle-dev libdnnl-dev libcgal-dev libopen3d-dev
+  python3-dev python3-numpy pybind11-dev
   clang-format-14
 )
 

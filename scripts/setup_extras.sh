@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What three tests need that are skipped without: Chromium, Node.js and playwright-core (the report
-# page in a browser), TeX Live (all tables in one PDF), Slurm (a profile on a cluster of one node).
-# Idempotent; root (or passwordless sudo) for
+# page in a browser), TeX Live (all tables in one PDF), Slurm (a profile on a cluster of one node);
+# and matplotlib, for an example of the Python module. Idempotent; root (or passwordless sudo) for
 # the Debian packages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,8 +11,8 @@ command -v chromium >/dev/null || packages+=(chromium fonts-dejavu-core)
 command -v node >/dev/null || packages+=(nodejs)
 command -v npm >/dev/null || packages+=(npm)
 [ -x /usr/sbin/slurmctld ] || packages+=(slurm-wlm)
-# Has booktabs, colortbl and xcolor; lmodern: letters that stay sharp, otherwise they are pixels.
-for package in texlive-latex-recommended lmodern; do
+# texlive: has booktabs, colortbl and xcolor; lmodern: letters that stay sharp, otherwise they are pixels.
+for package in texlive-latex-recommended lmodern python3-matplotlib; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || packages+=("$package")
 done
 if [ ${#packages[@]} -gt 0 ]; then

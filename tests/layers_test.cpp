@@ -75,8 +75,7 @@ const std::vector<Layer>& layers() {
           "glint/render/",
           "glint/train/",
           "glint/cuda/",
-          "kernel_lists.h"}},  // made by the build: *_kernels.h of these folders, metrics/,
-                               // baselines/
+          "kernel_lists.h"}},                                 // made by the build from *_kernels.h
         {"glint/method.h", {"glint/core/", "glint/scene/"}},  // what the trainer drives
         {"glint/train/",
          {"glint/core/",
@@ -110,6 +109,7 @@ const std::vector<Layer>& layers() {
         {"datasets/glassroom/", {"glint/core/", "glint/scene/", "glint/drawing/", "datasets/"}},
         {"reports/run/code/", {"glint/core/", "reports/run/code/"}},
         {"reports/glint_bench.cpp", {"glint/core/", "reports/verbs/"}},
+        {"python/", {"glint/", "metrics/", "datasets/", "reports/", "python/"}},
         {"tests/", {"glint/", "metrics/", "baselines/", "datasets/", "reports/", "tests/"}}};
     for (Layer& layer : layers_of_reports()) layers.push_back(std::move(layer));
     return layers;
@@ -139,7 +139,7 @@ struct SourceFile {
 
 std::vector<SourceFile> source_files() {
   std::vector<SourceFile> files;
-  for (const char* folder : {"glint", "metrics", "baselines", "datasets", "reports", "tests"})
+  for (auto folder : {"glint", "metrics", "baselines", "datasets", "reports", "python", "tests"})
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension == ".h" || extension == ".cpp" || extension == ".cu" || extension == ".cuh")

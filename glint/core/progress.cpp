@@ -14,6 +14,7 @@ namespace glint {
 namespace {
 
 bool quiet = false;
+std::atomic<void (*)(std::string_view)> warning_sink{nullptr};
 
 bool reaches_terminal() {
   const std::string setting = kDrawnProgress;
@@ -35,7 +36,13 @@ void text(std::string_view text) {
 void info(std::string_view message) {
   if (!quiet) text(fmt::format("{}\n", printable(message)));
 }
-void warn(std::string_view message) { text(fmt::format("warning: {}\n", printable(message))); }
+void warn(std::string_view message) {
+  if (const auto sink = warning_sink.load())
+    sink(message);
+  else
+    text(fmt::format("warning: {}\n", printable(message)));
+}
+void send_warnings_to(void (*sink)(std::string_view message)) { warning_sink = sink; }
 }  // namespace log
 
 std::string format_duration(double seconds) {

@@ -24,6 +24,8 @@ namespace log {
 void text(std::string_view text);  // as it is
 void info(std::string_view message);
 void warn(std::string_view message);
+// Warnings go to `sink` instead, which any thread may call; null: to standard error.
+void send_warnings_to(void (*sink)(std::string_view message));
 }  // namespace log
 
 std::string format_duration(double seconds);  // "1h 02m", "3m 05s", "12.3s"

@@ -174,13 +174,24 @@ class Training {
     done_.seconds += seconds_since(start);
     done_.iterations = i + 1;
     for (const std::string& event : stats.events) note(i, event);
-    if (options_.after_step) options_.after_step(method_, stats);
-    if (!is_told(i)) return;
+    if (is_told(i)) take_note(stats);
+    if (options_.after_step) call_after_step(stats);
+    if (is_told(i) && on_disk_ && checkpoint_is_due()) save();
+  }
+
+  void take_note(const StepStats& stats) {
     check(stats);
     last_ = stats;
     count_void_steps();
-    if (on_disk_ && is_logged(i)) append_log(stats);
-    if (on_disk_ && checkpoint_is_due()) save();
+    if (on_disk_ && is_logged(stats.iteration)) append_log(stats);
+  }
+  void call_after_step(const StepStats& stats) {
+    try {
+      options_.after_step(method_, stats);
+    } catch (...) {
+      save_if_resumable();
+      throw;
+    }
   }
 
   void count_void_steps() {
@@ -246,9 +257,12 @@ class Training {
     write_file(options_.folder / kProgressFile, progress.dump() + "\n");
   }
   [[noreturn]] void stop() {
+    save_if_resumable();
+    throw Interrupted();
+  }
+  void save_if_resumable() {
     const bool anything = done_.iterations > first_;
     if (on_disk_ && resumable_ && anything) save();
-    throw Interrupted();
   }
 
   void check(const StepStats& stats) const {

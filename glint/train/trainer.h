@@ -19,7 +19,8 @@ struct TrainOptions {
   double checkpoint_seconds = 300;  // between checkpoints, at least; 0: one after every step
   std::string identity;             // of the run: only its own checkpoint is gone on from
   std::string title = "train";      // of the progress line
-  // Called after each step, before its checkpoint; what it throws ends the training.
+  // Called after each step and before the checkpoint, where the method may be rendered; in silent
+  // steps of a GPU the numbers are NaN. What it throws ends the training, with a checkpoint.
   std::function<void(Method&, const StepStats&)> after_step;
 };
 
@@ -38,7 +39,7 @@ struct TrainReport {
 // there. One that cannot be written is a warning, one that cannot be read, too. Errors: what the
 // method throws; kBadPrediction when the loss or a parameter stops being finite (names the term or
 // parameter and the iteration, and where the last checkpoint is); DeviceLost, likewise; Interrupted
-// before the next step after a signal, with a new checkpoint.
+// before the next step after a signal, with a new checkpoint; what after_step throws, likewise.
 TrainReport train(Method& method, const Scene& scene, const TrainOptions& options);
 
 // Random order of the training views without replacement, reshuffled when all were seen.

@@ -83,13 +83,25 @@ class DepthTool final : public MetricTool {
     const bool metric = protocol().alignment == DepthAlignment::kNone;
     Image depth = !metric && !prediction_scale_.known() ? read_image(path, 1)
                                                         : read_depth(path, prediction_scale_);
-    if (!intrinsics_.empty()) make_planar(depth);
+    prepare_prediction(depth);
     return depth;
   }
   Image load_reference(const fs::path& path) const override {
     if (const DepthSteps scale = glassrecon_depth_scale(path); depth_scale_ <= 0 && scale.known())
       return read_glassrecon_depth(path, scale);
     return read_depth(path, reference_scale_);
+  }
+
+  void prepare_prediction(Image& depth) const override {
+    if (intrinsics_.empty()) return;
+    const Camera camera{
+        depth.width(),
+        depth.height(),
+        intrinsics_[0],
+        intrinsics_[1],
+        intrinsics_[2],
+        intrinsics_[3]};
+    make_planar(depth, camera);
   }
 
   // Values that a table does not have under its id get the alignment in theirs.
@@ -127,17 +139,6 @@ class DepthTool final : public MetricTool {
     protocol.alignment = Json(alignment_).get<DepthAlignment>();
     protocol.max_depth = max_depth_;
     return protocol;
-  }
-
-  void make_planar(Image& depth) const {
-    const Camera camera{
-        depth.width(),
-        depth.height(),
-        intrinsics_[0],
-        intrinsics_[1],
-        intrinsics_[2],
-        intrinsics_[3]};
-    glint::make_planar(depth, camera);
   }
 
   std::string alignment_ = "none";

@@ -7,19 +7,17 @@
 
 #include "datasets/released_truth.h"
 #include "glint/core/error.h"
-#include "glint/core/machine.h"
 #include "glint/core/parallel.h"
 #include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"
 #include "metrics/tools/mesh_output.h"
+#include "metrics/tools/mesh_scoring.h"
 #include "metrics/tools/numeric_options.h"
 #include "metrics/tools/tool.h"
 
 namespace glint {
 namespace {
-
-constexpr int kCurvePoints = 100;  // equal steps up to the largest threshold
 
 struct MeshToolOptions {
   fs::path prediction, reference, dataset, colored, colored_reference, curve;
@@ -176,42 +174,7 @@ void cull(MeshReport& report, const MeshToolOptions& options) {
   if (report.protocol.cull == MeshCulling::kNone) return;
   report.dataset = options.dataset;
   log::info(fmt::format("loading the cameras of {}", options.dataset.string()));
-  const std::vector<Camera> cameras = training_cameras(options.dataset);
-  cull_surface(report.reference, cameras, report.protocol);
-  with_exit_code(ExitCode::kBadPrediction, [&] {
-    cull_surface(report.prediction, cameras, report.protocol);
-  });
-}
-
-std::vector<double> curve_thresholds(double last) {
-  std::vector<double> thresholds;
-  for (int i = 1; i <= kCurvePoints; ++i) thresholds.push_back(last * i / kCurvePoints);
-  return thresholds;
-}
-
-// Before anything is drawn.
-void check_samples(std::size_t num_samples) {
-  const double needed = kBytesPerMeshSample * static_cast<double>(num_samples);
-  const auto available = static_cast<double>(available_memory_bytes());
-  if (needed > available)
-    throw OutOfMemory(fmt::format(
-        "--samples {} needs about {:.1f} GB, {:.1f} GB are free; use fewer",
-        num_samples,
-        needed / 1e9,
-        available / 1e9
-    ));
-}
-
-void score(MeshReport& report) {
-  check_samples(report.protocol.num_samples);
-  const Surface &prediction = report.prediction.surface, &reference = report.reference.surface;
-  log::info(fmt::format("measuring {} samples of either surface", report.protocol.num_samples));
-  const SurfaceDistances distances = surface_distances(prediction, reference, report.protocol);
-  report.scores = mesh_scores(distances, report.protocol);
-  const auto& thresholds = report.protocol.thresholds_m;
-  report.curve = f1_curve(
-      distances, curve_thresholds(*std::max_element(thresholds.begin(), thresholds.end()))
-  );
+  cull_surfaces(report, training_cameras(options.dataset));
 }
 
 void check_outputs(const MeshReport& report, const MeshToolOptions& options) {
@@ -237,7 +200,7 @@ void run(MeshToolOptions& options, std::ostream& out) {
   MeshReport report = load_surfaces(options);
   check_outputs(report, options);
   cull(report, options);
-  score(report);
+  score_surfaces(report);
   write_pictures(report, options);
   if (options.json)
     print_mesh_json(report, out);

@@ -19,9 +19,20 @@ namespace {
 // borders when it is resized, so that what is inside stays inside.
 constexpr double kLeastPixels = 4096;
 
-void read_faces(SurfaceInput& input) {
-  const std::string name = input.path.string();
-  const TriangleMesh mesh = read_mesh(input.path, NonFinite::kKeep);
+// Unit normals, or none where one has no direction.
+std::vector<Vec3f> unit_normals(std::vector<Vec3f> normals) {
+  for (Vec3f& normal : normals) {
+    const float norm = length(normal);
+    if (!(norm > 0)) return {};
+    normal = 1 / norm * normal;
+  }
+  return normals;
+}
+
+}  // namespace
+
+SurfaceInput surface_of_mesh(const fs::path& path, const TriangleMesh& mesh) {
+  const std::string name = path.string();
   GLINT_CHECK(
       !mesh.faces.empty(),
       kBadReference,
@@ -48,36 +59,20 @@ void read_faces(SurfaceInput& input) {
         clean.report.not_finite,
         clean.report.faces_before
     ));
-  input.surface = std::move(clean.mesh);
-  input.cleaning = clean.report;
+  return {path, std::move(clean.mesh), clean.report, {}};
 }
 
-// Unit normals, or none where one has no direction.
-std::vector<Vec3f> unit_normals(std::vector<Vec3f> normals) {
-  for (Vec3f& normal : normals) {
-    const float norm = length(normal);
-    if (!(norm > 0)) return {};
-    normal = 1 / norm * normal;
-  }
-  return normals;
+SurfaceInput surface_of_points(const fs::path& path, SurfacePoints points) {
+  GLINT_CHECK(!points.positions.empty(), kBadReference, "{}: no points", path.string());
+  points.normals = unit_normals(std::move(points.normals));
+  return {path, std::move(points), {}, {}};
 }
-
-void read_points(SurfaceInput& input) {
-  PointCloud cloud = read_point_ply(input.path);
-  GLINT_CHECK(!cloud.positions.empty(), kBadReference, "{}: no points", input.path.string());
-  input.surface = SurfacePoints{std::move(cloud.positions), unit_normals(std::move(cloud.normals))};
-}
-
-}  // namespace
 
 SurfaceInput read_surface(const fs::path& path) {
-  SurfaceInput input;
-  input.path = path;
-  if (mesh_extension(path) == ".ply" && !is_mesh_ply(path))
-    read_points(input);
-  else
-    read_faces(input);
-  return input;
+  if (mesh_extension(path) != ".ply" || is_mesh_ply(path))
+    return surface_of_mesh(path, read_mesh(path, NonFinite::kKeep));
+  PointCloud cloud = read_point_ply(path);
+  return surface_of_points(path, {std::move(cloud.positions), std::move(cloud.normals)});
 }
 
 const std::vector<Vec3f>& corners_of(const SurfaceInput& input) {

@@ -22,6 +22,10 @@ struct SurfaceInput {
   std::optional<CullRecipe> culling;    // where it was culled
 };
 
+// What read_surface() makes of the content of a file; `path` stands in messages.
+SurfaceInput surface_of_mesh(const fs::path& path, const TriangleMesh& mesh);
+SurfaceInput surface_of_points(const fs::path& path, SurfacePoints points);
+
 // A mesh (mesh_files.h), which is cleaned, or a PLY file whose header has no element "face": a
 // point cloud. Normals of points are made unit; a zero one drops them all. Errors (kBadReference):
 // another extension, mesh_files.h's, no faces before or after cleaning, no points.

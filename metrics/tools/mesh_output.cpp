@@ -130,7 +130,7 @@ void print_mesh_csv(const MeshReport& report, std::ostream& out) {
   out << "\n";
 }
 
-void print_mesh_json(const MeshReport& report, std::ostream& out) {
+Json mesh_report_json(const MeshReport& report) {
   Json json = {
       {"tool", "glint-mesh"},
       {"prediction", report.prediction.path.string()},
@@ -149,6 +149,11 @@ void print_mesh_json(const MeshReport& report, std::ostream& out) {
   if (report.color_range_m) json["colors_m"] = {0.0, *report.color_range_m};
   json["curve"] = Json::array();
   for (const ThresholdScores& at : report.curve) json["curve"].push_back(config_to_json(at));
+  return json;
+}
+
+void print_mesh_json(const MeshReport& report, std::ostream& out) {
+  const Json json = mesh_report_json(report);
   out << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
 }
 

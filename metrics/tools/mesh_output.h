@@ -29,6 +29,7 @@ void print_mesh_text(const MeshReport& report, std::ostream& out);
 // One row, unrounded.
 void print_mesh_csv(const MeshReport& report, std::ostream& out);
 // Unrounded numbers, protocol, what cleaning and culling did.
+Json mesh_report_json(const MeshReport& report);
 void print_mesh_json(const MeshReport& report, std::ostream& out);
 
 // The surface with each vertex coloured by its distance to `target`: yellow (0) over green to

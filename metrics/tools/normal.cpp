@@ -20,7 +20,7 @@ void decode_integers(Image& normals) {
   }
 }
 
-Image load_normals(const fs::path& path, const std::string& axes) {
+Image load_normals(const fs::path& path) {
   Image normals = read_image(path);
   GLINT_CHECK(
       normals.channels() == 3,
@@ -30,10 +30,13 @@ Image load_normals(const fs::path& path, const std::string& axes) {
       normals.channels()
   );
   if (stores_integers(path)) decode_integers(normals);
+  return normals;
+}
+
+void turn_to_opencv(Image& normals, const std::string& axes) {
   const Axes& known = axes_called(axes);
   for (std::size_t i = 0; i < normals.values().size(); ++i)
     normals.data()[i] *= known.to_opencv[i % 3];
-  return normals;
 }
 
 class NormalTool final : public MetricTool {
@@ -60,9 +63,19 @@ class NormalTool final : public MetricTool {
         ->capture_default_str();
   }
 
-  Image load_prediction(const fs::path& path) const override { return load_normals(path, axes_); }
+  Image load_prediction(const fs::path& path) const override {
+    Image normals = load_normals(path);
+    prepare_prediction(normals);
+    return normals;
+  }
   Image load_reference(const fs::path& path) const override {
-    return load_normals(path, reference_axes_);
+    Image normals = load_normals(path);
+    prepare_reference(normals);
+    return normals;
+  }
+  void prepare_prediction(Image& normals) const override { turn_to_opencv(normals, axes_); }
+  void prepare_reference(Image& normals) const override {
+    turn_to_opencv(normals, reference_axes_);
   }
 
   std::vector<PairMetrics> families() const override { return {normal_metrics()}; }

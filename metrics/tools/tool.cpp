@@ -63,6 +63,19 @@ MaskImage counted_of(const LoadedPair& pair) {
   return pair.files.view == nullptr ? MaskImage() : mask_of_map(pair.files.view->counted);
 }
 
+void check_mask_size(const std::string& name, const MaskImage& mask, ImageSize size) {
+  GLINT_CHECK(
+      mask.empty() || mask.size() == size,
+      kBadReference,
+      "{}: mask of {} x {} pixels for an image of {} x {}",
+      name,
+      mask.width(),
+      mask.height(),
+      size.width,
+      size.height
+  );
+}
+
 // The pixels of the mask that the dataset counts; empty: all.
 MaskImage load_counted(const LoadedPair& pair) {
   MaskImage mask = load_mask(pair.files.mask, pair.reference.size());
@@ -81,6 +94,21 @@ std::vector<Region> load_regions(const LoadedPair& pair) {
   return evaluation_regions(view_of(glass), view_of(mask));
 }
 
+void check_sizes(const LoadedPair& pair, const std::string& hints = "") {
+  GLINT_CHECK(
+      pair.prediction.size() == pair.reference.size(),
+      kBadPrediction,
+      "{}: {} x {} pixels, but {} has {} x {}; render at the reference's size{}",
+      pair.files.prediction.string(),
+      pair.prediction.width(),
+      pair.prediction.height(),
+      pair.files.reference.string(),
+      pair.reference.width(),
+      pair.reference.height(),
+      hints
+  );
+}
+
 LoadedPair load_pair(const MetricTool& tool, const FilePair& files) {
   LoadedPair pair{files, {}, {}};
   pair.reference = with_exit_code(ExitCode::kBadReference, [&] {
@@ -90,19 +118,12 @@ LoadedPair load_pair(const MetricTool& tool, const FilePair& files) {
   pair.prediction = with_exit_code(ExitCode::kBadPrediction, [&] {
     return tool.load_prediction(files.prediction);
   });
-  GLINT_CHECK(
-      pair.prediction.size() == pair.reference.size(),
-      kBadPrediction,
-      "{}: {} x {} pixels, but {} has {} x {}; render at the reference's size{}{}",
-      files.prediction.string(),
-      pair.prediction.width(),
-      pair.prediction.height(),
-      files.reference.string(),
-      pair.reference.width(),
-      pair.reference.height(),
-      orientation_hint(files.prediction),
-      files.view == nullptr ? orientation_hint(files.reference) : ""
-  );
+  if (pair.prediction.size() != pair.reference.size())
+    check_sizes(
+        pair,
+        orientation_hint(files.prediction) +
+            (files.view == nullptr ? orientation_hint(files.reference) : "")
+    );
   if (tool.reference_map() == "rgb")
     take_reference_where_uncounted(view_of(counted_of(pair)), pair.reference, pair.prediction);
   return pair;
@@ -126,8 +147,8 @@ std::vector<std::string> orientation_warnings(const FilePair& files) {
   return warnings;
 }
 
-std::vector<std::string> warnings_of(const MetricTool& tool, const LoadedPair& pair) {
-  std::vector<std::string> warnings = orientation_warnings(pair.files);
+std::vector<std::string> color_warnings(const MetricTool& tool, const LoadedPair& pair) {
+  std::vector<std::string> warnings;
   if (tool.reference_map() != "rgb") return warnings;
   const auto add = [&](const fs::path& path, const Image& image) {
     if (const std::string problem = color_range_problem(image); !problem.empty())
@@ -138,8 +159,8 @@ std::vector<std::string> warnings_of(const MetricTool& tool, const LoadedPair& p
   return warnings;
 }
 
-PairMetrics family_of(const MetricTool& tool, const FilePair& files) {
-  return tool.families()[tool.family_for(files)];
+PairMetrics family_of(const MetricTool& tool, const LoadedPair& pair) {
+  return tool.families()[pair.family ? *pair.family : tool.family_for(pair.files)];
 }
 
 bool has_scores(const std::vector<ToolScores>& regions) {
@@ -154,10 +175,10 @@ bool has_scores(const std::vector<ToolScores>& regions) {
 ) {
   const FilePair& files = pair.files;
   const std::string unfit =
-      tool.why_unfit(family_of(tool, files).metrics.front().id, pair.reference.size());
+      tool.why_unfit(family_of(tool, pair).metrics.front().id, pair.reference.size());
   GLINT_CHECK(unfit.empty(), kBadReference, "{}: {}", files.reference.string(), unfit);
   GLINT_CHECK(
-      !has_scores(tool.score({files, pair.reference, pair.reference}, regions)),
+      !has_scores(tool.score({files, pair.reference, pair.reference, pair.family}, regions)),
       kBadPrediction,
       "{}: no pixel to score: it has no value where {} has one; render it again",
       files.prediction.string(),
@@ -177,7 +198,7 @@ std::vector<std::string> left_out(
     const MetricTool& tool, const LoadedPair& pair, const ToolScores& scores
 ) {
   std::vector<std::string> warnings;
-  for (const Metric& metric : family_of(tool, pair.files).metrics) {
+  for (const Metric& metric : family_of(tool, pair).metrics) {
     const auto is_it = [&](const auto& score) { return score.first == metric.id; };
     if (std::any_of(scores.begin(), scores.end(), is_it)) continue;
     const std::string why = tool.why_unfit(metric.id, pair.reference.size());
@@ -191,10 +212,14 @@ std::vector<std::string> left_out(
   return warnings;
 }
 
-ImageScores score_pair(const MetricTool& tool, const LoadedPair& pair) {
+ImageScores score_regions(
+    const MetricTool& tool,
+    const LoadedPair& pair,
+    const std::vector<Region>& regions,
+    std::vector<std::string> warnings
+) {
   const FilePair& files = pair.files;
-  const std::vector<Region> regions = load_regions(pair);
-  ImageScores image{files, {}, warnings_of(tool, pair)};
+  ImageScores image{files, {}, std::move(warnings)};
   std::vector<ToolScores> scores;
   try {
     scores = tool.score(pair, regions);
@@ -210,6 +235,12 @@ ImageScores score_pair(const MetricTool& tool, const LoadedPair& pair) {
   for (std::string& warning : left_out(tool, pair, scores[0]))
     image.warnings.push_back(std::move(warning));
   return image;
+}
+
+ImageScores score_pair(const MetricTool& tool, const LoadedPair& pair) {
+  std::vector<std::string> warnings = orientation_warnings(pair.files);
+  for (std::string& warning : color_warnings(tool, pair)) warnings.push_back(std::move(warning));
+  return score_regions(tool, pair, load_regions(pair), std::move(warnings));
 }
 
 // work(file) of every file side by side; errors come in the order of the files.
@@ -259,15 +290,16 @@ class Batches {
   Progress* progress_;
 };
 
+void add_doubt(const MetricTool& tool, const LoadedPair& first, std::vector<std::string>& doubts) {
+  if (const std::string doubt = tool.doubt(first); !doubt.empty())
+    doubts.push_back(fmt::format("{}: {}", first.files.prediction.string(), doubt));
+}
+
 // Of all pairs alike, so the first is looked at; told with its scores. Colours have no conventions
 // that a doubt may be about, and are not read again.
 std::vector<std::string> doubts_of(const MetricTool& tool, std::span<const FilePair> pairs) {
   std::vector<std::string> doubts;
-  if (tool.reference_map() != "rgb") {
-    const LoadedPair first = load_pair(tool, pairs.front());
-    if (const std::string doubt = tool.doubt(first); !doubt.empty())
-      doubts.push_back(fmt::format("{}: {}", first.files.prediction.string(), doubt));
-  }
+  if (tool.reference_map() != "rgb") add_doubt(tool, load_pair(tool, pairs.front()), doubts);
   if (std::string lossy = lossy_doubt(pairs); !lossy.empty()) doubts.push_back(std::move(lossy));
   return doubts;
 }
@@ -325,7 +357,7 @@ void run(MetricTool& tool, ToolOptions& options, std::ostream& out) {
 
 std::vector<ToolScores> MetricTool::score(const LoadedPair& pair, std::span<const Region> regions)
     const {
-  const PairMetrics family = family_of(*this, pair.files);
+  const PairMetrics family = family_of(*this, pair);
   std::vector<ToolScores> scores(regions.size());
   const std::vector<MetricValues> rows = family.score(pair.prediction, pair.reference, regions);
   for (std::size_t r = 0; r < rows.size(); ++r)
@@ -343,6 +375,18 @@ Json MetricTool::protocol(const std::string& metric_id) const {
       return protocol;
     }
   return nullptr;
+}
+
+ImageScores score_maps(const MetricTool& tool, MapPair pair, bool first) {
+  check_sizes(pair);
+  for (const auto& [name, mask] : {std::pair{"mask", &pair.mask}, {"glass", &pair.glass}})
+    check_mask_size(name, *mask, pair.reference.size());
+  tool.prepare_prediction(pair.prediction);
+  tool.prepare_reference(pair.reference);
+  const std::vector<Region> regions = evaluation_regions(view_of(pair.glass), view_of(pair.mask));
+  ImageScores image = score_regions(tool, pair, regions, color_warnings(tool, pair));
+  if (first) add_doubt(tool, pair, image.warnings);
+  return image;
 }
 
 int run_program(
@@ -399,16 +443,7 @@ int run_tool(std::unique_ptr<MetricTool> tool, int argc, char** argv) {
 MaskImage load_mask(const fs::path& path, ImageSize size) {
   if (path.empty()) return {};
   MaskImage mask = with_exit_code(ExitCode::kBadReference, [&] { return read_mask(path); });
-  GLINT_CHECK(
-      mask.size() == size,
-      kBadReference,
-      "{}: mask of {} x {} pixels for an image of {} x {}",
-      path.string(),
-      mask.width(),
-      mask.height(),
-      size.width,
-      size.height
-  );
+  check_mask_size(path.string(), mask, size);
   if (has_alpha(path) && std::ranges::all_of(mask.values(), [](auto value) { return value != 0; }))
     log::warn(fmt::format(
         "{}: white throughout, so that every pixel counts, and has an alpha channel, which is not "

@@ -7,6 +7,7 @@
 #include <functional>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -28,6 +29,13 @@ using ToolScores = std::vector<std::pair<std::string, double>>;  // metric id, v
 struct LoadedPair {
   FilePair files;
   Image prediction, reference;
+  std::optional<std::size_t> family = {};  // that scores it, whatever its files are
+};
+
+// Maps that are in memory. Its names stand in messages where paths would; the maps are as files of
+// floats hold them.
+struct MapPair : LoadedPair {
+  MaskImage mask, glass;  // empty: all pixels count; glass is not known
 };
 
 struct ImageScores {
@@ -58,6 +66,9 @@ class MetricTool {
   // (kBadReference): see image_files.h.
   virtual Image load_prediction(const fs::path& path) const = 0;
   virtual Image load_reference(const fs::path& path) const = 0;
+  // What is done to floats that were read, as the options say: other axes, say.
+  virtual void prepare_prediction(Image&) const {}
+  virtual void prepare_reference(Image&) const {}
   // What pairs are scored by, as the options say; family_for() chooses for a pair.
   virtual std::vector<PairMetrics> families() const = 0;
   virtual std::size_t family_for(const FilePair&) const { return 0; }
@@ -86,6 +97,11 @@ int run_program(
     std::ostream& err,
     const std::function<void()>& body
 );
+
+// As run_tool() scores files; the options are set, and looked at by check_options(). `first` of
+// several pairs: the one that is looked at for other conventions. Errors: of run_tool() with the
+// names of the pair.
+ImageScores score_maps(const MetricTool& tool, MapPair pair, bool first = true);
 
 // The whole program but for main(). `args` without the program's name. Results go to `out`, errors
 // and usage to `err`. Returns the exit code.

@@ -25,13 +25,17 @@ std::string rounded(const std::string& id, std::optional<double> value) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
 }
 
+// A path, where there is one: maps in memory have none.
+void add_path(Json& json, const char* name, const fs::path& path) {
+  if (!path.empty()) json[name] = path.string();
+}
+
 Json image_json(const ImageScores& image) {
-  Json json = {
-      {"name", image.files.name},
-      {"prediction", image.files.prediction.string()},
-      {"reference", image.files.reference.string()}};
-  if (!image.files.mask.empty()) json["mask"] = image.files.mask.string();
-  if (!image.files.glass.empty()) json["glass"] = image.files.glass.string();
+  Json json = {{"name", image.files.name}};
+  add_path(json, "prediction", image.files.prediction);
+  add_path(json, "reference", image.files.reference);
+  add_path(json, "mask", image.files.mask);
+  add_path(json, "glass", image.files.glass);
   json["metrics"] = scores_json(image.scores);
   if (!image.warnings.empty()) json["warnings"] = image.warnings;
   return json;
@@ -116,14 +120,13 @@ void print_csv(const ToolReport& report, std::ostream& out) {
   print_row("mean", means);
 }
 
-void print_json(const MetricTool& tool, const ToolReport& report, std::ostream& out) {
+Json report_json(const MetricTool& tool, const ToolReport& report) {
   const ToolScores means = mean_scores(report.images);
-  Json json = {
-      {"tool", tool.name()},
-      {"prediction", report.prediction.string()},
-      {"reference", report.reference.string()}};
-  if (!report.mask.empty()) json["mask"] = report.mask.string();
-  if (!report.glass.empty()) json["glass"] = report.glass.string();
+  Json json = {{"tool", tool.name()}};
+  add_path(json, "prediction", report.prediction);
+  add_path(json, "reference", report.reference);
+  add_path(json, "mask", report.mask);
+  add_path(json, "glass", report.glass);
   json["num_images"] = report.images.size();
   json["mean"] = scores_json(means);
   json["summary"] = tool.summary(report.images);
@@ -135,7 +138,11 @@ void print_json(const MetricTool& tool, const ToolReport& report, std::ostream& 
   json["images"] = Json::array();
   for (const ImageScores& image : report.images) json["images"].push_back(image_json(image));
   json["missing"] = report.missing;
-  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+  return json;
+}
+
+void print_json(const MetricTool& tool, const ToolReport& report, std::ostream& out) {
+  out << report_json(tool, report).dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
 }
 
 }  // namespace glint

@@ -26,6 +26,7 @@ void print_text(const MetricTool& tool, const ToolReport& report, std::ostream& 
 // A row per image and one named "mean"; unrounded. Warnings are on standard error alone.
 void print_csv(const ToolReport& report, std::ostream& out);
 // Unrounded numbers, protocols, file names.
+Json report_json(const MetricTool& tool, const ToolReport& report);
 void print_json(const MetricTool& tool, const ToolReport& report, std::ostream& out);
 
 }  // namespace glint

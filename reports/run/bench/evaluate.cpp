@@ -60,13 +60,16 @@ ViewPair view_pair(const MapSet& rendered, const View& view, const MaskImage& gl
   return pair;
 }
 
-Scores score_view(const fs::path& folder, const View& view) {
-  MapSet rendered = read_scored_maps(folder, view.rgb.size());
+Scores score_rendered(MapSet rendered, const View& view) {
   const MaskImage counted = mask_of_map(view.counted), glass = mask_of_map(view.truth["glass"]);
   if (!counted.empty()) settle_uncounted(view, counted, rendered);
   ViewPair pair = view_pair(rendered, view, glass);
   if (!counted.empty()) pair.counted = counted;
-  Scores scores = evaluate_view(pair);
+  return evaluate_view(pair);
+}
+
+Scores score_view(const fs::path& folder, const View& view) {
+  Scores scores = score_rendered(read_scored_maps(folder, view.rgb.size()), view);
   if (is_eight_bit_render(folder))
     std::erase_if(scores, [](const auto& score) {
       return score.first == "psnr" || score.first.starts_with("psnr@");

@@ -19,6 +19,9 @@ using Scores = std::map<std::string, double>;  // metric id -> value; "psnr@glas
 // absent. Errors (kBadPrediction): rgb missing, a file damaged or of another size than the view.
 Scores score_view(const fs::path& folder, const View& view);
 
+// The same of maps in memory.
+Scores score_rendered(MapSet rendered, const View& view);
+
 // What score_view() scores: every map that has a file, and the pair of those and the truth, which
 // borrows all three.
 MapSet read_scored_maps(const fs::path& folder, ImageSize size);

@@ -182,6 +182,25 @@ TEST_CASE("The log has events with their iteration, and the surfels of each of s
   CHECK(log.at(1)["sets"] == Json({{"base", 2}, {"environment", 3}}));
 }
 
+TEST_CASE("What is called after each step may end the training, which goes on from there") {
+  Training training(30);
+  training.options.checkpoint_seconds = 1e6;
+  Exploding method(-1);
+  std::vector<int> seen;
+  training.options.after_step = [&](Method& called, const StepStats& stats) {
+    CHECK(&called == &method);
+    seen.push_back(stats.iteration);
+    if (stats.iteration == 7) throw std::string("enough");
+  };
+  CHECK_THROWS_AS(training.run(method), std::string);
+  CHECK(seen == count_to(8));
+  CHECK(steps_in(training.folder) == count_to(8));
+  Exploding next(-1);
+  training.options.after_step = nullptr;
+  CHECK(training.run(next).iterations == 30);
+  CHECK(next.steps == count_to(30));
+}
+
 TEST_CASE("Training without views is refused") {
   Exploding method(-1);
   CHECK_THROWS_AS(train(method, Scene(), TrainOptions()), Error);
