@@ -45,13 +45,13 @@ py::dict dict_of(const StepStats& stats) {
 
 // What the trainer calls after each step: signals of Python, and the callback where it is due. The
 // run is the training's but for that time.
-class AfterStep {
+class StepHook {
  public:
-  AfterStep(RunPointer run, const py::object& callback, int every)
+  StepHook(RunPointer run, const py::object& callback, int every)
       : run_(std::move(run)), callback_(callback), every_(every), lock_(run_->mutex) {}
-  ~AfterStep() { run_->method = nullptr; }  // of what goes with the training
-  AfterStep(const AfterStep&) = delete;
-  AfterStep& operator=(const AfterStep&) = delete;
+  ~StepHook() { run_->method = nullptr; }  // of what goes with the training
+  StepHook(const StepHook&) = delete;
+  StepHook& operator=(const StepHook&) = delete;
 
   void operator()(Method& method, const StepStats& stats) {
     run_->method = &method;
@@ -88,13 +88,12 @@ RunPointer train_into(
     RunPointer run,
     const py::object& callback,
     int every,
-    const std::function<
-        std::unique_ptr<Method>(const std::function<void(Method&, const StepStats&)>&)>& body
+    const std::function<std::unique_ptr<Method>(const AfterStep&)>& body
 ) {
   without_gil([&] {
     std::unique_ptr<Method> method;
     {
-      AfterStep hook(run, callback, every);
+      StepHook hook(run, callback, every);
       method = body([&](Method& m, const StepStats& stats) { hook(m, stats); });
     }
     run->keep(std::move(method));

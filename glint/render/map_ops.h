@@ -19,7 +19,8 @@ void expected_depth_map_vjp(
 // own.
 void add_depth_estimates(const RasterOutput& output, MapSet& maps);
 // The maps "first_mode" and "last_mode" (depth_modes.h) and "alpha" of what was rasterised last,
-// which is what the method's depth is of. Made after the pass, pixel by pixel: for renders, not for training.
+// which is what the method's depth is of. Made after the pass, pixel by pixel: for renders, not for
+// training.
 void add_depth_modes(Rasterizer& rasterizer, MapSet& maps);
 // Depth of each pixel's plane (plane_depth.h), [H][W][1]; 0: none. distance, normal: composited.
 void plane_depth_map(
