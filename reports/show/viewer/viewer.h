@@ -36,8 +36,8 @@ class Viewer {
   // Until the program is interrupted, or as `ended` says, which is asked ten times a second.
   void serve(const std::function<bool()>& ended = is_interrupted);
   // What is wanted after a step of a training: nothing where nobody looks, a frame for each who
-  // moves, and for those at rest a new one as often as costs a twenty-fifth of the time. Waits while
-  // somebody has paused the training.
+  // moves, and for those at rest a new one as often as costs a twenty-fifth of the time. Waits
+  // while somebody has paused the training.
   void between_steps(int iteration);
 
  private:
