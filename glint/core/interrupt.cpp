@@ -4,21 +4,24 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstring>
 
 namespace glint {
 
 namespace {
 volatile std::sig_atomic_t interrupt_seen = 0;
+const char* what_happens = "";  // printed by the first signal
 
 void note_interrupt(int signal) {
   interrupt_seen = signal;
   // Only write() may be called in a handler; nothing can be done about a failure.
-  static constexpr char kMessage[] = "\nstopping after this step; once more to stop at once\n";
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
+  for (const char* text : {"\n", what_happens, "; once more to stop at once\n"})
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 }  // namespace
 
-void install_interrupt_handler() {
+void install_interrupt_handler(const char* told) {
+  what_happens = told;
   struct sigaction action {};
   action.sa_handler = note_interrupt;
   action.sa_flags = static_cast<int>(SA_RESETHAND);

@@ -11,8 +11,9 @@ struct Interrupted : std::exception {
   const char* what() const noexcept override { return "interrupted"; }
 };
 
-// SIGINT, SIGTERM, and SIGUSR1, which clusters send before they take a machine back.
-void install_interrupt_handler();
+// SIGINT, SIGTERM, and SIGUSR1, which clusters send before they take a machine back. The first one
+// prints what happens now; `told` lives as long as the program.
+void install_interrupt_handler(const char* told = "stopping after this step");
 bool is_interrupted();
 // 128 + the signal that was seen, the shells' convention: 130 after Ctrl-C, 143 after SIGTERM.
 int interrupted_exit();

@@ -5,6 +5,7 @@
 
 #include "glint/core/progress.h"
 #include "reports/run/bench/child_process.h"
+#include "reports/show/tables/method_title.h"
 
 namespace glint {
 
@@ -76,7 +77,10 @@ AfterStep watch_training(
       std::vector<ViewedRun> runs;
       runs.emplace_back(
           ViewedRun::Names{
-              fmt::format("{} (training)", spec.method), spec.method, spec.method, spec.folder},
+              fmt::format("{} (training)", spec.method),
+              spec.method,
+              method_title(spec.method),
+              spec.folder},
           method,
           single.scene,
           true

@@ -5,6 +5,7 @@
 #include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "reports/run/records/parcel_run.h"
+#include "reports/show/tables/method_title.h"
 #include "reports/verbs/open_viewer.h"
 #include "reports/verbs/single_cell.h"
 
@@ -82,13 +83,13 @@ ViewedRun viewed(const CommonOptions& common, OpenedRun& run) {
       model ? fs::path(run.folder).filename().string()
             : fmt::format("{} (seed {})", cell.method, cell.seed),
       cell.method,
-      cell.method,
+      model ? cell.method : method_title(cell.method),
       model ? fs::path(common.out) : fs::path(run.folder)};
   return ViewedRun(std::move(names), *run.method, run.single.scene, false);
 }
 
 int run_view(const CommonOptions& common, const ViewArguments& arguments) {
-  install_interrupt_handler();
+  install_interrupt_handler("the viewer ends");
   std::vector<OpenedRun> runs;
   for (const std::string& path : arguments.runs)
     runs.push_back(open_one(common, path, arguments.dataset));

@@ -11,6 +11,7 @@ namespace glint {
 namespace {
 
 constexpr double kMaxScale = 4, kMaxPixels = 4096;  // a side
+constexpr std::size_t kMaxSets = 16;
 
 // Null where it is not there, or `json` is no object.
 Json member(const Json& json, const char* field) {
@@ -75,6 +76,15 @@ SurfelStyle style_of(const Json& style) {
   return SurfelStyle::kPoints;
 }
 
+std::vector<std::string> names_of(const Json& json) {
+  std::vector<std::string> names;
+  for (const Json& name : list_of(json, "hidden", 0, kMaxSets)) {
+    GLINT_CHECK(name.is_string(), kUsage, "hidden: {}, expected a set's name", name.dump());
+    names.push_back(name.get<std::string>());
+  }
+  return names;
+}
+
 CutPlane cut_of(const Json& json) {
   const Json normal = list_of(json, "normal", 3, 3);
   CutPlane cut;
@@ -120,6 +130,7 @@ Look look_from_json(const Json& json, const LookLimits& limits) {
   for (const Json& pane : list_of(json, "panes", 1, 2)) look.panes.push_back(pane_of(pane, limits));
   given("scales", [&](const Json& value) { look.scales = scales_of(value); });
   given("style", [&](const Json& value) { look.style = style_of(value); });
+  if (!member(json, "hidden").is_null()) look.hidden = names_of(json);
   given("cut", [&](const Json& value) { look.cut = cut_of(value); });
   return look;
 }

@@ -39,6 +39,7 @@ struct Look {
   std::vector<LookPane> panes;  // one or two, of the same camera
   LightScales scales;
   SurfelStyle style = SurfelStyle::kImage;
+  std::vector<std::string> hidden;  // sets that are not drawn as discs or points
   std::optional<CutPlane> cut;
 };
 

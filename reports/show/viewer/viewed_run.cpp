@@ -55,6 +55,15 @@ bool is_same(const std::optional<CutPlane>& a, const std::optional<CutPlane>& b)
   return length2(a->normal - b->normal) == 0 && a->offset == b->offset;
 }
 
+std::vector<MethodSet> without(
+    std::vector<MethodSet> sets, const std::vector<std::string>& hidden
+) {
+  std::erase_if(sets, [&](const MethodSet& set) {
+    return std::find(hidden.begin(), hidden.end(), set.name) != hidden.end();
+  });
+  return sets;
+}
+
 }  // namespace
 
 void CutSets::apply(const std::optional<CutPlane>& cut) {
@@ -89,7 +98,7 @@ bool ViewedRun::find_layers() {
 
 MapSet ViewedRun::maps(const Look& look, const Camera& camera, const View* snapped) {
   if (look.style != SurfelStyle::kImage)
-    return draw_surfels(method_.sets(), camera, look.style, look.cut);
+    return draw_surfels(without(method_.sets(), look.hidden), camera, look.style, look.cut);
   GLINT_CHECK(
       !look.cut || !training_, kUsage, "cut: nothing is cut from a model that is being trained"
   );

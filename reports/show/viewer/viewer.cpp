@@ -12,8 +12,8 @@ namespace glint {
 namespace {
 
 constexpr auto kLongestWait = std::chrono::milliseconds(100);  // Ctrl-C is noticed then
-constexpr double kTrainingShare = 0.04;  // of a training's time for those who look at rest
-constexpr double kLayersShare = 0.005;   // of it for looking which layers there are
+constexpr double kTrainingShare = 0.025;  // of a training's time for those who look at rest
+constexpr double kLayersShare = 0.005;    // of it for looking which layers there are
 constexpr std::size_t kMaxQuestions = 8;
 constexpr auto kStateInterval = std::chrono::milliseconds(500);
 

@@ -23,6 +23,7 @@ Json good_look() {
       {"panes", {{{"run", 0}, {"layer", "rgb"}}, {{"run", 1}, {"layer", "depth"}}}},
       {"scales", {{"reflection", 0}, {"transmission", 2}, {"transparency", 1}}},
       {"style", "discs"},
+      {"hidden", {"interface"}},
       {"cut", {{"normal", {0, 0, 2}}, {"offset", 1.5}}}};
 }
 
@@ -50,6 +51,7 @@ TEST_CASE("a look is what the page says") {
   CHECK(look.panes[1].layer == "depth");
   CHECK(look.scales == LightScales{0, 2, 1});
   CHECK(look.style == SurfelStyle::kDiscs);
+  CHECK(look.hidden == std::vector<std::string>{"interface"});
   REQUIRE(look.cut.has_value());
   CHECK(look.cut->normal.z == Approx(1));
   CHECK_FALSE(look.view.has_value());
@@ -57,7 +59,7 @@ TEST_CASE("a look is what the page says") {
 
 TEST_CASE("what a look lacks is as usual") {
   Json json = good_look();
-  for (const char* field : {"scales", "style", "cut"}) json.erase(field);
+  for (const char* field : {"scales", "style", "hidden", "cut"}) json.erase(field);
   const Look look = look_from_json(json, kLimits);
   CHECK(look.scales == LightScales{});
   CHECK(look.style == SurfelStyle::kImage);
@@ -80,6 +82,7 @@ TEST_CASE("a look out of bounds is refused by its field") {
   CHECK_THAT(refusal({{"panes", {{{"run", 0}}}}}), Contains("layer"));
   CHECK_THAT(refusal({{"scales", {{"reflection", 5}}}}), Contains("reflection: 5"));
   CHECK_THAT(refusal({{"style", "dots"}}), Contains("style: \"dots\""));
+  CHECK_THAT(refusal({{"hidden", {3}}}), Contains("hidden: 3"));
   CHECK_THAT(refusal({{"cut", {{"normal", {0, 0, 0}}}}}), Contains("no direction"));
   CHECK_THAT(refusal({{"view", {{"split", "val"}, {"index", 0}}}}), Contains("split"));
   CHECK_THAT(refusal({{"view", {{"split", "test"}, {"index", 3}}}}), Contains("index: 3"));

@@ -94,7 +94,8 @@ TEST_CASE("all methods: a frame that was stopped anywhere leaves no trace in the
   other.camera = small_room().test.back().camera;
   const LayerMaps expected = run.layers(look, look.camera, nullptr);
   bool stopped = true;
-  for (int loops = 0; stopped; loops += 3) {  // until a frame ends before it would be stopped
+  for (int loops = 0; stopped;
+       loops += 1 + loops / 3) {  // until a frame ends before it would be stopped
     int asked = 0;
     const std::function<bool()> stop = [&] { return asked++ >= loops; };
     try {
@@ -130,6 +131,16 @@ TEST_CASE("all methods: a training that is looked at ends with the same bytes") 
   });
   CHECK(looked == 12);
   CHECK(watched == trained({}));
+}
+
+TEST_CASE("sets that are hidden are not among the discs") {
+  const auto method = loaded("glint");
+  ViewedRun run({"glint", "glint", "GLINT", "nowhere"}, *method, small_room(), false);
+  Look look = look_at_room();
+  look.style = SurfelStyle::kDiscs;
+  CHECK_FALSE(is_black(run.layers(look, look.camera, nullptr).at("depth")));
+  for (const MethodSet& set : method->sets()) look.hidden.push_back(set.name);
+  CHECK(is_black(run.layers(look, look.camera, nullptr).at("depth")));
 }
 
 TEST_CASE("a snapped view has its errors, other cameras have none") {

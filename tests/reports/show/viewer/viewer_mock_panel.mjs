@@ -63,6 +63,13 @@ async function testSurfels(page, server, { shot, wholeShown }) {
   await until(() => server.last("look").cut.normal[2] === -1, "the other side");
   await page.click('[data-value="discs"]');
   await until(() => server.last("look").style === "discs", "discs");
+  await page.uncheck("#set-interface");
+  await until(() => server.last("look").hidden.join() === "interface", "a set taken away");
+  await page.reload();
+  await wholeShown(page, server);
+  assert.equal(server.last("look").hidden.join(), "interface", "the address keeps it");
+  await page.check("#set-interface");
+  await until(() => server.last("look").hidden.length === 0, "and back");
   assert.match(await textOf(page, ".counts"), /GLINT\s+90,930\s+interface\s+61,234/);
   await page.locator(".counts").scrollIntoViewIfNeeded();
   await shot(page, "mock_surfels");

@@ -159,6 +159,12 @@ async function testSurfels(page, heard) {
     assert.ok((await colors(page)) > 10, style);
     await shot(page, `style_${style}`);
   }
+  const whole = await colorSum(page);
+  await page.uncheck("#set-interface");
+  await rests(page, heard);
+  assert.notEqual(await colorSum(page), whole, "without a set");
+  await shot(page, "style_points_behind");
+  await page.check("#set-interface");
   await page.click('[aria-label="Surfels as"] [data-value="image"]');
   await rests(page, heard);
   const plain = await colorSum(page);

@@ -39,6 +39,7 @@ export function lookOf(hello, state, stage) {
     panes: panes.map((pane) => ({ run: pane.run, layer: shownLayer(hello, pane, state.view).id })),
     scales: state.scales,
     style: state.style,
+    hidden: state.hidden,
     cut: planeOf(state.cut, hello.scene),
   };
 }

@@ -2,7 +2,7 @@
 import { checkbox, h, segmented } from "../../../page/web/src/dom.js";
 import { cutText, kCutAxes } from "./cut.js";
 import { button, keyed, section, slider, thousands } from "./parts.js";
-import { kScaleTitles } from "./state.js";
+import { kScaleTitles, setsOf } from "./state.js";
 
 export const kStyleTitles = { image: "Image", discs: "Discs", points: "Points" };
 const kMostScale = 4;
@@ -12,6 +12,16 @@ const union = (lists) => [...new Set(lists.flat())];
 function styleChoice(app, styles) {
   const choices = styles.map((style) => [style, kStyleTitles[style] ?? style]);
   return segmented("Surfels as", choices, app.state.style, (style) => app.set({ style }));
+}
+
+// Which sets are drawn as discs or points: what stands before them can be taken away.
+function setChoice(app, names) {
+  const { hidden } = app.state;
+  const show = (name, on) =>
+    app.set({ hidden: on ? hidden.filter((one) => one !== name) : [...hidden, name] });
+  return names.map((name) =>
+    checkbox(name, !hidden.includes(name), (on) => show(name, on), `set-${name}`),
+  );
 }
 
 function scaleSliders(app, names) {
@@ -74,6 +84,7 @@ function counts(app) {
 
 export function surfelsPanel(app) {
   const styles = h("div", { class: "line" });
+  const sets = h("div", { class: "line" });
   const scales = h("div", {});
   const cut = h("div", { class: "line" });
   const offset = slider("Offset", {
@@ -90,10 +101,12 @@ export function surfelsPanel(app) {
   let sliders = [];
   const update = () => {
     const runs = app.shownRuns();
-    const { cut: plane, style, scales: factors } = app.state;
+    const { cut: plane, style, hidden, scales: factors } = app.state;
     const names = union(runs.map((run) => run.scales));
     const kinds = union(runs.map((run) => run.styles));
     keyed(styles, [kinds, style], () => kinds.length > 1 && styleChoice(app, kinds));
+    const drawn = style === "image" ? [] : setsOf(runs);
+    keyed(sets, [drawn, hidden], () => drawn.length > 1 && setChoice(app, drawn));
     keyed(scales, names, () => [(sliders = scaleSliders(app, names)), names.length > 0 && again]);
     sliders.forEach((element) => element.update());
     again.hidden = names.every((name) => factors[name] === 1);
@@ -108,5 +121,5 @@ export function surfelsPanel(app) {
       () => counts(app),
     );
   };
-  return { element: section("Surfels", [styles, scales, cut, offset, numbers]), update };
+  return { element: section("Surfels", [styles, sets, scales, cut, offset, numbers]), update };
 }

@@ -18,6 +18,9 @@ export const kScaleTitles = {
   transparency: "Transparency t",
 };
 
+// Names of the sets of surfels that any of the runs has.
+export const setsOf = (runs) => [...new Set(runs.flatMap((run) => Object.keys(run.surfels)))];
+
 export const upOf = (hello, name) => kUps[name] ?? hello.scene.up;
 
 // The first test view's pose; without views from outside of the scene.
@@ -45,6 +48,7 @@ export function firstState(hello) {
     split: 50, // percent
     scales: Object.fromEntries(Object.keys(kScaleTitles).map((name) => [name, 1])),
     style: "image",
+    hidden: [], // names of sets that are not drawn as discs or points
     cut: { axis: null, direction: [0, 0, 1], flipped: false, share: 0.6 },
     resolution: "data",
     frusta: true,
@@ -72,6 +76,7 @@ export function addressValues(hello, state) {
     split: right ? Math.round(state.split) : null,
     scales: isScaled ? digits(Object.values(scales), 2) : null,
     style: state.style === "image" ? null : state.style,
+    hidden: state.hidden.length > 0 ? state.hidden : null,
     cut: cut.axis,
     cutshare: cut.axis && Number(cut.share.toFixed(3)),
     cutflip: cut.axis && cut.flipped ? true : null,
@@ -121,6 +126,7 @@ export function stateOfAddress(hello, params) {
   const scales = params.numbers("scales", 3);
   if (scales) Object.keys(state.scales).forEach((name, i) => (state.scales[name] = scales[i]));
   state.style = params.choice("style", hello.runs[state.left.run].styles, "image");
+  state.hidden = (params.list("hidden") ?? []).filter((name) => setsOf(hello.runs).includes(name));
   state.cut = {
     axis: params.choice("cut", kCutAxes, null),
     direction: params.numbers("cutalong", 3) ?? [0, 0, 1],
