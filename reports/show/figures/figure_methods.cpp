@@ -6,6 +6,7 @@
 #include <set>
 
 #include "glint/method.h"
+#include "reports/show/tables/main_methods.h"
 #include "reports/show/tables/tables.h"
 
 namespace glint {
@@ -36,7 +37,7 @@ std::set<std::string> ablation_variants() {
 }  // namespace
 
 bool MethodChoice::in_pictures(const std::string& id) const {
-  return globs.empty() ? !is_variant(id) : any_matches(globs, id);
+  return globs.empty() ? !is_variant(id) || is_main_method(id) : any_matches(globs, id);
 }
 
 bool MethodChoice::in_curves(const std::string& id) const {

@@ -10,9 +10,9 @@
 
 namespace glint {
 
-// Which methods figures show: those of the globs; without any, pictures show methods but no
-// variants (about eight fit beside the truth), and curves all but the rows of the ablation table,
-// which has its own figure.
+// Which methods figures show: those of the globs; without any, pictures show methods but of their
+// variants main_methods() alone (about eight fit beside the truth), and curves all but the rows of
+// the ablation table, which has its own figure.
 struct MethodChoice {
   std::vector<std::string> globs;
 

@@ -7,6 +7,7 @@
 #include "metrics/metric.h"
 #include "reports/run/records/revision.h"
 #include "reports/run/records/script_text.h"
+#include "reports/show/tables/main_methods.h"
 #include "reports/show/tables/method_title.h"
 #include "reports/show/tables/table_writers.h"
 
@@ -154,6 +155,7 @@ Json page_summary(
   json["records"] = records_json(records, ids);
   json["titles"] = titles_json(records);
   json["no_rivals"] = no_rivals_json(records);
+  json["main_methods"] = main_methods();
   json["mesh_faces"] = mesh_faces(options);
   json["failures"] = failures_json(scenes, options);
   json["environments"] = environments_json(records);

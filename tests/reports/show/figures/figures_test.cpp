@@ -182,6 +182,7 @@ TEST_CASE("by default pictures show methods and curves no ablations; globs choos
   const MethodChoice usual;
   CHECK(usual.in_pictures("glint"));
   CHECK_FALSE(usual.in_pictures("glint/release"));
+  CHECK(usual.in_pictures("glint/plus"));
   CHECK(usual.in_pictures("ours/fast"));  // an import's name
   CHECK(usual.in_curves("glint/release"));
   CHECK_FALSE(usual.in_curves("glint/no-trans"));

@@ -317,6 +317,13 @@ TEST_CASE("the page knows which methods were given the truth") {
   CHECK(assigned(store.asset("data.js"))["no_rivals"] == Json({"told"}));
 }
 
+TEST_CASE("the page knows which methods its first picture shows") {
+  const Store store;
+  store.write();
+  const Json shown = assigned(store.asset("data.js"))["main_methods"];
+  CHECK(shown == Json({"2dgs", "envgs", "tsgs", "glint", "glint/plus"}));
+}
+
 TEST_CASE("a page that is written again keeps nothing of the one before") {
   const Store store;
   store.add(record_of("room_1", "fake"));

@@ -1,4 +1,5 @@
-// The picture that the page opens with: a test view, true and by the best methods.
+// The picture that the page opens with: a test view, true and by the methods that the program names,
+// with the depth of both layers.
 import { addressOf } from "./address.js";
 import { isRival, loadScene, metricText, pictureUrl, report, runKey, sceneKey, sceneTitle } from "./data.js";
 import { h, replace } from "./dom.js";
@@ -6,8 +7,8 @@ import { scoreOf } from "./frames.js";
 import { layersOf, ownerKey, ownerTitle } from "./owner.js";
 import { enlargement, panelCanvas, readablePicture, saveButton } from "./save_png.js";
 
-const kMethods = 4; // beside the truth
-const kLayers = ["rgb", "normal"];
+const kMethods = 5; // beside the truth
+const kLayers = ["rgb", "depth", "behind_depth"];
 const kMetric = "psnr";
 
 // The view with the largest share of glass, as in figures; without glass the middle one.
@@ -25,13 +26,27 @@ function meanScore(scene, run) {
   return scores.length > 0 ? scores.reduce((a, b) => a + b) / scores.length : -1e9;
 }
 
-function bestRuns(scene, view) {
-  return scene.runs
-    .map((_, run) => run)
+const rendered = (scene, view) =>
+  scene.runs.map((_, run) => run).filter((run) => layersOf(scene, view, run).includes("rgb"));
+
+// The first run of each of the program's choice.
+const mainRuns = (scene, view) =>
+  report.main_methods
+    .map((id) => rendered(scene, view).find((run) => scene.runs[run].method === id))
+    .filter((run) => run !== undefined);
+
+const bestRuns = (scene, view) =>
+  rendered(scene, view)
     .filter((run) => isRival(scene.runs[run].method))
-    .filter((run) => scene.views[view].runs?.[run]?.includes("rgb"))
     .sort((a, b) => meanScore(scene, b) - meanScore(scene, a))
     .slice(0, kMethods);
+
+// Where none of the choice was run, the best are shown.
+function shownRuns(scene, view) {
+  const chosen = mainRuns(scene, view);
+  return chosen.length > 0
+    ? { runs: chosen, rule: "the main methods, with depth at the glass and behind it" }
+    : { runs: bestRuns(scene, view), rule: "the methods of highest PSNR on this scene" };
 }
 
 function titleOf(scene, view, owner) {
@@ -43,23 +58,25 @@ function titleOf(scene, view, owner) {
 
 const layerTitle = (scene, layer) => scene.layers.find(({ id }) => id === layer).title;
 
-// What the picture shows: {index, scene, view, owners, layers}; null: nothing was rendered.
+// What the picture shows: {index, scene, view, owners, layers, rule}; null: nothing was rendered.
 async function content() {
   for (let index = 0; index < report.scenes.length; ++index) {
     const scene = await loadScene(index);
     if (scene.views.length === 0) continue;
     const view = openingView(scene);
     const truth = layersOf(scene, view, -1).includes("rgb") ? [-1] : [];
-    const owners = [...truth, ...bestRuns(scene, view)];
+    const { runs, rule } = shownRuns(scene, view);
+    const owners = [...truth, ...runs];
     const layers = kLayers.filter((layer) =>
       owners.some((owner) => layersOf(scene, view, owner).includes(layer)),
     );
-    if (owners.length > 0) return { index, scene, view, owners, layers };
+    if (owners.length > 0) return { index, scene, view, owners, layers, rule };
   }
   return null;
 }
 
-function panel({ index, scene, view }, owner, layer, first) {
+// `caption`: above it; empty: none.
+function panel({ index, scene, view }, owner, layer, caption) {
   const title = titleOf(scene, view, owner);
   const there = layersOf(scene, view, owner).includes(layer);
   const [width, height] = scene.views[view].size;
@@ -74,7 +91,7 @@ function panel({ index, scene, view }, owner, layer, first) {
   return h(
     "figure",
     {},
-    first && h("figcaption", {}, title),
+    caption && h("figcaption", {}, caption),
     there
       ? h(
           "a",
@@ -88,15 +105,15 @@ function panel({ index, scene, view }, owner, layer, first) {
       : h(
           "div",
           { class: "missing", style: { aspectRatio: `${width} / ${height}` } },
-          "not rendered",
+          layer === "behind_depth" ? "one layer: none behind glass" : "not rendered",
         ),
   );
 }
 
-const placeText = ({ index, scene, view, owners }) =>
+const placeText = ({ index, scene, view, owners, rule }) =>
   `${sceneTitle(index)}, view ${scene.views[view].name}${
     (scene.views[view].glass ?? 0) > 0 ? ", the test view with most glass" : ""
-  }: ${owners.includes(-1) ? "the reference beside " : ""}the methods of highest PSNR on this scene.`;
+  }: ${owners.includes(-1) ? "the reference beside " : ""}${rule}.`;
 
 async function pictureCanvas(shown) {
   const { index, scene, view, owners, layers } = shown;
@@ -118,8 +135,12 @@ async function fill(card) {
   const shown = await content();
   if (!shown) return card.remove();
   const { index, scene, view, owners, layers } = shown;
-  const panels = layers.map((layer, i) =>
-    owners.map((owner) => panel(shown, owner, layer, i === 0)),
+  const captionOf = (owner, layer) => {
+    if (layer === layers[0]) return titleOf(scene, view, owner);
+    return owner === owners[0] ? layerTitle(scene, layer) : "";
+  };
+  const panels = layers.map((layer) =>
+    owners.map((owner) => panel(shown, owner, layer, captionOf(owner, layer))),
   );
   const words = () => [report.profile, sceneTitle(index), scene.views[view].name];
   replace(
