@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "datasets/export/export_files.h"
+#include "datasets/holdout.h"
 #include "datasets/side_maps.h"
 #include "glint/core/config.h"
 #include "glint/core/error.h"
@@ -104,6 +105,7 @@ void write_scene_json(
     for (const ExportView& view : input.views)
       if (view.is_test) json["test_views"].push_back(view.name);
   }
+  if (is_held_out(scene)) json["held_out"] = true;
   json[kFiles] = leaves_below(folder);
   write_file(folder / kDescription, json.dump(1) + "\n");
 }
@@ -121,6 +123,7 @@ void add_foreign_note(const std::vector<std::string>& foreign, ExportReport& rep
 
 void add_scene_notes(const ExportInput& input, ExportReport& report) {
   const Scene& scene = input.scene;
+  if (is_held_out(scene)) report.note(kHeldOutNote);
   if (scene.simulated_priors)
     report.note("priors are simulated: say so beside every number that uses them");
   const bool renamed =

@@ -7,6 +7,7 @@
 
 #include "datasets/dataset.h"
 #include "datasets/export/exporter.h"
+#include "datasets/holdout.h"
 #include "glint/core/error.h"
 #include "glint/core/rows.h"
 #include "metrics/tools/numeric_options.h"
@@ -48,7 +49,8 @@ int run_export(const CommonOptions& common, const ExportArguments& arguments, bo
   GLINT_CHECK(out_given, kUsage, "dataset export: give --out FOLDER, where the export goes");
   const ExportOptions options = export_options(arguments);
   check_export(common.out, options);
-  const Scene scene = load_scene(arguments.folder, arguments.load);
+  Scene scene = load_scene(arguments.folder, arguments.load);
+  note_held_out(arguments.folder, scene);
   const ExportReport report = export_scene(scene, common.out, options);
   print_report(common, arguments.format, report);
   return 0;

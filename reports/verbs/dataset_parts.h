@@ -13,6 +13,7 @@ namespace glint {
 
 void add_dataset_export(CommandLine& line, CLI::App& dataset);
 void add_dataset_import(CommandLine& line, CLI::App& dataset);
+void add_dataset_holdout(CommandLine& line, CLI::App& dataset);
 
 // `dataset info` and `check` of a published dataset: by its id (below --data), or by the folder of
 // that name. The exit code; nothing: `name` is no published dataset.

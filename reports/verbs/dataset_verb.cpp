@@ -4,6 +4,7 @@
 #include "datasets/dataset.h"
 #include "datasets/exchange/exchange_scene.h"
 #include "datasets/glassroom/glassroom.h"
+#include "datasets/holdout.h"
 #include "datasets/packed_scene.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/nearest.h"
@@ -147,7 +148,8 @@ struct FolderOptions {
 int run_info(const CommonOptions& common, const FolderOptions& options) {
   if (const auto code = show_manifest(common, options.folder)) return *code;
   const LoaderSpec& loader = find_loader(options.folder, options.load.loader);
-  const Scene scene = loader.load(options.folder, options.load);
+  Scene scene = loader.load(options.folder, options.load);
+  note_held_out(options.folder, scene);
   const std::string split_rule = split_rule_of(loader, options.folder);
   const std::string text = fmt::format(
       "{}format         {}\nsplit          {}\ntest views     {}\n",
@@ -192,6 +194,7 @@ void check_pack_target(const fs::path& file) {
 int run_pack(const CommonOptions& common, const PackOptions& options) {
   check_pack_target(options.file);
   Scene scene = load_scene(options.folder, options.load);
+  note_held_out(options.folder, scene);
   for (const std::string& prior : options.without) leave_out_prior(prior, scene);
   if (options.test_truth_only) leave_out_train_truth(scene);
   if (options.compact) make_compact(scene);
@@ -303,7 +306,7 @@ void add_folder_verb(
 
 void add_dataset_verb(CommandLine& line) {
   CLI::App* dataset =
-      line.app.add_subcommand("dataset", "make, describe, check, pack and export datasets");
+      line.app.add_subcommand("dataset", "make, describe, check, pack, export and split datasets");
   dataset->require_subcommand(1);
   add_make(line, *dataset);
   add_folder_verb(line, *dataset, "info", "what a folder holds, as methods will see it", run_info);
@@ -311,6 +314,7 @@ void add_dataset_verb(CommandLine& line) {
   add_pack(line, *dataset);
   add_dataset_export(line, *dataset);
   add_dataset_import(line, *dataset);
+  add_dataset_holdout(line, *dataset);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
+#include "datasets/holdout.h"
 #include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "metrics/fusion/tsdf.h"
@@ -110,6 +111,7 @@ void record_single(const CommonOptions& common, const RunSpec& spec, const Recor
 
 // Errors (kBadReference): nothing to score.
 void check_test_views(const Scene& scene, const fs::path& dataset) {
+  check_not_held_out(dataset, scene);
   GLINT_CHECK(
       !scene.test.empty(),
       kBadReference,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "datasets/holdout.h"
 #include "glint/core/left_behind.h"
 #include "glint/core/presence.h"
 #include "glint/core/progress.h"
@@ -52,6 +53,18 @@ PlanCell cell_of_model(const CommonOptions& common, const ModelFiles& files) {
   return cell;
 }
 
+// Errors (kUsage): test views would be scored while it trains.
+void tell_held_out(const LoadedScene& loaded, const Profile& profile) {
+  GLINT_CHECK(
+      profile.test_psnr_every == 0,
+      kUsage,
+      "{}: {}; leave out --test-psnr-every",
+      loaded.folder.string(),
+      kHeldOutNote
+  );
+  log::info(fmt::format("{}: {}", loaded.folder.string(), kHeldOutNote));
+}
+
 SingleCell with_data(
     const CommonOptions& common,
     const NewCellOptions& options,
@@ -66,6 +79,7 @@ SingleCell with_data(
   cell.cell.scene = cell.source.scene;
   SingleCell single;
   RunSpec& spec = single.spec;
+  if (is_held_out(loaded.scene)) tell_held_out(loaded, profile);
   spec = make_spec(cell, profile, loaded, options.run);
   spec.checkpoint_seconds = common.checkpoint_seconds;
   spec.anew = options.force;
@@ -161,6 +175,7 @@ LoadedScene load_user_data(SceneSource& source, const fs::path& dataset) {
   LoadedScene loaded = load_source(source, {});
   source.scene = loaded.scene.name;
   source.dataset = loaded.scene.dataset;
+  note_held_out(dataset, loaded.scene);
   return loaded;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reports/run/bench/runner.h"
 
+#include "datasets/holdout.h"
 #include "glint/core/file_lock.h"
 #include "glint/core/interrupt.h"
 #include "glint/core/left_behind.h"
@@ -108,6 +109,7 @@ class Runner {
   void load_scene_of(const PlanCell& cell) {
     if (loaded_name_ == cell.cell.scene) return;
     loaded_ = options_.load(cell.source);
+    check_not_held_out(loaded_.folder, loaded_.scene);
     GLINT_CHECK(
         !loaded_.scene.test.empty() && !loaded_.scene.train.empty(),
         kBadReference,
