@@ -9,16 +9,11 @@
 #include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "reports/run/records/copy_run.h"
+#include "reports/run/records/record_facts.h"
 #include "reports/run/records/run_folder.h"
 
 namespace glint {
 namespace {
-
-std::string environment_text(const Record& record, const char* field) {
-  const Json& environment = record.environment;
-  const bool has = environment.is_object() && environment.contains(field);
-  return has && environment[field].is_string() ? environment[field].get<std::string>() : "";
-}
 
 // "node7 (AMD EPYC)".
 std::string machine_of(const Record& record) {

@@ -2,6 +2,7 @@
 #include "reports/show/tables/agreement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -50,50 +51,135 @@ ValuesOfScenes values_of(
   return values;
 }
 
-std::optional<Interval> bootstrapped_tau(
-    std::span<const ComparedMethod> methods, const std::vector<double>& published
+using Columns = std::span<const std::vector<ComparedMethod>>;
+
+std::vector<double> published_of(std::span<const ComparedMethod> methods) {
+  std::vector<double> published;
+  for (const ComparedMethod& method : methods) published.push_back(method.published);
+  return published;
+}
+
+// What one column is resampled from.
+struct ResampledColumn {
+  ValuesOfScenes values;
+  std::vector<double> published;
+};
+
+// Of the keys that all columns have for all methods.
+std::vector<std::vector<ValueKey>> keys_of_columns(Columns columns) {
+  std::vector<ComparedMethod> all;
+  for (const auto& column : columns) all.insert(all.end(), column.begin(), column.end());
+  return common_keys(all);
+}
+
+std::vector<ResampledColumn> resampled_columns(Columns columns) {
+  const auto keys = keys_of_columns(columns);
+  std::vector<ResampledColumn> resampled;
+  for (const auto& column : columns)
+    resampled.push_back({values_of(column, keys), published_of(column)});
+  return resampled;
+}
+
+double resampled_tau(
+    const ResampledColumn& column,
+    const std::vector<std::array<std::size_t, 2>>& drawn,
+    const std::vector<double>& weights
 ) {
-  const ValuesOfScenes values = values_of(methods, common_keys(methods));
-  const std::vector<std::size_t> counts = bootstrap_counts<std::vector<double>>(values);
+  std::vector<double> means(column.published.size());
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    for (std::size_t m = 0; m < means.size(); ++m)
+      means[m] += weights[i] * column.values[drawn[i][0]][drawn[i][1]][m];
+  return kendall_tau(means, column.published);
+}
+
+std::optional<Interval> bootstrapped_tau(Columns columns) {
+  const auto resampled = resampled_columns(columns);
+  const std::vector<std::size_t> counts =
+      bootstrap_counts<std::vector<double>>(resampled.front().values);
   if (counts.empty()) return std::nullopt;
   Rng rng(kOrderSeed);
   std::vector<double> taus;
   for (std::size_t i = 0; i < kResamples; ++i) {
-    std::vector<double> means(methods.size());
+    std::vector<std::array<std::size_t, 2>> drawn;
+    std::vector<double> weights;
     draw_resample(counts, rng, [&](std::size_t scene, std::size_t seed, double weight) {
-      for (std::size_t m = 0; m < means.size(); ++m) means[m] += weight * values[scene][seed][m];
+      drawn.push_back({scene, seed});
+      weights.push_back(weight);
     });
-    if (const double tau = kendall_tau(means, published); std::isfinite(tau)) taus.push_back(tau);
+    double sum = 0;
+    for (const ResampledColumn& column : resampled) sum += resampled_tau(column, drawn, weights);
+    if (std::isfinite(sum)) taus.push_back(sum / static_cast<double>(resampled.size()));
   }
   if (taus.empty()) return std::nullopt;
   return middle_95(std::move(taus));
 }
 
-std::vector<double> taus_of_random_orders(int n) {
-  std::vector<double> order(static_cast<std::size_t>(n)), taus;
-  std::iota(order.begin(), order.end(), 0.0);
-  const std::vector<double> sorted = order;
-  const auto add = [&] { taus.push_back(kendall_tau(order, sorted)); };
+// f(order) for every order of n things; of many, for a fixed sample of orders.
+template <class F>
+void for_each_order(int n, F&& f) {
+  std::vector<std::size_t> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), std::size_t{0});
   if (n <= kEnumerated) {
-    do add();
+    do f(order);
     while (std::next_permutation(order.begin(), order.end()));
-    return taus;
+    return;
   }
   Rng rng(kOrderSeed);
   for (std::size_t sample = 0; sample < kSampledOrders; ++sample) {
     for (std::size_t i = order.size() - 1; i > 0; --i)
       std::swap(order[i], order[rng.below(static_cast<std::uint32_t>(i + 1))]);
-    add();
+    f(order);
   }
-  return taus;
+}
+
+// The narrowest around 0 that holds so many of them.
+Interval middle_around_zero(std::vector<double> taus) {
+  for (double& tau : taus) tau = std::abs(tau);
+  std::sort(taus.begin(), taus.end());
+  const auto rank = static_cast<std::size_t>(std::ceil(kLevel * static_cast<double>(taus.size())));
+  return {-taus[rank - 1], taus[rank - 1]};
 }
 
 Interval sampled_chance(int n) {
-  std::vector<double> sizes = taus_of_random_orders(n);
-  for (double& tau : sizes) tau = std::abs(tau);
-  std::sort(sizes.begin(), sizes.end());
-  const auto rank = static_cast<std::size_t>(std::ceil(kLevel * static_cast<double>(sizes.size())));
-  return {-sizes[rank - 1], sizes[rank - 1]};
+  std::vector<double> sorted(static_cast<std::size_t>(n)), taus;
+  std::iota(sorted.begin(), sorted.end(), 0.0);
+  for_each_order(n, [&](const std::vector<std::size_t>& order) {
+    taus.push_back(kendall_tau(std::vector<double>(order.begin(), order.end()), sorted));
+  });
+  return middle_around_zero(std::move(taus));
+}
+
+// The column's tau if its methods had each other's values.
+double tau_in_order(
+    const std::vector<ComparedMethod>& column, const std::vector<std::size_t>& order
+) {
+  std::vector<double> measured;
+  for (const std::size_t method : order) measured.push_back(column[method].measured);
+  return kendall_tau(measured, published_of(column));
+}
+
+double mean_tau(Columns columns, const std::vector<std::size_t>& order) {
+  double sum = 0;
+  for (const auto& column : columns) sum += tau_in_order(column, order);
+  return sum / static_cast<double>(columns.size());
+}
+
+Interval chance_of_columns(Columns columns) {
+  std::vector<double> taus;
+  for_each_order(
+      static_cast<int>(columns.front().size()),
+      [&](const std::vector<std::size_t>& order) { taus.push_back(mean_tau(columns, order)); }
+  );
+  return middle_around_zero(std::move(taus));
+}
+
+OrderAgreement agreement_of(Columns columns, double tau, Interval chance) {
+  OrderAgreement result;
+  result.tau = tau;
+  result.num_methods = static_cast<int>(columns.front().size());
+  result.interval = bootstrapped_tau(columns);
+  result.chance = chance;
+  return result;
 }
 
 }  // namespace
@@ -107,18 +193,23 @@ Interval chance_interval(int n) {
 }
 
 std::optional<OrderAgreement> order_agreement(std::span<const ComparedMethod> methods) {
-  std::vector<double> measured, published;
-  for (const ComparedMethod& method : methods) {
-    measured.push_back(method.measured);
-    published.push_back(method.published);
-  }
-  OrderAgreement result;
-  result.tau = kendall_tau(measured, published);
-  if (!std::isfinite(result.tau)) return std::nullopt;
-  result.num_methods = static_cast<int>(methods.size());
-  result.interval = bootstrapped_tau(methods, published);
-  result.chance = chance_interval(result.num_methods);
-  return result;
+  std::vector<double> measured;
+  for (const ComparedMethod& method : methods) measured.push_back(method.measured);
+  const double tau = kendall_tau(measured, published_of(methods));
+  if (!std::isfinite(tau)) return std::nullopt;
+  const std::vector<ComparedMethod> column(methods.begin(), methods.end());
+  return agreement_of({&column, 1}, tau, chance_interval(static_cast<int>(methods.size())));
+}
+
+std::optional<OrderAgreement> mean_order_agreement(
+    std::span<const std::vector<ComparedMethod>> columns
+) {
+  if (columns.empty() || columns.front().size() < 2) return std::nullopt;
+  std::vector<std::size_t> as_it_is(columns.front().size());
+  std::iota(as_it_is.begin(), as_it_is.end(), std::size_t{0});
+  const double tau = mean_tau(columns, as_it_is);
+  if (!std::isfinite(tau)) return std::nullopt;
+  return agreement_of(columns, tau, chance_of_columns(columns));
 }
 
 }  // namespace glint

@@ -33,6 +33,14 @@ struct ComparedMethod {
 // constant).
 std::optional<OrderAgreement> order_agreement(std::span<const ComparedMethod> methods);
 
+// The same of several columns together: the mean of their taus, whose interval comes from resamples
+// of scenes and seeds that all columns share, and whose chance from orders that all columns take
+// together, since columns of a table are alike. Every column has the same methods in one order.
+// Nothing: a column without tau.
+std::optional<OrderAgreement> mean_order_agreement(
+    std::span<const std::vector<ComparedMethod>> columns
+);
+
 // The narrowest interval around 0 with at least 95 % of the taus of all orders of n different
 // values; of more than 8, of a fixed sample of orders. {-1, 1} for fewer than two.
 Interval chance_interval(int n);

@@ -191,7 +191,7 @@ std::size_t Comparison::num_regressions() const {
 
 namespace {
 
-std::vector<Record> records_at(const fs::path& path) {
+fs::path file_at(const fs::path& path) {
   const fs::path file = is_folder(path) ? path / "records.jsonl" : path;
   GLINT_CHECK(
       is_file(file),
@@ -200,21 +200,29 @@ std::vector<Record> records_at(const fs::path& path) {
       file.string()
   );
   // Something else altogether is not read line by line, with a warning each.
-  const bool of_objects = open_file(file).peek() == '{';
-  auto records = of_objects ? read_records(file) : std::vector<Record>();
   GLINT_CHECK(
-      !records.empty(),
+      open_file(file).peek() == '{',
       kBadPrediction,
       "{}: holds no record; expected one JSON object a line (docs/reference/records.md)",
       file.string()
   );
-  return records;
+  return file;
 }
 
 }  // namespace
 
+fs::path store_file(const fs::path& path) {
+  return with_exit_code(ExitCode::kBadPrediction, [&] { return file_at(path); });
+}
+
 std::vector<Record> read_store(const fs::path& path) {
-  return with_exit_code(ExitCode::kBadPrediction, [&] { return records_at(path); });
+  return with_exit_code(ExitCode::kBadPrediction, [&] {
+    auto records = read_records(file_at(path));
+    GLINT_CHECK(
+        !records.empty(), kBadPrediction, "{}: holds no record that is whole", path.string()
+    );
+    return records;
+  });
 }
 
 Comparison compare_records(

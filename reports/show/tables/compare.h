@@ -56,8 +56,10 @@ struct Comparison {
   std::size_t num_regressions() const;
 };
 
-// `path`: a folder with records.jsonl, or such a file. Errors (kBadPrediction): it is missing or
-// holds no record.
+// The file of a store: `path` is a folder with records.jsonl, or such a file. Errors
+// (kBadPrediction): it is missing or holds something else.
+fs::path store_file(const fs::path& path);
+// Its records. Errors (kBadPrediction): as above, or it holds no record.
 std::vector<Record> read_store(const fs::path& path);
 
 Comparison compare_records(

@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "glint/core/rows.h"
+#include "reports/run/records/record_facts.h"
+#include "reports/show/tables/order_by_length.h"
 #include "reports/show/tables/table_writers.h"
 
 namespace glint {
@@ -21,18 +23,12 @@ Texts collect(const std::vector<Record>& records, F&& text_of) {
   return texts;
 }
 
-std::string environment_text(const Record& record, const char* key) {
-  const auto found = record.environment.find(key);
-  if (found == record.environment.end()) return {};
-  return found->is_string() ? found->get<std::string>() : found->dump();
-}
-
 // "trained by revision ..." of records that were scored by another one.
 Texts trained_by(const std::vector<Record>& records) {
   Texts texts;
   for (const Record& record : records)
     for (const std::string& warning : record.warnings)
-      if (warning.starts_with("trained by revision ")) texts.insert(warning);
+      if (warning.starts_with(kTrainedBy)) texts.insert(warning);
   return texts;
 }
 
@@ -46,54 +42,42 @@ std::string shared_card_text(const std::vector<Record>& records) {
 
 std::string joined(const Texts& texts) { return fmt::format("{}", fmt::join(texts, ", ")); }
 
-std::string source_text(const ResultsInfo& info) {
-  return fmt::format("- Command: `{}`\n- Records: `{}`\n", info.command, info.records);
+std::vector<std::string> source_facts(const ResultsInfo& info) {
+  return {fmt::format("Command: `{}`", info.command), fmt::format("Records: `{}`", info.records)};
 }
 
-std::string remarks_text(const ResultsInfo& info) {
-  return info.remarks.empty() ? "" : fmt::format("- {}\n", info.remarks);
+std::string item_list(const std::vector<std::string>& items) {
+  std::string text;
+  for (const std::string& item : items) text += fmt::format("- {}\n", item);
+  return text;
 }
 
-std::string facts(const ResultsInfo& info, const std::vector<Record>& records) {
+std::vector<std::string> facts(const ResultsInfo& info, const std::vector<Record>& records) {
   const auto environment = [&](const char* key) {
     return joined(collect(records, [&](const Record& r) { return environment_text(r, key); }));
   };
   const Texts dates = collect(records, [](const Record& r) { return environment_text(r, "date"); });
-  std::string text = source_text(info);
-  text += fmt::format(
-      "- Scenes: {}; test views of {} pixels\n",
+  std::vector<std::string> all = source_facts(info);
+  all.push_back(fmt::format(
+      "Scenes: {}; test views of {} pixels",
       joined(collect(records, [](const Record& r) { return r.dataset + "/" + r.cell.scene; })),
       joined(collect(records, [](const Record& r) { return r.resolution; }))
-  );
-  text += fmt::format("- Scored by revision {}", environment("git_revision"));
+  ));
+  all.push_back(fmt::format("Scored by revision {}", environment("git_revision")));
   if (const Texts trained = trained_by(records); !trained.empty())
-    text += fmt::format("; {}", joined(trained));
-  text += fmt::format(
-      "\n- {} to {} (UTC)\n",
-      dates.empty() ? "" : *dates.begin(),
-      dates.empty() ? "" : *dates.rbegin()
-  );
-  text += fmt::format(
-      "- Machine: {}, {} threads, device {}{}\n",
+    all.back() += fmt::format("; {}", joined(trained));
+  all.push_back(fmt::format(
+      "{} to {} (UTC)", dates.empty() ? "" : *dates.begin(), dates.empty() ? "" : *dates.rbegin()
+  ));
+  all.push_back(fmt::format(
+      "Machine: {}, {} threads, device {}{}",
       environment("cpu"),
       environment("threads"),
       environment("device"),
       shared_card_text(records)
-  );
-  return text + remarks_text(info);
-}
-
-// Captions, scenes of means and published columns are those of our rooms.
-Table of_other_data(const Table& table) {
-  Table result = without_empty_columns(without_published(table));
-  std::erase_if(result.rows, [](const TableRow& row) {
-    return std::none_of(row.cells.begin(), row.cells.end(), [](const TableCell& cell) {
-      return cell.has_value();
-    });
-  });
-  result.caption.clear();
-  result.notes.clear();
-  return result;
+  ));
+  if (!info.remarks.empty()) all.push_back(info.remarks);
+  return all;
 }
 
 std::vector<Record> shown_records(const ResultsInfo& info, std::vector<Record> records) {
@@ -142,6 +126,13 @@ Table front_page_table(const std::vector<Record>& records) {
   return table;
 }
 
+std::string section_markdown(const ResultsSection& section) {
+  std::string text = section.title.empty() ? "" : fmt::format("# {}\n\n", section.title);
+  text += item_list(section.facts);
+  for (const Table& table : section.tables) text += fmt::format("\n{}", table_markdown(table));
+  return text;
+}
+
 }  // namespace
 
 std::vector<fs::path> results_parts(const fs::path& root) {
@@ -159,10 +150,22 @@ ResultsInfo read_results_info(const fs::path& file) {
   return info;
 }
 
-std::string results_part(const ResultsInfo& info, std::vector<Record> records) {
+// Captions, scenes of means and published columns are those of our rooms.
+Table of_other_data(const Table& table) {
+  Table result = without_empty_columns(without_published(table));
+  std::erase_if(result.rows, [](const TableRow& row) {
+    return std::none_of(row.cells.begin(), row.cells.end(), [](const TableCell& cell) {
+      return cell.has_value();
+    });
+  });
+  result.caption.clear();
+  result.notes.clear();
+  return result;
+}
+
+ResultsSection results_section(const ResultsInfo& info, std::vector<Record> records) {
   records = shown_records(info, std::move(records));
-  std::string text = info.title.empty() ? "" : fmt::format("# {}\n\n", info.title);
-  text += facts(info, records);
+  ResultsSection section{info.title, facts(info, records), {}};
   const auto is_shown = [&](const std::string& id) {
     return info.tables.empty() ||
            std::find(info.tables.begin(), info.tables.end(), id) != info.tables.end();
@@ -171,24 +174,36 @@ std::string results_part(const ResultsInfo& info, std::vector<Record> records) {
     if (!is_shown(definition.id)) continue;
     Table table = build_table(definition, records);
     if (info.other_data) table = of_other_data(table);
-    if (has_measurement(table)) text += fmt::format("\n{}", table_markdown(table));
+    if (has_measurement(table)) section.tables.push_back(std::move(table));
   }
-  return text;
+  return section;
+}
+
+std::vector<ResultsSection> results_sections(const fs::path& root) {
+  std::vector<ResultsSection> sections;
+  for (const fs::path& file : results_parts(root)) {
+    const ResultsInfo info = read_results_info(file);
+    const auto records = read_records(root / info.records);
+    GLINT_CHECK(!records.empty(), kBadPrediction, "{}: no records", info.records);
+    sections.push_back(results_section(info, records));
+  }
+  return sections;
+}
+
+std::string results_part(const ResultsInfo& info, std::vector<Record> records) {
+  return section_markdown(results_section(info, std::move(records)));
 }
 
 std::string results_markdown(const fs::path& root) {
   std::string text =
       "# Results\n\n"
       "This page has the tables of the committed records, written by `glint-bench results`; a test "
-      "fails when they differ. For all tables of a part, copy its records to "
+      "fails when they differ. `index.html` beside it has the same for a browser. For all tables "
+      "of a part, copy its records to "
       "`out/NAME/records.jsonl` and run `glint-bench table --out out/NAME`.\n\n";
-  for (const fs::path& file : results_parts(root)) {
-    const ResultsInfo info = read_results_info(file);
-    const auto records = read_records(root / info.records);
-    GLINT_CHECK(!records.empty(), kBadPrediction, "{}: no records", info.records);
-    text += (info.title.empty() ? "" : "\n") + results_part(info, records);
-  }
-  return in_lines(text);
+  for (const ResultsSection& section : results_sections(root))
+    text += (section.title.empty() ? "" : "\n") + section_markdown(section);
+  return in_lines(text + "\n" + order_markdown(order_by_length(root)));
 }
 
 std::string readme_results(const ResultsInfo& info, std::vector<Record> records) {
@@ -196,10 +211,10 @@ std::string readme_results(const ResultsInfo& info, std::vector<Record> records)
   const std::string text = table_markdown(front_page_table(records));
   return in_lines(fmt::format(  // without the table's heading
       "\n{}\n{}{}- All tables, with intervals: "
-      "[docs/results/RESULTS.md](docs/results/RESULTS.md)\n",
+      "[docs/results/RESULTS.md](docs/results/RESULTS.md), [page](docs/results/index.html)\n",
       text.substr(text.find('|')),
-      source_text(info),
-      remarks_text(info)
+      item_list(source_facts(info)),
+      info.remarks.empty() ? "" : fmt::format("- {}\n", info.remarks)
   ));
 }
 

@@ -37,9 +37,23 @@ std::vector<fs::path> results_parts(const fs::path& root);
 // Errors (kUsage): unknown fields; kBadReference: no such file.
 ResultsInfo read_results_info(const fs::path& file);
 
+// A part with what it shows; its facts are Markdown, one a line.
+struct ResultsSection {
+  std::string title;
+  std::vector<std::string> facts;
+  std::vector<Table> tables;
+};
+ResultsSection results_section(const ResultsInfo& info, std::vector<Record> records);
+// Of a project's folder, all of them. Errors (kBadPrediction): no records.
+std::vector<ResultsSection> results_sections(const fs::path& root);
+
 // A part of docs/results/RESULTS.md: command, scenes, resolution, revisions, dates, machine,
 // tables.
 std::string results_part(const ResultsInfo& info, std::vector<Record> records);
+// A table of data that are not our rooms: without what is said of those, published columns and rows
+// without a value.
+Table of_other_data(const Table& table);
+
 // The whole page of a project's folder, from docs/results/. Errors (kBadPrediction): no records.
 std::string results_markdown(const fs::path& root);
 

@@ -265,21 +265,8 @@ void mark_ties(Table& table, std::size_t column, TieTests& tests) {
 
 // Against the first published group, the paper's counterpart of the data.
 void add_agreement(Table& table, std::size_t measured, const std::string& paper_dataset) {
-  const std::string published_id =
-      fmt::format("published/{}/{}", paper_dataset, table.columns[measured].paper_column);
-  const auto it =
-      std::find_if(table.columns.begin(), table.columns.end(), [&](const TableColumn& column) {
-        return column.id == published_id;
-      });
-  if (it == table.columns.end()) return;
-  const auto published = static_cast<std::size_t>(it - table.columns.begin());
-  std::vector<ComparedMethod> methods;
-  for (const TableRow& row : table.rows)
-    if (can_rank(row, measured) && row.cells[published].status == CellStatus::kOk)
-      methods.push_back(
-          {row.cells[measured].value, row.cells[published].value, row.cells[measured].values}
-      );
-  std::optional<OrderAgreement> agreement = order_agreement(methods);
+  std::optional<OrderAgreement> agreement =
+      order_agreement(compared_methods(table, measured, paper_dataset));
   if (!agreement) return;
   agreement->column = table.columns[measured].id;
   table.agreement.push_back(*std::move(agreement));
@@ -558,6 +545,26 @@ Table build_table(const TableDefinition& definition, const std::vector<Record>& 
   add_no_rival_notes(table);
   add_partial_notes(table);
   return table;
+}
+
+std::vector<ComparedMethod> compared_methods(
+    const Table& table, std::size_t measured, const std::string& paper_dataset
+) {
+  const std::string published_id =
+      fmt::format("published/{}/{}", paper_dataset, table.columns[measured].paper_column);
+  const auto it =
+      std::find_if(table.columns.begin(), table.columns.end(), [&](const TableColumn& column) {
+        return column.id == published_id;
+      });
+  if (it == table.columns.end()) return {};
+  const auto published = static_cast<std::size_t>(it - table.columns.begin());
+  std::vector<ComparedMethod> methods;
+  for (const TableRow& row : table.rows)
+    if (can_rank(row, measured) && row.cells[published].status == CellStatus::kOk)
+      methods.push_back(
+          {row.cells[measured].value, row.cells[published].value, row.cells[measured].values}
+      );
+  return methods;
 }
 
 void keep_rows_with_records(TableDefinition& definition, const std::vector<Record>& records) {

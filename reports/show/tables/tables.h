@@ -110,6 +110,12 @@ std::vector<TableDefinition> table_definitions();
 // them those that are no rivals, which have no say in scenes and ranks.
 Table build_table(const TableDefinition& definition, const std::vector<Record>& records);
 
+// Of the methods of a column that can be ranked and that the paper has numbers of, both: against
+// its dataset `paper_dataset`. Empty: the paper has no such column.
+std::vector<ComparedMethod> compared_methods(
+    const Table& table, std::size_t measured, const std::string& paper_dataset
+);
+
 // For tables of a choice: no row for a method that has no record among the chosen.
 void keep_rows_with_records(TableDefinition& definition, const std::vector<Record>& records);
 

@@ -69,3 +69,21 @@ TEST_CASE("agreement is not defined for one method or for equal values") {
   CHECK_FALSE(order_agreement(std::vector{method(1, {1, 1, 1}), method(2, {1, 1, 1})}));
   CHECK_FALSE(order_agreement({}));
 }
+
+TEST_CASE("columns together have the mean of their taus, and draw the same rooms") {
+  const std::vector<ComparedMethod> agrees = {
+      method(1, {1, 1, 1}), method(2, {2, 2, 2}), method(3, {3, 3, 3})};
+  const std::vector<ComparedMethod> reversed = {
+      method(3, {1, 1, 1}), method(2, {2, 2, 2}), method(1, {3, 3, 3})};
+  const auto mean = mean_order_agreement(std::vector{agrees, reversed});
+  REQUIRE(mean);
+  CHECK(mean->tau == Approx(0).margin(1e-12));
+  CHECK(mean->interval->low == Approx(0).margin(1e-12));
+  CHECK(mean->chance.high == Approx(0).margin(1e-12));  // whatever one gains the other loses
+  const std::vector<std::vector<ComparedMethod>> one{agrees};
+  const auto alone = mean_order_agreement(one), as_one = order_agreement(agrees);
+  CHECK(alone->tau == as_one->tau);
+  CHECK(alone->interval->low == as_one->interval->low);
+  CHECK(alone->chance.high == as_one->chance.high);
+  CHECK_FALSE(mean_order_agreement({}));
+}
