@@ -45,10 +45,11 @@ constexpr ReportsFolder kReports[] = {
     {"run/selftest", "run/records run/bench run/import"},
     {"show/page", "run/records show/tables show/pictures"},
     {"show/viewer", "run/records show/pictures run/bench"},
+    {"show/board", "run/records show/tables show/page"},
     {"show/figures", "run/records show/tables show/pictures run/bench show/page run/perf"},
     {"verbs",
      "run/records show/tables show/pictures run/bench run/parcels run/executors run/provenance "
-     "run/import run/perf run/selftest show/page show/viewer show/figures"}};
+     "run/import run/perf run/selftest show/page show/board show/viewer show/figures"}};
 
 std::vector<Layer> layers_of_reports() {
   std::vector<Layer> all;

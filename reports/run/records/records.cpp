@@ -173,8 +173,8 @@ void append_record(const fs::path& file, const Record& record) {
   append_line(file, record_to_json(record).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte) {
-  RecordList records;
+std::vector<Record> read_every_record(const fs::path& file, std::uintmax_t from_byte) {
+  std::vector<Record> records;
   std::istringstream lines(with_exit_code(ExitCode::kBadPrediction, [&] {
     return is_there(file) ? end_of_file(file, from_byte) : "";
   }));
@@ -186,8 +186,14 @@ std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte)
     if (json.is_discarded())
       log::warn(where + ": torn record (interrupted write) or nested too deeply, skipped");
     else
-      records.add(record_from_json(json, where));
+      records.push_back(record_from_json(json, where));
   }
+  return records;
+}
+
+std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte) {
+  RecordList records;
+  for (Record& record : read_every_record(file, from_byte)) records.add(std::move(record));
   return records.take();
 }
 

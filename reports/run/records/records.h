@@ -76,6 +76,10 @@ void append_record(const fs::path& file, const Record& record);
 // that is JSON but no record, a newer schema.
 std::vector<Record> read_records(const fs::path& file, std::uintmax_t from_byte = 0);
 
+// The same with every line, also those that later ones of their cell replace: what a store has been
+// told so far. Errors: as above.
+std::vector<Record> read_every_record(const fs::path& file, std::uintmax_t from_byte = 0);
+
 // Is this metric the machine's, not the method's: speed, time, memory?
 bool is_cost(const std::string& metric);
 
