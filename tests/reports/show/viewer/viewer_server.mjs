@@ -1,28 +1,29 @@
-// `glint-bench view` as a child of the test.
+// `glint-bench view` and `train --view` as children of the test.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { request } from "node:http";
 
-// {address, stop()}; stop() sends Ctrl-C and checks how the server ends.
-export async function startServer(bench, runs) {
-  const server = spawn(bench, ["view", ...runs, "--no-browser"], {
-    stdio: ["ignore", "pipe", "inherit"],
-  });
+// {address, ended, stop()}: ended is a promise of the exit code; stop() sends Ctrl-C and checks how
+// the server ends.
+export async function startServer(bench, verb) {
+  const server = spawn(bench, [...verb, "--no-browser"], { stdio: ["ignore", "pipe", "pipe"] });
   const ended = new Promise((done) => server.once("exit", (code, signal) => done(code ?? signal)));
   const address = await new Promise((done, fail) => {
     let text = "";
-    server.stdout.on("data", (data) => {
+    const listen = (data) => {
       text += data;
       const found = text.match(/http:\/\/\S+/);
       if (found) done(found[0]);
-    });
-    ended.then((code) => fail(new Error(`glint-bench view ended with ${code}`)));
+    };
+    server.stdout.on("data", listen);
+    server.stderr.on("data", listen);
+    ended.then((code) => fail(new Error(`glint-bench ${verb[0]} ended with ${code}: ${text}`)));
   });
   const stop = async () => {
     server.kill("SIGINT");
     assert.ok([0, 130].includes(await ended), "Ctrl-C ends it");
   };
-  return { address, stop };
+  return { address, ended, stop };
 }
 
 // The status of a WebSocket's first request: 101, or why there is none.

@@ -1,13 +1,15 @@
 // The viewer's page and its server in headless Chromium. Arguments: glint-bench, a folder of a
-// store with runs of 2dgs and glint on one scene, folder for screenshots.
+// store with runs of 2dgs and glint on one scene, folder for screenshots, folder of a scene to
+// train on (without: no training is watched).
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, readdirSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { launchBrowser } from "../page/chromium.mjs";
 import { readExr } from "./exr.mjs";
 import { boxOf, breathe, drag, hold, openPage, shotsInto, textOf, until } from "./viewer_page.mjs";
 import { socketStatus, startServer } from "./viewer_server.mjs";
 
-const [bench, store, shots] = process.argv.slice(2);
+const [bench, store, shots, dataset] = process.argv.slice(2);
 const shot = shotsInto(shots);
 const [scene] = readdirSync(`${store}/runs`);
 const runOf = (method) => `${store}/runs/${scene}/${method}/0`;
@@ -250,8 +252,42 @@ async function testRefusals(address) {
   assert.equal(await socketStatus(address, `/ws?token=${token}`, named), 403, "DNS rebinding");
 }
 
-async function run(browser, name, runs, body) {
-  const server = await startServer(bench, runs);
+const kSteps = 3000;
+
+// Frames come while it trains; a pause holds it, and looking goes on.
+async function testTraining(page, heard) {
+  const iteration = () => heard.frames.at(-1)?.iteration ?? 0;
+  await until(() => iteration() > 0, "a frame of the training");
+  const first = iteration();
+  await until(() => iteration() > first, "a newer one by itself");
+  await page.click("#pause");
+  const told = () => heard.texts.filter(({ type }) => type === "state").at(-1);
+  const { iteration: held } = await until(() => told()?.paused && told(), "it is held");
+  await page.keyboard.press("]");
+  await rests(page, heard);
+  assert.equal(iteration(), held, "the model rests");
+  assert.match(await textOf(page, "#training"), new RegExp(`/ ${kSteps / 1000},000`));
+  await shot(page, "training");
+  await page.click("#pause");
+  await until(() => told().iteration > held, "it goes on");
+}
+
+// Nobody who looks keeps a training from its end.
+async function watchTraining(browser) {
+  const folder = mkdtempSync(`${tmpdir()}/glint-watched-`);
+  const options = ["--method", "2dgs", "--iterations", String(kSteps), "--run", `${folder}/run`];
+  const verb = ["train", "--view", "--dataset", dataset, ...options];
+  try {
+    const server = await run(browser, "a training", verb, testTraining, false);
+    assert.equal(await server.ended, 0, "it ends well");
+    assert.ok(existsSync(`${folder}/run/interface.ply`), "with its surfels");
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+}
+
+async function run(browser, name, verb, body, stops = true) {
+  const server = await startServer(bench, verb);
   const opened = await openPage(browser);
   const heard = listen(opened.page);
   try {
@@ -260,14 +296,15 @@ async function run(browser, name, runs, body) {
     assert.deepEqual(opened.problems, [], `${name}: console and network stay quiet`);
     await opened.close();
   } finally {
-    await server.stop();
+    if (stops) await server.stop();
   }
   console.log(`ok: ${name}`);
+  return server;
 }
 
 const browser = await launchBrowser({ webgl: false });
 try {
-  await run(browser, "one run", [runOf("glint")], async (page, heard, address) => {
+  await run(browser, "one run", ["view", runOf("glint")], async (page, heard, address) => {
     await testRefusals(address);
     await testMotion(page, heard);
     await testLayers(page, heard);
@@ -276,7 +313,8 @@ try {
     await testPath(page, heard);
     await testReload(page, heard);
   });
-  await run(browser, "two runs", [runOf("glint"), runOf("2dgs")], testTwoRuns);
+  await run(browser, "two runs", ["view", runOf("glint"), runOf("2dgs")], testTwoRuns);
+  if (dataset) await watchTraining(browser);
 } finally {
   await browser.close();
 }

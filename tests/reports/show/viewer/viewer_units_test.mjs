@@ -257,6 +257,9 @@ class Params {
   choice(name, allowed, fallback) {
     return allowed.includes(this.values[name]) ? this.values[name] : fallback;
   }
+  list(name) {
+    return this.values[name];
+  }
   flag(name, fallback) {
     return this.values[name] ?? fallback;
   }
@@ -270,11 +273,12 @@ test("an address brings the state back", () => {
   state.up = "-y";
   state.rig.up = [0, -1, 0];
   state.scales.reflection = 2;
+  state.hidden = states.setsOf(kHello.runs).slice(0, 1);
   state.cut = { axis: "view", direction: [0, 1, 0], flipped: true, share: 0.3 };
   const values = states.addressValues(kHello, state);
   const back = states.stateOfAddress(kHello, new Params(values));
   near(back.rig.pose.forward, state.rig.pose.forward, "pose", 1e-4);
-  for (const name of ["left", "right", "up", "scales", "cut"])
+  for (const name of ["left", "right", "up", "scales", "hidden", "cut"])
     assert.deepEqual(back[name], state[name], name);
   const odd = states.stateOfAddress(kHello, new Params({ left: "gone", view: "test:99", up: "q" }));
   assert.deepEqual([odd.left.run, odd.view, odd.up], [0, null, "scene"], "nonsense is left out");
