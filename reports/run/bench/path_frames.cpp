@@ -2,6 +2,7 @@
 #include "reports/run/bench/path_frames.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "glint/core/interrupt.h"
 #include "glint/core/nearest.h"
@@ -10,41 +11,67 @@
 #include "glint/scene/image_files.h"
 #include "reports/run/bench/video.h"
 #include "reports/show/pictures/layers.h"
+#include "reports/show/pictures/relit.h"
 #include "reports/show/pictures/strip.h"
 
 namespace glint {
+
+// A picture of each frame: of a map, or of none in the table (layer_without_glass()).
+struct ShownLayer {
+  PageLayer layer;
+  std::optional<MapRow> row;
+
+  Image map_in(const MapSet& output) const { return row ? output[*row] : without_glass(output); }
+};
 
 namespace {
 
 constexpr const char* kPathFile = "path.json";
 constexpr std::size_t kDepthFrames = 8;  // that give the range of depths where there is no truth
 
-// The maps to show of what was rendered.
-std::vector<MapRow> chosen_maps(const MapSet& output, const std::vector<std::string>& wanted) {
-  std::vector<std::string> ids;
-  std::vector<MapRow> rows;
+std::vector<ShownLayer> shown_layers(const MapSet& output) {
+  std::vector<ShownLayer> shown;
   output.for_each([&](const MapRow& row, const Image&) {
-    if (row.shown_file().empty()) return;
-    ids.emplace_back(row.id);
-    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), row.id) != wanted.end())
-      rows.push_back(row);
+    if (!row.shown_file().empty()) shown.push_back({layer_of(row), row});
   });
-  for (const std::string& id : wanted)
+  if (!without_glass(output).empty()) shown.push_back({layer_without_glass(), {}});
+  return shown;
+}
+
+std::vector<std::string> ids_of(const std::vector<ShownLayer>& layers) {
+  std::vector<std::string> ids;
+  for (const ShownLayer& one : layers) ids.push_back(one.layer.id);
+  return ids;
+}
+
+// Those of what was rendered that are wanted, in the order in which they are.
+std::vector<ShownLayer> chosen_layers(
+    const MapSet& output, const std::vector<std::string>& wanted
+) {
+  std::vector<ShownLayer> all = shown_layers(output);
+  if (wanted.empty()) return all;
+  const std::vector<std::string> ids = ids_of(all);
+  std::vector<ShownLayer> chosen;
+  for (const std::string& id : wanted) {
+    const auto known = std::find(ids.begin(), ids.end(), id);
     GLINT_CHECK(
-        std::find(ids.begin(), ids.end(), id) != ids.end(),
+        known != ids.end(),
         kUsage,
         "--maps {}: the method renders no such map; {}its maps: {}",
         id,
         did_you_mean(id, ids),
         comma_list(ids)
     );
-  return rows;
+    chosen.push_back(all[static_cast<std::size_t>(known - ids.begin())]);
+  }
+  return chosen;
 }
 
 // What a path leaves in its folder, beside the cameras.
 std::vector<fs::path> outputs_in(const fs::path& folder) {
   std::vector<fs::path> outputs = {folder / "layers", folder / "layers.mp4"};
   for (const MapRow& row : maps()) outputs.push_back(folder / row.id);
+  outputs.push_back(folder / layer_without_glass().id);
   return outputs;
 }
 
@@ -76,33 +103,23 @@ DepthScale path_depth_scale(
   return depth_scale({}, frames);
 }
 
-namespace {
-
-std::vector<std::string> ids_of(const std::vector<MapRow>& rows) {
-  std::vector<std::string> ids;
-  for (const MapRow& row : rows) ids.emplace_back(row.id);
-  return ids;
-}
-
-}  // namespace
-
 struct PathRendering::Frames {
   Method& method;
   PathFrames options;
-  std::vector<MapRow> maps;
+  std::vector<ShownLayer> layers;
   DepthScale scale;
   PathResult result;
 
   void write(std::size_t frame, const MapSet& output) const {
     std::vector<TitledPicture> pictures;
-    for (const MapRow& row : maps) {
-      const Image& map = output[row];
+    for (const ShownLayer& shown : layers) {
+      const Image map = shown.map_in(output);
       if (map.empty()) continue;
-      const fs::path file = options.folder / row.id / fmt::format("{:04}", frame);
-      pictures.push_back({std::string(row.title), layer_picture(layer_of(row), map, scale)});
+      const fs::path file = options.folder / shown.layer.id / fmt::format("{:04}", frame);
+      pictures.push_back({shown.layer.title, layer_picture(shown.layer, map, scale)});
       write_png(file.string() + ".png", pictures.back().picture);
-      if (options.values && !row.file.empty())
-        write_exr(file.string() + ".exr", map, row.kind == MapKind::kNormal);
+      if (options.values && shown.row && !shown.row->file.empty())
+        write_exr(file.string() + ".exr", map, shown.row->kind == MapKind::kNormal);
     }
     if (frame_sheet.here() && !pictures.empty())
       write_png(options.folder / "layers" / fmt::format("{:04}.png", frame), frame_sheet(pictures));
@@ -112,12 +129,12 @@ struct PathRendering::Frames {
 PathRendering::PathRendering(Method& method, const Scene& scene, PathFrames options) {
   const std::vector<Camera>& cameras = options.path.cameras;
   GLINT_CHECK(!cameras.empty(), kUsage, "a path without frames");
-  const std::vector<MapRow> rows = chosen_maps(method.render(cameras.front()), options.maps);
+  const auto layers = chosen_layers(method.render(cameras.front()), options.maps);
   clear_path_folder(options.folder);
   write_camera_path(options.folder / kPathFile, options.path);
   const DepthScale scale = path_depth_scale(method, scene, cameras);
   frames_ = std::make_unique<Frames>(Frames{
-      method, std::move(options), rows, scale, {0, ids_of(rows), {}, {}}});
+      method, std::move(options), layers, scale, {0, ids_of(layers), {}, {}}});
 }
 
 PathRendering::~PathRendering() = default;

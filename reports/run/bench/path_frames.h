@@ -16,13 +16,13 @@ namespace glint {
 struct PathFrames {
   fs::path folder;                // paths/<name>/ of a run
   CameraPath path;                // with its frames a second
-  std::vector<std::string> maps;  // ids; empty: every map that the method renders
+  std::vector<std::string> maps;  // ids, "away": the glass taken away; empty: all that there are
   bool values = false;            // EXR beside the pictures, as in renders/
 };
 
 struct PathResult {
   std::size_t frames = 0;
-  std::vector<std::string> maps;  // ids, in the order of the table
+  std::vector<std::string> maps;  // ids, in the order of their pictures
   fs::path video;                 // empty: none
   std::string no_video;           // why
 };

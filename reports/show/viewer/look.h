@@ -9,7 +9,7 @@
 
 #include "glint/core/config.h"
 #include "glint/scene/camera.h"
-#include "reports/show/viewer/relit.h"
+#include "reports/show/pictures/relit.h"
 
 namespace glint {
 

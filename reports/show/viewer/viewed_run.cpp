@@ -14,7 +14,6 @@ namespace {
 constexpr float kHidden = -30;  // logit of an opacity that shows nowhere
 constexpr float kUnknown = 0.5f;
 constexpr ImageSize kProbeSize{64, 36};  // of the render that tells which layers there are
-constexpr const char* kAway = "away";
 
 // Of what a method rendered; `view` tells which truth there is.
 std::vector<PageLayer> layers_in(const MapSet& found, const View& view) {
@@ -22,8 +21,7 @@ std::vector<PageLayer> layers_in(const MapSet& found, const View& view) {
   for (const MapRow& row : maps_in(found)) {
     layers.push_back(layer_of(row));
     if (row.id != "rgb") continue;
-    if (!without_glass(found).empty())
-      layers.push_back({kAway, "Glass taken away", LayerStyle::kPicture});
+    if (!without_glass(found).empty()) layers.push_back(layer_without_glass());
     layers.push_back({"error", "Error", LayerStyle::kError});
   }
   if (view.truth.has("normal") && found.has("normal"))
@@ -109,7 +107,8 @@ MapSet ViewedRun::maps(const Look& look, const Camera& camera, const View* snapp
 LayerMaps ViewedRun::layers(const Look& look, const Camera& camera, const View* snapped) {
   MapSet found = maps(look, camera, snapped);
   LayerMaps layers;
-  if (Image away = without_glass(found); !away.empty()) layers[kAway] = std::move(away);
+  if (Image away = without_glass(found); !away.empty())
+    layers[layer_without_glass().id] = std::move(away);
   found["rgb"] = with_scales(found, look.scales);
   for (const MapRow& row : maps_in(found)) layers[std::string(row.id)] = std::move(found[row]);
   if (snapped != nullptr) add_errors(*snapped, layers);

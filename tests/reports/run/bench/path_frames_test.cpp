@@ -65,6 +65,30 @@ TEST_CASE("a path leaves a picture of each map and frame, the cameras, and all s
   CHECK(read_camera_path(options.folder / "path.json", {}).cameras.size() == 3);
 }
 
+TEST_CASE("the glass taken away is shown where maps tell, in the order that is asked for") {
+  struct Pane : FakeMethod {
+    using FakeMethod::FakeMethod;
+    MapSet render(const Camera& camera) override {
+      MapSet output = FakeMethod::render(camera);
+      output["transparency"] = Image(camera.width, camera.height, 1, 1.0f);
+      output["transmission"] = Image(camera.width, camera.height, 3, 0.25f);
+      return output;
+    }
+  };
+  const test::TempFolder folder;
+  const SearchPath no_ffmpeg(folder.path().string());
+  Pane method(Json::object());
+  const Scene scene = fake_scene("room");
+  PathFrames options = path_in(folder / "orbit", scene);
+  CHECK(render_path(method, scene, options).maps.back() == "away");
+  options.maps = {"away", "rgb"};
+  CHECK(render_path(method, scene, options).maps == options.maps);
+  CHECK(read_image(options.folder / "away/0001.png", 3).at(2, 2, 1) == Approx(0.25f).margin(0.01));
+  options.maps = {"depth"};
+  render_path(method, scene, options);
+  CHECK(!fs::exists(options.folder / "away"));
+}
+
 TEST_CASE("chosen maps alone are rendered, over an earlier path, over nothing else") {
   const test::TempFolder folder;
   const SearchPath no_ffmpeg(folder.path().string());

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "glint/render/transport.h"
-#include "reports/show/viewer/relit.h"
+#include "reports/show/pictures/relit.h"
 #include "tests/support/random_values.h"
 
 using namespace glint;

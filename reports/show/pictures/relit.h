@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "glint/scene/maps.h"
+#include "reports/show/pictures/layers.h"
 
 namespace glint {
 
@@ -28,5 +29,7 @@ Image with_scales(const MapSet& maps, const LightScales& scales);
 // [H][W][3]: what is behind the glass where it is (t > 0.5), without what it mirrors; the picture
 // elsewhere. Empty: the maps do not tell.
 Image without_glass(const MapSet& maps);
+// How that is shown; its id is that of no map.
+PageLayer layer_without_glass();
 
 }  // namespace glint

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reports/show/viewer/relit.h"
+#include "reports/show/pictures/relit.h"
 
 #include <algorithm>
 
@@ -101,5 +101,7 @@ Image without_glass(const MapSet& maps) {
     }
   return picture;
 }
+
+PageLayer layer_without_glass() { return {"away", "Glass taken away", LayerStyle::kPicture}; }
 
 }  // namespace glint

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""An animated WebP of a camera path, for pages that show no video: what README opens with.
+
+    glint-bench render --run RUN --path spline --frames 48 --maps rgb,away,reflected,depth,behind_depth --to FOLDER
+    scripts/moving_picture.py FOLDER docs/images/moving.webp --fps 12
+
+Takes FOLDER/layers/0000.png, ... in their order, forth and, with --back, back again. Needs Pillow with WebP.
+Exit codes: 1 usage, 3 no frames, 4 the file is larger than --most-bytes (it is not written).
+"""
+import argparse
+import io
+import pathlib
+import sys
+
+
+def frames_in(folder, width):
+    from PIL import Image
+
+    frames = []
+    for file in sorted((folder / "layers").glob("*.png")):
+        picture = Image.open(file).convert("RGB")
+        height = round(picture.height * width / picture.width)
+        frames.append(picture.resize((width, height), Image.LANCZOS))
+    return frames
+
+
+def encoded(frames, fps, quality):
+    data = io.BytesIO()
+    options = {"save_all": True, "append_images": frames[1:], "duration": round(1000 / fps), "loop": 0}
+    frames[0].save(data, "WEBP", quality=quality, method=6, **options)
+    return data.getvalue()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("folder", type=pathlib.Path, help="of `render --path --to`")
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("--fps", type=float, default=12)
+    parser.add_argument("--width", type=int, default=900, help="pixels")
+    parser.add_argument("--quality", type=int, default=60, help="of WebP, 0 to 100")
+    parser.add_argument("--back", action="store_true", help="and back again, so that it does not jump")
+    parser.add_argument("--most-bytes", type=int, default=3_000_000)
+    given = parser.parse_args()
+    frames = frames_in(given.folder, given.width)
+    if not frames:
+        print(f"{given.folder / 'layers'}: no frames; glint-bench render --path writes them", file=sys.stderr)
+        return 3
+    data = encoded(frames + frames[-2:0:-1] if given.back else frames, given.fps, given.quality)
+    if len(data) > given.most_bytes:
+        print(f"{len(data)} bytes; take fewer frames, or a lower --quality or --width", file=sys.stderr)
+        return 4
+    unfinished = given.out.with_name(given.out.name + ".new")
+    unfinished.write_bytes(data)
+    unfinished.rename(given.out)
+    print(f"{given.out}: {len(frames)} frames, {len(data)} bytes")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
