@@ -189,7 +189,9 @@ void add_path_options(CLI::App& verb, RenderArguments& arguments) {
       ->capture_default_str();
   add("--radius", arguments.radius, "of the orbit, metres; else the cameras' mean")
       ->check(above_zero());
-  add("--maps", arguments.maps, "rgb,depth,..., and away: the glass taken away; all that there are if not given")
+  add("--maps",
+      arguments.maps,
+      "rgb,depth,..., and away: the glass taken away; all that there are if not given")
       ->delimiter(',');
   add("--to", arguments.to, "folder of the frames; RUN/paths/NAME if not given");
   verb.add_flag("--values", arguments.values, "EXR beside the pictures")->needs(path);

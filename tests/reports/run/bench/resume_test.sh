@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Trainings that are killed with -9 at random points go on and end with the bytes of ones that were not:
-#   resume_test.sh GLINT_BENCH [kills (50) [seed (1)]]
+#   resume_test.sh GLINT_BENCH [kills (24) [seed (1)]]
 # One method of each family, in turns; half of the trainings are killed again while they go on.
 set -euo pipefail
-bench=$1 kills=${2:-50}
+bench=$1 kills=${2:-24}
 RANDOM=${3:-1}
 methods=(2dgs envgs glint glint/release pgsr ref-gs rt-splatting tsgs)
 folder=$(mktemp -d)

@@ -65,6 +65,7 @@ async function testSurfels(page, server, { shot, wholeShown }) {
   await until(() => server.last("look").style === "discs", "discs");
   await page.uncheck("#set-interface");
   await until(() => server.last("look").hidden.join() === "interface", "a set taken away");
+  await until(() => page.url().includes("hidden=interface"), "the address");
   await page.reload();
   await wholeShown(page, server);
   assert.equal(server.last("look").hidden.join(), "interface", "the address keeps it");
