@@ -29,6 +29,10 @@ Image mask_over_image(const Image& mask, const Image& picture) {
   return result;
 }
 
+bool has_values(const Image& map) {
+  return std::any_of(map.values().begin(), map.values().end(), [](float v) { return v != 0; });
+}
+
 // What the maps of one view are drawn with.
 struct ViewPictures {
   Image image;  // as displayed
@@ -74,23 +78,38 @@ void ContactSheet::add(
   if (column >= columns_ || column * views_ / columns_ != view) return;
   const ViewPictures pictures{display_image(truth.radiance, exposure), exposure};
   std::size_t row = 0;
-  const auto add_row = [&](const std::string& title, const Image& picture) {
+  const auto add_row = [&](const std::string& title, const Image& picture, bool says) {
     if (row == grid_.rows.size()) {
       grid_.rows.emplace_back(static_cast<std::size_t>(columns_));
       grid_.row_titles.push_back(title);
+      says_anything_.push_back(false);
     }
+    says_anything_[row] = says_anything_[row] || says;
     if (!picture.empty())
       grid_.rows[row][static_cast<std::size_t>(column)] = resize_image(picture, tile_);
     ++row;
   };
-  add_row(std::string(MapId("rgb").row().title), pictures.image);
+  add_row(std::string(MapId("rgb").row().title), pictures.image, true);
   for (const bool is_truth : {true, false})
     for (const MapRow& entry : maps()) {
       const Image& map = (is_truth ? truth.maps : priors)[entry];
       if (!is_shown(entry, is_truth) || map.empty()) continue;  // not made
       const float far_depth = is_truth ? far_depth_ : kFarPrior;
-      add_row(title_of(entry, is_truth), pictures.of(entry.kind, map, far_depth));
+      const bool says = has_values(map);
+      add_row(title_of(entry, is_truth), pictures.of(entry.kind, map, far_depth), says);
     }
+}
+
+ByteImage ContactSheet::image() const {
+  PictureGrid shown = grid_;
+  shown.rows.clear();
+  shown.row_titles.clear();
+  for (std::size_t row = 0; row < grid_.rows.size(); ++row) {
+    if (!says_anything_[row]) continue;
+    shown.rows.push_back(grid_.rows[row]);
+    shown.row_titles.push_back(grid_.row_titles[row]);
+  }
+  return draw_bytes(draw_grid(shown));
 }
 
 }  // namespace glint

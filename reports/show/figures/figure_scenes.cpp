@@ -2,6 +2,7 @@
 #include "reports/show/figures/figure_scenes.h"
 
 #include <algorithm>
+#include <set>
 
 #include "glint/core/progress.h"
 #include "reports/show/page/page_scenes.h"
@@ -9,6 +10,8 @@
 namespace glint {
 
 namespace {
+
+constexpr const char* kSecondLayer = "layer_2_depth";
 
 std::size_t glass_pixels(const View& view) {
   const auto mask = view.truth["glass"].values();
@@ -122,6 +125,19 @@ std::size_t figure_view(const std::vector<View>& views) {
   });
   if (most == views.end() || glass_pixels(*most) == 0) return views.size() / 2;
   return static_cast<std::size_t>(most - views.begin());
+}
+
+std::vector<FigureScene> with_chosen_methods(
+    std::vector<FigureScene> scenes, const MethodChoice& choice
+) {
+  for (FigureScene& scene : scenes) {
+    const bool is_layered = choice.globs.empty() && scene.truth.has(kSecondLayer);
+    std::set<std::string> left_out;
+    for (const auto& [id, layers] : scene.methods)
+      if (!choice.in_pictures(id) && !(is_layered && layers.has(kSecondLayer))) left_out.insert(id);
+    for (const std::string& id : left_out) scene.methods.erase(id), scene.runs.erase(id);
+  }
+  return scenes;
 }
 
 LegendLine views_line(const std::vector<FigureScene>& scenes) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "glint/drawing/picture_grid.h"
+#include "reports/show/figures/figure_methods.h"
 #include "reports/show/figures/figures.h"
 #include "reports/show/figures/map_crops.h"
 #include "reports/show/pictures/layers.h"
@@ -50,6 +51,12 @@ inline constexpr const char* kViewRule = "the test view with the largest share o
 
 // The view after kViewRule, the first of equals; without glass the middle one.
 std::size_t figure_view(const std::vector<View>& views);
+
+// With the methods for pictures only; where data tell the layers of glass behind glass apart, also
+// variants that render a second one.
+std::vector<FigureScene> with_chosen_methods(
+    std::vector<FigureScene> scenes, const MethodChoice& choice
+);
 
 // "views: 0002 of room_1, ...", and the rule that chose them.
 LegendLine views_line(const std::vector<FigureScene>& scenes);

@@ -25,21 +25,11 @@ void keep(const fs::path& png, const Drawing& drawing, std::vector<fs::path>& wr
   written.push_back(png);
 }
 
-// With the methods for pictures only.
-std::vector<FigureScene> chosen(std::vector<FigureScene> scenes, const MethodChoice& choice) {
-  for (FigureScene& scene : scenes) {
-    const auto left_out = [&](const auto& entry) { return !choice.in_pictures(entry.first); };
-    std::erase_if(scene.methods, left_out);
-    std::erase_if(scene.runs, left_out);
-  }
-  return scenes;
-}
-
 std::vector<fs::path> draw_figures(const FigureOptions& options) {
   const MethodChoice choice{options.methods};
   const auto records = read_records(options.folder / "records.jsonl");
   const auto all_scenes = figure_scenes(records, options);
-  const auto scenes = chosen(all_scenes, choice);
+  const auto scenes = with_chosen_methods(all_scenes, choice);
   const fs::path folder = options.folder / "figures";
   std::vector<fs::path> written;
   keep(folder / "qualitative.png", draw_grid(qualitative_figure(scenes)), written);

@@ -193,6 +193,26 @@ TEST_CASE("by default pictures show methods and curves no ablations; globs choos
   CHECK_FALSE(chosen.in_pictures("glint"));
 }
 
+TEST_CASE("variants that render a second layer are in pictures of data that tell it apart") {
+  const Image map(kWidth, kHeight, 1, 2.0f);
+  const LayerMaps flat{{"depth", map}}, layered{{"depth", map}, {"layer_2_depth", map}};
+  FigureScene scene =
+      scene_of({{"glint", flat}, {"glint/nested", layered}, {"glint/release", flat}});
+  scene.runs = {{"glint", "a"}, {"glint/nested", "b"}, {"glint/release", "c"}};
+  const auto ids_of = [](const std::vector<FigureScene>& scenes) {
+    std::vector<std::string> ids;
+    for (const auto& [id, run] : scenes.at(0).runs) ids.push_back(id);
+    return ids;
+  };
+  CHECK(ids_of(with_chosen_methods({scene}, {})) == std::vector<std::string>{"glint"});
+  scene.truth = layered;
+  const std::vector<std::string> both{"glint", "glint/nested"};
+  const auto shown = with_chosen_methods({scene}, {});
+  CHECK(ids_of(shown) == both);
+  CHECK(shown[0].methods.size() == 2);
+  CHECK(ids_of(with_chosen_methods({scene}, {{"glint"}})) == std::vector<std::string>{"glint"});
+}
+
 TEST_CASE("chosen methods alone are in pictures, whatever else was run") {
   const test::TempFolder folder;
   add_run(folder.path(), "2dgs", 0.4f);

@@ -101,6 +101,8 @@ export class MockServer {
     this.sockets += 1;
     this.inFlight = false;
     this.socket = socket;
+    clearTimeout(this.timer); // of a page that has gone
+    this.next = null;
     socket.onMessage((text) => this.#receive(JSON.parse(text)));
     this.tell(this.hello);
   }
@@ -154,6 +156,7 @@ export class MockServer {
 
   // A frame for a look, whatever is in flight.
   async frame(look, { whole = true, size = look.size, iteration = null, color } = {}) {
+    const { socket } = this;
     const images = [];
     for (const { run, layer } of look.panes) {
       const text = `${this.hello.runs[run].title} ${layer}`;
@@ -161,8 +164,9 @@ export class MockServer {
     }
     const numbers = { ms: 12.3, pixels_per_second: 2.6e6, surfels: 90930, iteration };
     const header = { type: "frame", serial: look.serial, whole, size, ...numbers };
+    if (socket !== this.socket) return; // painted for a page that has gone meanwhile
     this.sent = header;
-    this.socket.send(Buffer.from(packFrame(header, images)));
+    socket.send(Buffer.from(packFrame(header, images)));
   }
 
   raw(bytes) {
