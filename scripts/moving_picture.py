@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: MIT
 """An animated WebP of a camera path, for pages that show no video: what README opens with.
 
+    glint-bench dataset make glassroom --scene room_2 --width 240 --height 135 --views 48 --spp 48 --out ROOM
+    glint-bench train --dataset ROOM --method glint/plus --iterations 8000 --run RUN
     glint-bench render --run RUN --path orbit --frames 60 --size 320x180 \\
         --maps rgb,away,reflection,depth,behind_depth,normal --to FOLDER
-    scripts/moving_picture.py FOLDER docs/images/moving.webp --columns 3
+    scripts/moving_picture.py FOLDER docs/images/moving.webp --columns 3 --quality 66
 
 Takes FOLDER/layers/0000.png, ... in their order, forth and, with --back, back again, and lays the maps of a frame out
 in so many columns. Needs Pillow with WebP.

@@ -6,6 +6,7 @@
 
 #include "glint/glint_model.h"
 #include "glint/scene/ply.h"
+#include "tests/support/image_difference.h"
 #include "tests/support/small_room.h"
 
 using namespace glint;
@@ -47,13 +48,6 @@ std::pair<SurfelCloud, SurfelCloud> frozen_run(const char* freeze, const char* f
   const SurfelCloud before = cloud_of(*method, file);
   for (int i = 40; i < kIterations; ++i) method->step(i);
   return {before, cloud_of(*method, file)};
-}
-
-float largest_difference(const Image& a, const Image& b) {
-  float largest = 0;
-  for (std::size_t i = 0; i < a.values().size(); ++i)
-    largest = std::max(largest, std::abs(a.values()[i] - b.values()[i]));
-  return largest;
 }
 
 }  // namespace

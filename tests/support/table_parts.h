@@ -21,11 +21,7 @@ inline Record record_of(const std::string& method, double psnr, std::uint64_t se
   return record_of({"room_1", method, seed}, {{"psnr", psnr}});
 }
 
-inline TableDefinition definition_of(const std::string& id) {
-  for (const TableDefinition& definition : table_definitions())
-    if (definition.id == id) return definition;
-  throw std::runtime_error("no table " + id);
-}
+inline TableDefinition definition_of(const std::string& id) { return table_definition(id); }
 
 inline const TableCell& cell_of(
     const Table& table, const std::string& method, const std::string& column

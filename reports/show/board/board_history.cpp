@@ -73,13 +73,6 @@ void fill_change(Latest& latest, HistoryValue& value) {
   if (value.num_pairs > 0) value.change = sum / value.num_pairs;
 }
 
-std::vector<const TableColumn*> measured_columns(const Table& table) {
-  std::vector<const TableColumn*> columns;
-  for (const TableColumn& column : table.columns)
-    if (!column.published && !column.metric.empty()) columns.push_back(&column);
-  return columns;
-}
-
 // `latest`: one a column, of the commits before.
 std::vector<HistoryValue> values_of(
     const Commit& commit,
@@ -106,11 +99,21 @@ SizedScenes all_scenes(const BoardGroup& group) {
 
 }  // namespace
 
+std::vector<const TableColumn*> measured_columns(const Table& table) {
+  std::vector<const TableColumn*> columns;
+  for (const TableColumn& column : table.columns)
+    if (!column.published && !column.metric.empty()) columns.push_back(&column);
+  return columns;
+}
+
+std::string BoardSource::dates() const {
+  return first_date == last_date ? first_date : first_date + " to " + last_date;
+}
+
 std::string BoardSource::text() const {
   std::string text = fmt::format("{}, commit {}", store, commit.empty() ? "unknown" : commit);
   if (!device.empty()) text += ", " + device;
-  if (!first_date.empty()) text += ", " + first_date;
-  if (last_date != first_date) text += " to " + last_date;
+  if (!first_date.empty()) text += ", " + dates();
   return fmt::format("{}, {} ({} records)", text, fmt::join(scenes, ", "), num_records);
 }
 
@@ -161,10 +164,7 @@ std::vector<HistoryEntry> board_history(const BoardGroup& group, const Table& ta
 }
 
 Table board_table(const BoardGroup& group) {
-  const auto definitions = table_definitions();
-  TableDefinition summary = *std::find_if(
-      definitions.begin(), definitions.end(), [](const auto& one) { return one.id == "summary"; }
-  );
+  TableDefinition summary = table_definition("summary");
   const std::vector<Record> records = group.records();
   summary.leave_out.clear();
   keep_rows_with_records(summary, records);

@@ -22,8 +22,12 @@ struct BoardSource {
   std::vector<std::uint64_t> seeds;
   std::size_t num_records = 0;
 
-  std::string text() const;  // "lab_a, commit abc, AMD EPYC, 2026-11-26, room_1 (3 records)"
+  std::string dates() const;  // "2026-11-26 to 2026-11-27"
+  std::string text() const;   // "lab_a, commit abc, AMD EPYC, 2026-11-26, room_1 (3 records)"
 };
+
+// The columns that are measured, whose values the history has.
+std::vector<const TableColumn*> measured_columns(const Table& table);
 
 // Of the method's shown records; with a metric, of those that have it.
 std::vector<BoardSource> board_sources(

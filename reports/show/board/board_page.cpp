@@ -34,11 +34,6 @@ std::string closed_card(const std::string& title, const std::string& body) {
   );
 }
 
-std::string dates_text(const BoardSource& source) {
-  return source.first_date == source.last_date ? source.first_date
-                                               : source.first_date + " to " + source.last_date;
-}
-
 std::vector<std::string> source_row(const TableRow& row, const BoardSource& source) {
   return {
       row.title,
@@ -46,7 +41,7 @@ std::vector<std::string> source_row(const TableRow& row, const BoardSource& sour
       source.commit,
       source.scored_by,
       source.device,
-      dates_text(source),
+      source.dates(),
       joined(source.scenes),
       fmt::format("{}", fmt::join(source.seeds, ", ")),
       fmt::format("{}", source.num_records)};
@@ -84,13 +79,6 @@ std::string history_text(const HistoryValue& value, const TableColumn& column) {
     text +=
         fmt::format(" ({} over {})", signed_text(*value.change, column.decimals), value.num_pairs);
   return text;
-}
-
-std::vector<const TableColumn*> columns_of(const Table& table) {
-  std::vector<const TableColumn*> columns;
-  for (const TableColumn& column : table.columns)
-    if (!column.published && !column.metric.empty()) columns.push_back(&column);
-  return columns;
 }
 
 // Commits in the order of their first day in the history.
@@ -156,7 +144,7 @@ std::string history_chart(const std::vector<HistoryEntry>& history, const TableC
 
 std::string history_html(const BoardGroup& group, const Table& table) {
   const auto history = board_history(group, table);
-  const auto columns = columns_of(table);
+  const auto columns = measured_columns(table);
   if (history.empty() || columns.empty()) return "";
   std::vector<std::string> head{"Method", "Commit", "Date", "Stores"};
   for (const TableColumn* column : columns) head.push_back(shown_title(*column));
@@ -232,7 +220,7 @@ Json sources_json(const BoardGroup& group, const Table& table) {
 }
 
 Json history_json(const BoardGroup& group, const Table& table) {
-  const auto columns = columns_of(table);
+  const auto columns = measured_columns(table);
   Json json = Json::array();
   for (const HistoryEntry& entry : board_history(group, table)) {
     Json values = Json::object();

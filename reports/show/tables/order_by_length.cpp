@@ -16,10 +16,7 @@ constexpr const char* kLengths = "docs/results/lengths.json";
 
 // The paper's methods and the columns that have published counterparts.
 TableDefinition compared_definition(const std::string& id) {
-  const auto definitions = table_definitions();
-  TableDefinition definition = *std::find_if(
-      definitions.begin(), definitions.end(), [&](const auto& one) { return one.id == id; }
-  );
+  TableDefinition definition = table_definition(id);
   std::erase_if(definition.columns, [](const TableColumn& column) {
     return column.paper_column.empty();
   });

@@ -107,11 +107,7 @@ std::string in_lines(const std::string& markdown) {
 Table front_page_table(const std::vector<Record>& records) {
   static const std::set<std::string> shown{
       "psnr", "psnr@glass", "normal-mae@glass", "depth-absrel@glass", "mesh-cd"};
-  const auto definitions = table_definitions();
-  TableDefinition summary =
-      *std::find_if(definitions.begin(), definitions.end(), [](const TableDefinition& definition) {
-        return definition.id == "summary";
-      });
+  TableDefinition summary = table_definition("summary");
   std::erase_if(summary.columns, [](const TableColumn& column) {
     return !shown.contains(column.metric);
   });

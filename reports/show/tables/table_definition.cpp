@@ -110,4 +110,10 @@ std::vector<TableDefinition> table_definitions() {
   return definitions;
 }
 
+TableDefinition table_definition(const std::string& id) {
+  for (TableDefinition& definition : table_definitions())
+    if (definition.id == id) return std::move(definition);
+  throw Error(ExitCode::kUsage, fmt::format("no table '{}'", id));
+}
+
 }  // namespace glint

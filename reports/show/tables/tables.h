@@ -103,6 +103,8 @@ inline constexpr int kRankShades[3][3] = {{200, 225, 255}, {225, 240, 255}, {242
 TableDefinition parse_table_definition(std::string_view toml, const std::string& id);
 // All embedded definitions, in the order of their ids.
 std::vector<TableDefinition> table_definitions();
+// One of them by its id. Errors (kUsage): there is none.
+TableDefinition table_definition(const std::string& id);
 
 // Means over views are in the records; here over the scenes that most methods have at one size
 // (common_scenes.h), then over seeds. Ranks on unrounded values. Every method with records has a

@@ -10,6 +10,7 @@
 #include "glint/core/progress.h"
 #include "reports/show/board/board_history.h"
 #include "tests/reports/run_words.h"
+#include "tests/support/count_of.h"
 #include "tests/support/table_parts.h"
 
 using namespace glint;
@@ -53,13 +54,6 @@ struct Stores {
 
 double shown_psnr(const BoardGroup& group) {
   return cell_of(board_table(group), "2dgs", "psnr").value;
-}
-
-std::size_t count_of(const std::string& text, const std::string& word) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
-    ++count;
-  return count;
 }
 
 }  // namespace

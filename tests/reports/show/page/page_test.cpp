@@ -21,10 +21,12 @@
 #include "reports/show/tables/method_title.h"
 #include "tests/reports/fake_method.h"
 #include "tests/support/captured.h"
+#include "tests/support/count_of.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/told_method.h"
 
 using namespace glint;
+using glint::test::count_of;
 
 namespace {
 
@@ -112,13 +114,6 @@ Json part(const Store& store, const std::string& name) {
   const std::string text = read_file(store.asset(name + ".js"));
   const std::size_t begin = text.find("]={");
   return Json::parse(text.substr(begin + 2, text.rfind(';') - begin - 2));
-}
-
-std::size_t count_of(const std::string& text, const std::string& word) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
-    ++count;
-  return count;
 }
 
 }  // namespace

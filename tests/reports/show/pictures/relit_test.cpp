@@ -3,6 +3,7 @@
 
 #include "glint/render/transport.h"
 #include "reports/show/pictures/relit.h"
+#include "tests/support/image_difference.h"
 #include "tests/support/random_values.h"
 
 using namespace glint;
@@ -34,13 +35,6 @@ MapSet glass_maps() {
             maps["specularity"].data()[i]})
     );
   return maps;
-}
-
-float largest_difference(const Image& a, const Image& b) {
-  float largest = 0;
-  for (std::size_t i = 0; i < a.values().size(); ++i)
-    largest = std::max(largest, std::abs(a.values()[i] - b.values()[i]));
-  return largest;
 }
 
 }  // namespace
