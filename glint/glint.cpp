@@ -28,11 +28,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glint/core/files.h"
+#include "glint/core/presence.h"
 #include "glint/glint_config.h"
 #include "glint/glint_model.h"
 #include "glint/render/map_ops.h"
 #include "glint/setting_guide.h"
 #include "glint/surfel_method.h"
+#include "glint/train/find_mirrors.h"
 #include "glint/train/photometric.h"
 #include "glint/train/planar_losses.h"
 #include "glint/train/trainer.h"
@@ -111,6 +114,7 @@ class Glint final : public MethodOf<GlintConfig> {
     StepStats stats;
     stats.iteration = iteration;
     set_phase(iteration);
+    if (looks_for_mirrors(iteration)) look_for_mirrors(stats);
     phase_.step = iteration;
     phase_.planes = !frozen_ && windows_.multi_view.at(iteration);
     if (config_.oracle) phase_.truth = &view.truth;
@@ -148,8 +152,19 @@ class Glint final : public MethodOf<GlintConfig> {
   }
   void render_quickly(bool quickly) override { quickly_ = quickly; }
 
+  void save(const std::string& folder) const override {
+    MethodOf::save(folder);
+    const fs::path mirrors = fs::path(folder) / kMirrorsFile;
+    if (model_.mirrors.planes.empty())
+      fs::remove(mirrors);
+    else
+      write_file(mirrors, mirrors_text(model_.mirrors.planes));
+  }
   void load(const std::string& folder) override {
     MethodOf::load(folder);
+    const fs::path mirrors = fs::path(folder) / kMirrorsFile;
+    model_.mirrors.planes.clear();
+    if (is_there(mirrors)) model_.mirrors.planes = mirrors_of(read_file(mirrors), mirrors.string());
     check_channels(folder, {kTransparency, kSpecular});
     if (config_.layers > 1) check_channels(folder, {kTransparency, kSpecular}, 1);
     phase_ = {};
@@ -165,6 +180,11 @@ class Glint final : public MethodOf<GlintConfig> {
   }
   bool visit_state(TrainingState& state) override {
     state("views", views_);
+    if (config_.plane_mirrors) {
+      std::string mirrors = mirrors_text(model_.mirrors.planes);
+      state("mirrors", mirrors);
+      if (state.reading()) model_.mirrors.planes = mirrors_of(mirrors, "mirrors of the checkpoint");
+    }
     return MethodOf::visit_state(state);
   }
   std::size_t num_surfels() const override {
@@ -173,8 +193,14 @@ class Glint final : public MethodOf<GlintConfig> {
     return sum;
   }
   std::vector<std::string> notes() const override {
-    if (!config_.oracle) return {};
-    return {"given the true depth, normals and transparency of the first surface: no rival"};
+    std::vector<std::string> notes;
+    if (config_.oracle)
+      notes.push_back(
+          "given the true depth, normals and transparency of the first surface: no rival"
+      );
+    if (const std::size_t count = model_.mirrors.planes.size(); count > 0)
+      notes.push_back(fmt::format("mirrors found: {}, which show what is seen from behind", count));
+    return notes;
   }
 
  private:
@@ -183,6 +209,37 @@ class Glint final : public MethodOf<GlintConfig> {
     GlintPhase phase = phase_;
     if (quickly_) phase.step = MirrorCutoffs::kSharingStep;
     return phase;
+  }
+  // When guidance of t begins, and twice more: the sharper the room, the better a mirror is found.
+  bool looks_for_mirrors(int iteration) const {
+    const int from = windows_.transmission_losses.transparency_from;
+    return config_.plane_mirrors &&
+           (iteration == from || iteration == 2 * from || iteration == 4 * from);
+  }
+  // What the transmission set has already made of the room in a mirror fades.
+  void look_for_mirrors(StepStats& stats) {
+    const View& any = scene_->train.front();
+    const FindMirrors settings{.low_albedo = config_.transmission_losses.low_albedo};
+    const auto planes = candidate_mirrors(
+        *scene_,
+        {model_.interface, model_.transmission},
+        model_.mirrors_call(any.camera, config_, phase_),
+        settings
+    );
+    model_.mirrors.planes.clear();
+    for (const MirrorPlane& plane : planes) {
+      const bool is_mirror = plane.likeness >= settings.least_likeness;
+      stats.events.push_back(fmt::format(
+          "a dark plane of {:.2f} x {:.2f} m, likeness {:.2f}: {}",
+          2 * plane.half_width,
+          2 * plane.half_height,
+          plane.likeness,
+          is_mirror ? "a mirror" : "none"
+      ));
+      if (!is_mirror) continue;
+      model_.mirrors.planes.push_back(plane);
+      fade_behind(plane, scene_->train, model_.transmission.cloud());
+    }
   }
   TrainableSet new_set(
       const PointCloud& points,
@@ -274,6 +331,7 @@ class Glint final : public MethodOf<GlintConfig> {
       transmission_losses_.add_surfel_entropy(
           iteration, kTransparencyChannel, interface, model_.interface, stats
       );
+    transmission_losses_.leave_out(model_.mirrors.seen());
     if (phase_.transmission)
       transmission_losses_.add(
           view,
@@ -308,6 +366,7 @@ class Glint final : public MethodOf<GlintConfig> {
   GlintPhase phase_;
   bool frozen_ = false, quickly_ = false;
   static constexpr std::size_t kTransparencyChannel = 0;  // of the interface's extra ones
+  static constexpr const char* kMirrorsFile = "mirrors.json";
   PhotometricLoss photometric_;
   PlanarLosses planes_;
   std::unique_ptr<PerceptualLoss> perceptual_;

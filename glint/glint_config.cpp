@@ -207,6 +207,7 @@ void set_plus(GlintConfig& config) {
 void set_nested(GlintConfig& config, int layers) {
   set_plus(config);
   config.layers = layers;
+  config.plane_mirrors = true;
 }
 
 void set_oracle(GlintConfig& config) {

@@ -40,6 +40,7 @@ struct GlintConfig {
   int layers = 1;  // surfaces along the straight ray that let light through and mirror it
   float layer_gap = 0.05f, pane_gap = 0.4f;  // metres, LayersCall
   MirrorCutoffs mirror;
+  bool plane_mirrors = false;  // looks for them when guidance of t begins (find_mirrors.h)
   // Initial sets.
   float initial_transparency = 0.01f, initial_specular = 1e-3f;
   float reflection_opacity = 0.1f;

@@ -46,12 +46,6 @@ void limit_behind(
   );
 }
 
-// The gradient of the colour alone.
-void color_gradient(const Image& dL_dcolor, int features, RasterOutputGradient& dL_doutput) {
-  clear_gradient(dL_dcolor.size(), features, dL_doutput);
-  add_color(dL_dcolor, dL_doutput.features);
-}
-
 }  // namespace
 
 void InnerLayers::see(

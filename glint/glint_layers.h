@@ -15,6 +15,7 @@
 // the reflection set alone, for in the interface set the pane they come from and the next one are
 // opaque. A layer to which less than 0.02 of a pixel's light gets is as without layers, and
 // density control of the transmission set looks at the first and the last of its rasterisations.
+// Mirrors are no layer: glint/train/plane_mirrors.h.
 #pragma once
 
 #include <vector>

@@ -35,7 +35,7 @@ const Image& GlintModel::compose(
        .linear_light = config.linear_light}
   );
   interface_output_ =
-      &interface.forward(camera, phase.interface_degree, interface_settings(config));
+      &interface.forward(camera, phase.interface_degree, interface_settings(config, phase.planes));
   surface_ = interface_output_;
   if (phase.truth != nullptr)
     surface_ = &given_.put(
@@ -51,16 +51,31 @@ const Image& GlintModel::compose(
     mirrored_.trace(
         buffer, reflection, phase.reflection_degree, config.mirror, phase.step, layers_.reflection
     );
-  return transport_.compose(layers_);
+  const Image& image = transport_.compose(layers_);
+  if (mirrors.planes.empty()) return image;
+  return mirrors.put(
+      {interface, transmission}, mirrors_call(camera, config, phase), buffer.depth, image
+  );
+}
+
+MirrorsCall GlintModel::mirrors_call(
+    const Camera& camera, const GlintConfig& config, const GlintPhase& phase
+) const {
+  return {
+      .camera = camera,
+      .settings = interface_settings(config, false),
+      .interface_degree = phase.interface_degree,
+      .transmission_degree = phase.transmission_degree,
+      .transmission = phase.transmission,
+      .gap = config.layer_gap,
+      .linear_light = config.linear_light};
 }
 
 // Their radiance in the place of the transmission set's.
 void GlintModel::add_inner_layers(const GlintConfig& config) {
-  RasterSettings settings = interface_settings(config);
-  settings.with_plane_distance = false;
   const LayersCall call{
       .camera = camera_,
-      .settings = settings,
+      .settings = interface_settings(config, false),
       .mirror = config.mirror,
       .reflection = phase_.reflection,
       .reflection_degree = phase_.reflection_degree,
@@ -76,9 +91,9 @@ void GlintModel::add_inner_layers(const GlintConfig& config) {
   );
 }
 
-RasterSettings GlintModel::interface_settings(const GlintConfig& config) const {
+RasterSettings GlintModel::interface_settings(const GlintConfig& config, bool with_planes) const {
   RasterSettings settings;
-  settings.with_plane_distance = phase_.planes;
+  settings.with_plane_distance = with_planes;
   const int t = interface_channels(interface.cloud()).transparency;
   if (config.detach_transparency && t >= 0) settings.detached_features = 1u << t;
   return settings;
@@ -113,7 +128,7 @@ void GlintModel::render_transmission(
   } else {
     RasterSettings settings;
     settings.with_surface = with_behind || layered_;
-    if (layered_) settings.detached_features = interface_settings(config).detached_features;
+    if (layered_) settings.detached_features = interface_settings(config, false).detached_features;
     const RasterOutput& out =
         transmission.forward(camera, phase_.transmission_degree, settings, near_limit_);
     copy_color(out.features, layers_.transmission);
@@ -138,7 +153,9 @@ void GlintModel::backward(
     bool interface_too,
     RasterOutputGradient& dL_dinterface
 ) {
-  const GlassLayers& dL_dlayers = transport_.compose_vjp(layers_, dL_dimage);
+  const GlassLayers& dL_dlayers = transport_.compose_vjp(
+      layers_, mirrors.put_vjp({interface, transmission}, dL_dimage, interface_too)
+  );
   const Rays* dL_drays = nullptr;
   if (phase_.reflection) dL_drays = &mirrored_.trace_backward(reflection, dL_dlayers.reflection);
   if (phase_.transmission) transmission_vjp(dL_dlayers.transmission, interface_too);
@@ -195,6 +212,7 @@ MapSet GlintModel::render(
   if (phase.reflection) out["reflection"] = layers_.reflection;
   add_components(config.linear_light, out);
   if (layered_) inner_.add_maps(buffer(), out);
+  mirrors.put_maps(out);
   return out;
 }
 

@@ -12,6 +12,7 @@
 #include "glint/render/glass_transport.h"
 #include "glint/train/given_surface.h"
 #include "glint/train/mirrored_layer.h"
+#include "glint/train/plane_mirrors.h"
 #include "glint/train/trainable_set.h"
 
 namespace glint {
@@ -28,6 +29,7 @@ struct GlintPhase {
 class GlintModel {
  public:
   TrainableSet interface, transmission, reflection;
+  PlaneMirrors mirrors;
 
   // The picture [H][W][3]; it and the buffers below stay valid until the next call.
   const Image& forward(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
@@ -45,6 +47,9 @@ class GlintModel {
   const Image& interface_depth();
   const GlassBuffer& buffer() const { return transport_.buffer(); }
   const GlassLayers& layers() const { return layers_; }
+  // How mirrors are seen, as in forward() with these.
+  MirrorsCall mirrors_call(const Camera& camera, const GlintConfig& config, const GlintPhase& phase)
+      const;
   // Of the last forward call: what rasterised the transmission set; null: nothing, or it was
   // traced.
   RasterPass* transmission_pass() { return rasterized_ ? &transmission.pass() : nullptr; }
@@ -53,7 +58,7 @@ class GlintModel {
   MapSet render(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
 
  private:
-  RasterSettings interface_settings(const GlintConfig& config) const;
+  RasterSettings interface_settings(const GlintConfig& config, bool with_planes) const;
   const Image& compose(
       const Camera& camera, const GlintConfig& config, const GlintPhase& phase, bool with_behind
   );

@@ -7,17 +7,10 @@
 #include <vector>
 
 #include "glint/core/image.h"
+#include "glint/core/median.h"
 #include "glint/core/vec.h"
 
 namespace glint {
-
-// The upper one of two; 0: there is none.
-inline double middle_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), half, values.end());
-  return *half;
-}
 
 // The median distance from the median place; 0: there is none. Places are finite.
 inline double spread_of(const std::vector<Vec3d>& places) {
@@ -25,12 +18,12 @@ inline double spread_of(const std::vector<Vec3d>& places) {
   std::vector<double> values(places.size());
   for (int axis = 0; axis < 3; ++axis) {
     std::ranges::transform(places, values.begin(), [&](Vec3d place) { return place[axis]; });
-    middle[axis] = middle_of(values);
+    middle[axis] = upper_median(values);
   }
   std::ranges::transform(places, values.begin(), [&](Vec3d place) {
     return length(place - middle);
   });
-  return middle_of(values);
+  return upper_median(values);
 }
 
 // Of depths over those of `reference`, [H][W][1] of one size, where both are finite and above 0; 0:
@@ -41,7 +34,7 @@ inline double median_ratio(ImageView depth, ImageView reference) {
   for (std::size_t i = 0; i < depth.num_pixels(); ++i)
     if (const float z = depth.data[i], r = reference.data[i]; is_depth(z) && is_depth(r))
       ratios.push_back(static_cast<double>(z) / static_cast<double>(r));
-  return middle_of(std::move(ratios));
+  return upper_median(std::move(ratios));
 }
 
 }  // namespace glint

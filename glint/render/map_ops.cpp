@@ -90,6 +90,11 @@ void clear_gradient(ImageSize size, int features, RasterOutputGradient& dL_doutp
   clear_image(dL_doutput.depth_sum, size, 1);
 }
 
+void color_gradient(const Image& dL_dcolor, int features, RasterOutputGradient& dL_doutput) {
+  clear_gradient(dL_dcolor.size(), features, dL_doutput);
+  add_color(dL_dcolor, dL_doutput.features);
+}
+
 Image unit_normals(const Image& normal) {
   Image result(normal.width(), normal.height(), 3);
   run_kernel(normal.num_pixels(), kPixelGrain, UnitNormals{normal.on_device(), result.on_device()});

@@ -46,5 +46,7 @@ void add_color(const Image& color, Image& features);
 void clear_image(Image& image, ImageSize size, int channels);
 // Zeros of the shapes of a rasterised set with so many features; no median, no distortion.
 void clear_gradient(ImageSize size, int features, RasterOutputGradient& dL_doutput);
+// The gradient of the colour alone, of such a set.
+void color_gradient(const Image& dL_dcolor, int features, RasterOutputGradient& dL_doutput);
 
 }  // namespace glint

@@ -12,6 +12,7 @@
 #include "glint/train/check_fits.h"
 #include "glint/train/counted_kernels.h"
 #include "glint/train/glass_masks.h"
+#include "glint/train/plane_mirrors_kernels.h"
 
 namespace glint {
 
@@ -170,6 +171,18 @@ void TransmissionLosses::add_direct_geometry(
   add_terms("direct ", terms, stats);
 }
 
+Photo TransmissionLosses::direct_photo(const View& view) {
+  if (left_out_ == nullptr) return view;
+  fit(direct_counted_, view.camera.size(), 1);
+  run_kernel(
+      direct_counted_.num_pixels(),
+      4096,
+      CountOutsideMirror{
+          view.counted.on_device(), left_out_->on_device(), direct_counted_.on_device()}
+  );
+  return {view.rgb, direct_counted_};
+}
+
 void TransmissionLosses::add_direct(
     const View& view,
     int iteration,
@@ -187,7 +200,8 @@ void TransmissionLosses::add_direct(
   if (config_.lambda_direct > 0) {
     const PhotometricWeights direct{
         config_.lambda_direct * weights.l1, config_.lambda_direct * weights.ssim};
-    const PhotometricTerms terms = photometric_.evaluate(direct_color_, view, direct, dL_dcolor_);
+    const PhotometricTerms terms =
+        photometric_.evaluate(direct_color_, direct_photo(view), direct, dL_dcolor_);
     stats.terms["direct"] = terms.weighted(direct);
   }
   add_direct_geometry(view, iteration, out, stats);

@@ -74,6 +74,9 @@ class TransmissionLosses {
   // LPIPS of the interface's pictures, for those of the set on its own if the config wants it;
   // `loss` may be null, else it outlives this.
   void use_perceptual(PerceptualLoss* loss, const PerceptualConfig& config);
+  // [H][W][1] 1: pixels of the next add() of which the set on its own says nothing; null: none. It
+  // must stay until then.
+  void leave_out(const Image* pixels) { left_out_ = pixels; }
   // Adds the gradient of the entropy of the surfels' t, the last stretch of the masked prior.
   void add_surfel_entropy(
       int iteration,
@@ -111,6 +114,7 @@ class TransmissionLosses {
   bool has_cues(const View& view) const;
   TransparencyCues cues(const View& view, const RasterOutput& interface, const GlassBuffer& buffer);
   BorrowedImage needed_depths(const View& view, bool only_labels);
+  Photo direct_photo(const View& view);
   void add_direct(
       const View& view,
       int iteration,
@@ -139,6 +143,8 @@ class TransmissionLosses {
   RasterPass pass_;
   RasterOutputGradient dL_ddirect_;
   Image direct_color_, dL_dcolor_;  // [H][W][3]
+  const Image* left_out_ = nullptr;
+  Image direct_counted_;  // [H][W][1] the view's, less what is left out
   TransparencyMasks masks_;
   Image direct_depth_, cosine_, dL_ddepth_, needed_, plausible_;
 };

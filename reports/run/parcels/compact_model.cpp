@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glint/core/evenly_chosen.h"
 #include "glint/scene/ply.h"
 #include "reports/run/bench/stages.h"
 #include "reports/run/parcels/model_files.h"

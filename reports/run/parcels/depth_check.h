@@ -33,7 +33,4 @@ DepthDifference depth_difference(
 // views.
 std::vector<float> pixels_seen(const SurfelCloud& cloud, const std::vector<View>& views);
 
-// `count` of the numbers below `all`, at equal distances; all of them where there are no more.
-std::vector<std::size_t> evenly_chosen(std::size_t count, std::size_t all);
-
 }  // namespace glint

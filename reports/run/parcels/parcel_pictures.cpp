@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reports/run/parcels/parcel_pictures.h"
 
+#include "glint/core/evenly_chosen.h"
 #include "glint/core/presence.h"
 #include "glint/core/progress.h"
 #include "glint/scene/image_files.h"

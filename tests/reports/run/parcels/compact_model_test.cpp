@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "datasets/dataset.h"
+#include "glint/core/evenly_chosen.h"
 #include "reports/run/bench/stage_documents.h"
 #include "reports/run/bench/stages.h"
 #include "reports/run/parcels/model_files.h"

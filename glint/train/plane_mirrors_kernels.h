@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// PlaneMirrors, pixel by pixel. Maps of the camera in the mirror are mirrored left to right.
+#pragma once
+
+#include "glint/core/kernel.h"
+#include "glint/render/blend.h"
+#include "glint/render/pinhole.h"
+
+namespace glint {
+
+GLINT_HD std::size_t left_to_right(std::size_t i, int width) {
+  const auto across = static_cast<std::size_t>(width);
+  const std::size_t x = i % across;
+  return i - x + (across - 1 - x);
+}
+
+// Which pixels see the front of a rectangle with nothing before it, how far away, and where what
+// the camera in the mirror sees begins.
+struct SeeMirror {
+  static constexpr float kNever = 1e30f;  // metres
+  // Of its depth: a thing that is nearer is before it. What the photos of a mirror draw off its
+  // plane is not, and then follows the depth prior alone.
+  static constexpr float kBefore = 0.85f;
+
+  Pinhole<float> camera;
+  Vec3f center, normal, across, up;    // camera space
+  float half_width, half_height, gap;  // metres
+  const float* depth;                  // [H][W][1] of the first surface; 0: none
+  float *seen, *plane_depth;           // [H][W][1] 1: seen; metres, 0: not seen
+  float* limit;                        // [H][W][1] of the camera in the mirror
+
+  GLINT_HD void operator()(std::size_t i) const {
+    const int at = static_cast<int>(i), w = camera.width;
+    const Vec3f ray = camera.ray(at % w, at / w);
+    const float facing = dot(normal, ray);
+    const float z = facing < 0 ? dot(normal, center) / facing : 0.0f;
+    const Vec3f p = z * ray - center;
+    const float x = dot(p, across), y = dot(p, up);
+    const bool inside =
+        z > 0 && x * x <= half_width * half_width && y * y <= half_height * half_height;
+    const bool hidden = depth[i] > 0 && depth[i] < kBefore * z - gap;
+    const bool sees = inside && !hidden;
+    seen[i] = sees ? 1.0f : 0.0f;
+    plane_depth[i] = sees ? z : 0.0f;
+    limit[left_to_right(i, w)] = sees ? z + gap : kNever;
+  }
+};
+
+// What a mirror shows, in the picture.
+struct PutMirror {
+  int width;
+  Vec3f tint;
+  const float *seen, *mirrored;
+  float* image;
+  GLINT_HD void operator()(std::size_t i) const {
+    if (seen[i] > 0) put3(image, i, hadamard(tint, get3(mirrored, left_to_right(i, width))));
+  }
+};
+// Takes the gradient of its pixels out of the picture's.
+struct PutMirrorVjp {
+  int width;
+  Vec3f tint;
+  const float* seen;
+  float *dL_dimage, *dL_dmirrored;
+  GLINT_HD void operator()(std::size_t i) const {
+    const bool sees = seen[i] > 0;
+    const Vec3f g = sees ? get3(dL_dimage, i) : Vec3f{};
+    put3(dL_dmirrored, left_to_right(i, width), hadamard(tint, g));
+    if (sees) put3(dL_dimage, i, Vec3f{});
+  }
+};
+
+// 1 where a pixel counts and sees no mirror. counted: null: all do.
+struct CountOutsideMirror {
+  const float *counted, *seen;
+  float* out;
+  GLINT_HD void operator()(std::size_t i) const {
+    out[i] = seen[i] > 0 ? 0.0f : (counted == nullptr ? 1.0f : counted[i]);
+  }
+};
+struct AddSeen {
+  const float* seen;
+  float* sum;  // 1 where one of them is
+  GLINT_HD void operator()(std::size_t i) const {
+    if (seen[i] > 0) sum[i] = 1;
+  }
+};
+
+using PlaneMirrorsKernels =
+    KernelList<SeeMirror, PutMirror, PutMirrorVjp, CountOutsideMirror, AddSeen>;
+
+}  // namespace glint
