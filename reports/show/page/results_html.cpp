@@ -96,8 +96,8 @@ std::string results_html(const fs::path& root) {
       "<p class=\"caption\">The tables of the committed records, written by "
       "<code>glint-bench results</code>; <a href=\"RESULTS.md\">RESULTS.md</a> has the same. A "
       "pointer on a number is told its interval, scenes and seeds.</p>\n";
-  for (const ResultsSection& section : results_sections(root)) body += section_html(section);
   body += order_html(order_by_length(root));
+  for (const ResultsSection& section : results_sections(root)) body += section_html(section);
   return static_page("GLINT Bench: results", body);
 }
 

@@ -196,10 +196,11 @@ std::string results_markdown(const fs::path& root) {
       "This page has the tables of the committed records, written by `glint-bench results`; a test "
       "fails when they differ. `index.html` beside it has the same for a browser. For all tables "
       "of a part, copy its records to "
-      "`out/NAME/records.jsonl` and run `glint-bench table --out out/NAME`.\n\n";
+      "`out/NAME/records.jsonl` and run `glint-bench table --out out/NAME`.\n\n" +
+      order_markdown(order_by_length(root));
   for (const ResultsSection& section : results_sections(root))
-    text += (section.title.empty() ? "" : "\n") + section_markdown(section);
-  return in_lines(text + "\n" + order_markdown(order_by_length(root)));
+    text += "\n" + section_markdown(section);
+  return in_lines(text);
 }
 
 std::string readme_results(const ResultsInfo& info, std::vector<Record> records) {
