@@ -34,7 +34,7 @@ std::vector<std::string> point_row(const OrderPoint& point) {
       interval ? fmt::format("{:.2f} to {:.2f}", interval->low, interval->high) : "none",
       fmt::format("±{:.2f}", point.mean.chance.high),
       columns,
-      fmt::format("{} rooms, {} seeds", point.num_scenes, point.num_seeds),
+      point.measured_on(),
       point.records};
 }
 

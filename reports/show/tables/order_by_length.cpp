@@ -244,19 +244,25 @@ std::string point_row(const OrderPoint& point) {
   for (const OrderAgreement& one : point.columns)
     columns.push_back(fmt::format("{} {:.2f}", point.titles.at(one.column), one.tau));
   return fmt::format(
-      "| {} | {} | {} | ±{:.2f} | {} | {} rooms, {} seeds | `{}` |\n",
+      "| {} | {} | {} | ±{:.2f} | {} | {} | `{}` |\n",
       point.steps,
       markdown_text(point.title),
       interval_of(point.mean),
       point.mean.chance.high,
       markdown_text(fmt::format("{}", fmt::join(columns, ", "))),
-      point.num_scenes,
-      point.num_seeds,
+      point.measured_on(),
       point.records
   );
 }
 
 }  // namespace
+
+std::string OrderPoint::measured_on() const {
+  const auto counted = [](int count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  return fmt::format("{}, {}", counted(num_scenes, "room"), counted(num_seeds, "seed"));
+}
 
 OrderByLength order_by_length(const std::vector<RecordsOfFile>& files) {
   OrderByLength order;

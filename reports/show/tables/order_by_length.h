@@ -21,6 +21,8 @@ struct OrderPoint {
   std::vector<OrderAgreement> columns;        // those that every point of the table has
   std::map<std::string, std::string> titles;  // of columns, by id
   std::vector<std::string> longer;            // "GLINT 60000 steps": methods with more steps
+
+  std::string measured_on() const;  // "5 rooms, 1 seed"
 };
 
 struct OrderByLength {
