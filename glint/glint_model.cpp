@@ -51,10 +51,11 @@ const Image& GlintModel::compose(
     mirrored_.trace(
         buffer, reflection, phase.reflection_degree, config.mirror, phase.step, layers_.reflection
     );
-  const Image& image = transport_.compose(layers_);
-  if (mirrors.planes.empty()) return image;
   return mirrors.put(
-      {interface, transmission}, mirrors_call(camera, config, phase), buffer.depth, image
+      {interface, transmission},
+      mirrors_call(camera, config, phase),
+      buffer.depth,
+      transport_.compose(layers_)
   );
 }
 

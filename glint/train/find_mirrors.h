@@ -26,4 +26,5 @@ std::vector<MirrorPlane> candidate_mirrors(
 // Makes surfels faint that stand where a mirror shows the room: behind it, seen through it by one
 // of the views.
 void fade_behind(const MirrorPlane& plane, const std::vector<View>& views, SurfelCloud& cloud);
+
 }  // namespace glint

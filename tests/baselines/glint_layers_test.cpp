@@ -9,7 +9,7 @@
 #include "glint/core/rng.h"
 #include "glint/glint_model.h"
 #include "glint/render/map_ops.h"
-#include "tests/support/gradcheck.h"
+#include "tests/support/check_array_gradient.h"
 #include "tests/support/random_values.h"
 #include "tests/support/reference_render.h"
 #include "tests/support/reference_trace.h"
@@ -217,49 +217,20 @@ TEST_CASE("The picture of several layers is the sum over them, by independent re
   }
 }
 
-namespace {
-
-// Of a few parameters of an array, against central differences of the float picture.
-void check_gradient(
-    Fixture& f, TrainableSet& set, FloatArray SurfelCloud::*array, const char* name
-) {
-  FloatArray& values = set.cloud().*array;
-  std::vector<double> expected;
-  std::vector<float> actual;
-  Rng rng(5);
-  for (int k = 0; k < 40; ++k) {
-    const std::size_t i = rng.below(static_cast<std::uint32_t>(values.size()));
-    const float at = values[i], h = 0.02f;
-    values[i] = at + h;
-    const double above = f.loss();
-    values[i] = at - h;
-    const double below = f.loss();
-    values[i] = at;
-    expected.push_back((above - below) / (2 * static_cast<double>(h)));
-    actual.push_back((set.gradient().*array)[i]);
-  }
-  const GradientError error = gradient_error<float>(actual, expected);
-  INFO(
-      name << ", norm " << error.norm << ", distance " << error.distance << ", worst at "
-           << error.worst_index
-  );
-  CHECK(error.norm > 0);
-  CHECK(error.distance < 1e-2 * error.norm);
-}
-
-}  // namespace
-
 TEST_CASE("Gradients reach what every set has at every layer") {
   for (const int layers : {2, 3, 4}) {
     Fixture f(layers);
     f.backward();
     GlintModel& m = f.model;
-    check_gradient(f, m.interface, &SurfelCloud::sh_dc, "colours of the interface");
-    check_gradient(f, m.interface, &SurfelCloud::extra_logits, "t and s of the interface");
-    check_gradient(f, m.transmission, &SurfelCloud::sh_dc, "colours behind");
-    check_gradient(f, m.transmission, &SurfelCloud::extra_logits, "t and s behind");
-    check_gradient(f, m.reflection, &SurfelCloud::sh_dc, "mirrored colours");
-    check_gradient(f, m.reflection, &SurfelCloud::opacity_logits, "mirrored opacities");
+    const auto check = [&](TrainableSet& set, FloatArray SurfelCloud::*array, const char* name) {
+      check_array_gradient([&] { return f.loss(); }, set, array, name);
+    };
+    check(m.interface, &SurfelCloud::sh_dc, "colours of the interface");
+    check(m.interface, &SurfelCloud::extra_logits, "t and s of the interface");
+    check(m.transmission, &SurfelCloud::sh_dc, "colours behind");
+    check(m.transmission, &SurfelCloud::extra_logits, "t and s behind");
+    check(m.reflection, &SurfelCloud::sh_dc, "mirrored colours");
+    check(m.reflection, &SurfelCloud::opacity_logits, "mirrored opacities");
   }
 }
 
