@@ -112,8 +112,9 @@ void check_same_net(const LpipsNetwork& network, ImageSize size) {
     }
     CHECK(norm_difference(a.dL_dinput, b.dL_dinput) < 0.05);
     // Of the wide one's 1.4 million values some lie so near to 0 that the processor's way of adding
-    // decides; each moves 27 of its 64,000 gradients.
-    const double allowed = network.name == "wide" ? 0.002 : 0;
+    // decides; each moves 27 of its 64,059 gradients (148 moved on an EPYC of family 26). Twelve of
+    // them move 324; a wrong line of pixels would be 393 and more.
+    const double allowed = network.name == "wide" ? 12 * 27.0 / 64059 : 0;
     if (network.name != "vgg") CHECK(share_of_jumps(a.dL_dinput, b.dL_dinput) <= allowed);
   }
 }
