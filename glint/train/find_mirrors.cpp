@@ -24,7 +24,7 @@ constexpr int kRounds = 40, kFinest = 48;  // at most; the last step's share of 
 constexpr int kWindows = 3;                // along an image's height
 constexpr double kLeastSeen = 0.75;        // of a window's pixels
 constexpr double kLeastVariance = 1e-4;    // of a window of a photo: flatter ones say nothing
-constexpr std::size_t kLeastWindows = 8;
+constexpr std::size_t kLeastWindows = 8, kMostViews = 24;
 constexpr float kFaint = -4.6f;  // logit of 0.01
 
 bool is_dark(const Image& albedo, std::size_t i, float low) {
@@ -130,16 +130,12 @@ class Likeness {
   std::array<double, 3> photo_{}, mirrored_{};
 };
 
-}  // namespace
-
-namespace {
-
 // How well planes explain what the photos show.
 class MirrorSearch {
  public:
   MirrorSearch(const Scene& scene, MirroredSets sets, MirrorsCall call, const FindMirrors& settings)
       : sets_(sets), call_(std::move(call)) {
-    for (const std::size_t i : evenly_chosen(settings.most_views, scene.train.size()))
+    for (const std::size_t i : evenly_chosen(kMostViews, scene.train.size()))
       views_.push_back(&scene.train[i]);
     RasterPass pass;
     for (const View* view : views_) {
@@ -151,7 +147,6 @@ class MirrorSearch {
     const double scale = static_cast<double>(scene.spatial_scale);
     step_ = kStepShare * scale;
     fit_.tolerance = kToleranceShare * scale;
-    fit_.seed = settings.seed;
   }
 
   std::vector<MirrorPlane> run() {
@@ -191,7 +186,7 @@ class MirrorSearch {
     return true;
   }
   // Forth and back, then also turned, by ever smaller steps: interface surfels before a mirror are
-  // off by decimetres, for the photos draw them to where the mirrored room appears to be.
+  // off by up to a decimetre, for the photos draw them to where the mirrored room appears to be.
   void place(PlaneOfPoints& fitted) {
     MirrorPlane best = fitted.plane;
     best.half_width *= kInner, best.half_height *= kInner;

@@ -14,8 +14,6 @@ struct FindMirrors {
   float low_albedo = 0.05f;  // of what may be a mirror; a view's albedo prior
   // Correlation with the photos from which a plane is a mirror. Measured (docs/design/glint.md).
   double least_likeness = 0.55;
-  std::size_t most_views = 24;
-  std::uint64_t seed = 0;
 };
 
 // The planes that were looked at, with their likeness and tint. `call`: as in training, whose

@@ -117,7 +117,7 @@ void fit_rectangle(PlaneOfPoints& fitted) {
 std::vector<PlaneOfPoints> fit_planes(std::vector<SurfacePoint> points, const PlaneFit& settings) {
   std::vector<PlaneOfPoints> planes;
   const double needed = std::max(8.0, settings.min_share * static_cast<double>(points.size()));
-  Rng rng(settings.seed);
+  Rng rng(0);
   for (int k = 0; k < settings.max_planes && static_cast<double>(points.size()) >= needed; ++k) {
     PlaneOfPoints fitted{best_plane(points, settings, rng), {}};
     for (int i = 0; i < kRefinements; ++i) {

@@ -2,7 +2,6 @@
 // Planes in points with normals, and the rectangles that the points fill of them.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "glint/train/mirror_plane.h"
@@ -19,7 +18,6 @@ struct PlaneFit {
   double min_cosine = 0.9;  // between normals
   double min_share = 0.03;  // of all points, for a plane to be one
   int max_planes = 16, tries = 200;
-  std::uint64_t seed = 0;
 };
 
 struct PlaneOfPoints {
