@@ -162,12 +162,14 @@ Table of_other_data(const Table& table) {
 ResultsSection results_section(const ResultsInfo& info, std::vector<Record> records) {
   records = shown_records(info, std::move(records));
   ResultsSection section{info.title, facts(info, records), {}};
-  const auto is_shown = [&](const std::string& id) {
-    return info.tables.empty() ||
-           std::find(info.tables.begin(), info.tables.end(), id) != info.tables.end();
+  const auto is_in = [](const std::vector<std::string>& all, const std::string& one) {
+    return std::find(all.begin(), all.end(), one) != all.end();
   };
-  for (const TableDefinition& definition : table_definitions()) {
-    if (!is_shown(definition.id)) continue;
+  for (TableDefinition& definition : table_definitions()) {
+    if (!info.tables.empty() && !is_in(info.tables, definition.id)) continue;
+    std::erase_if(definition.columns, [&](const TableColumn& column) {
+      return is_in(info.without, column.metric);
+    });
     Table table = build_table(definition, records);
     if (info.other_data) table = of_other_data(table);
     if (has_measurement(table)) section.tables.push_back(std::move(table));

@@ -13,13 +13,14 @@ namespace glint {
 // A part of the page: a file of docs/results/parts, which says what the page shows of some records
 // and says of them besides their tables. The first is the README's.
 struct ResultsInfo {
-  std::string records;              // "docs/results/small.jsonl"
-  std::string command;              // that made them
-  std::string remarks;              // what a reader has to know: what did not run, what was busy
-  std::string title;                // of their part of the page
-  std::vector<std::string> tables;  // ids; empty: all in which something is measured
-  std::vector<std::string> cells;   // globs of scene/method/seed; empty: all
-  bool other_data = false;          // not our rooms: without published columns, captions and notes
+  std::string records;               // "docs/results/small.jsonl"
+  std::string command;               // that made them
+  std::string remarks;               // what a reader has to know: what did not run, what was busy
+  std::string title;                 // of their part of the page
+  std::vector<std::string> tables;   // ids; empty: all in which something is measured
+  std::vector<std::string> cells;    // globs of scene/method/seed; empty: all
+  std::vector<std::string> without;  // metrics whose columns say nothing here, as "train-minutes"
+  bool other_data = false;           // not our rooms: without published columns, captions and notes
   template <class V>
   void visit(V&& v) {
     v("records", records, "file of the records");
@@ -27,6 +28,7 @@ struct ResultsInfo {
     v("remarks", remarks, "what a reader has to know");
     v("title", title, "of their part of the page");
     v("cells", cells, "globs of the scene/method/seed shown");
+    v("without", without, "metrics without a column");
     v("other_data", other_data, "true: not our rooms");
     v("tables", tables, "ids of the tables shown");
   }

@@ -63,6 +63,10 @@ TEST_CASE("A part of the page may have a title and some tables alone") {
   CHECK(results_part(first, {record, second}) == part);
   CHECK(readme_results(first, {record, second}) == readme_results(info, {record}));
   CHECK(results_part(info, {record, second}) != part);
+  CHECK_THAT(part, Catch::Contains("| PSNR (dB)"));
+  ResultsInfo without = info;
+  without.without = {"psnr"};
+  CHECK_THAT(results_part(without, {record}), !Catch::Contains("| PSNR (dB)"));
   ResultsInfo other = info;
   other.other_data = true;
   CHECK_THAT(results_part(other, {record}), !Catch::Contains("Mean over test views"));
