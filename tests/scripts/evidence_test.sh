@@ -25,4 +25,10 @@ sed -i 's/"status":"ok"/"status":"failed"/' "$folder/records.jsonl"
 evidence 2dgs 0 | grep -q "^1 cells to do" || fail "a failed cell is not tried again"
 evidence 2dgs 1 --keep
 [ -n "$(find "$folder/work/out" -name '*.ply')" ] || fail "--keep left no surfels"
+surfels=$(find "$folder/work/out" -name 'interface.ply' -o -name 'surfels.ply' | head -1)
+before=$(stat -c %y "$surfels")
+: >"$folder/records.jsonl"  # as if the script had been killed before it kept the record
+evidence 2dgs 1 --keep
+[ "$(lines)" -eq 1 ] || fail "a finished run was not recorded"
+[ "$(stat -c %y "$surfels")" = "$before" ] || fail "a finished run was trained again"
 echo "records are kept, and nothing is run twice"
