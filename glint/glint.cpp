@@ -114,7 +114,7 @@ class Glint final : public MethodOf<GlintConfig> {
     StepStats stats;
     stats.iteration = iteration;
     set_phase(iteration);
-    if (looks_for_mirrors(iteration)) look_for_mirrors(stats);
+    if (looks_for_mirrors(iteration)) look_for_mirrors(iteration, stats);
     phase_.step = iteration;
     phase_.planes = !frozen_ && windows_.multi_view.at(iteration);
     if (config_.oracle) phase_.truth = &view.truth;
@@ -155,16 +155,17 @@ class Glint final : public MethodOf<GlintConfig> {
   void save(const std::string& folder) const override {
     MethodOf::save(folder);
     const fs::path mirrors = fs::path(folder) / kMirrorsFile;
-    if (model_.mirrors.planes.empty())
+    const std::vector<MirrorPlane> planes = model_.planes();
+    if (planes.empty())
       fs::remove(mirrors);
     else
-      write_file(mirrors, mirrors_text(model_.mirrors.planes));
+      write_file(mirrors, mirrors_text(planes));
   }
   void load(const std::string& folder) override {
     MethodOf::load(folder);
     const fs::path mirrors = fs::path(folder) / kMirrorsFile;
-    model_.mirrors.planes.clear();
-    if (is_there(mirrors)) model_.mirrors.planes = mirrors_of(read_file(mirrors), mirrors.string());
+    model_.set_planes({});
+    if (is_there(mirrors)) model_.set_planes(mirrors_of(read_file(mirrors), mirrors.string()));
     check_channels(folder, {kTransparency, kSpecular});
     if (config_.layers > 1) check_channels(folder, {kTransparency, kSpecular}, 1);
     phase_ = {};
@@ -181,9 +182,9 @@ class Glint final : public MethodOf<GlintConfig> {
   bool visit_state(TrainingState& state) override {
     state("views", views_);
     if (config_.plane_mirrors) {
-      std::string mirrors = mirrors_text(model_.mirrors.planes);
+      std::string mirrors = mirrors_text(model_.planes());
       state("mirrors", mirrors);
-      if (state.reading()) model_.mirrors.planes = mirrors_of(mirrors, "mirrors of the checkpoint");
+      if (state.reading()) model_.set_planes(mirrors_of(mirrors, "mirrors of the checkpoint"));
     }
     return MethodOf::visit_state(state);
   }
@@ -200,6 +201,8 @@ class Glint final : public MethodOf<GlintConfig> {
       );
     if (const std::size_t count = model_.mirrors.planes.size(); count > 0)
       notes.push_back(fmt::format("mirrors found: {}, which show what is seen from behind", count));
+    if (const std::size_t count = model_.panes.planes.size(); count > 0)
+      notes.push_back(fmt::format("panes found: {}, which mirror what is seen from behind", count));
     return notes;
   }
 
@@ -217,29 +220,30 @@ class Glint final : public MethodOf<GlintConfig> {
            (iteration == from || iteration == 2 * from || iteration == 4 * from);
   }
   // What the transmission set has already made of the room in a mirror fades.
-  void look_for_mirrors(StepStats& stats) {
+  void look_for_mirrors(int iteration, StepStats& stats) {
     const View& any = scene_->train.front();
-    const FindMirrors settings{.low_albedo = config_.transmission_losses.low_albedo};
-    const auto planes = candidate_mirrors(
+    const FindMirrors settings{
+        .low_albedo = config_.transmission_losses.low_albedo,
+        .panes = iteration > windows_.transmission_losses.transparency_from};
+    auto planes = candidate_mirrors(
         *scene_,
         {model_.interface, model_.transmission},
         model_.mirrors_call(any.camera, config_, phase_),
         settings
     );
-    model_.mirrors.planes.clear();
     for (const MirrorPlane& plane : planes) {
-      const bool is_mirror = plane.likeness >= settings.least_likeness;
+      const bool is_one = is_mirroring(plane, settings);
       stats.events.push_back(fmt::format(
           "a dark plane of {:.2f} x {:.2f} m, likeness {:.2f}: {}",
           2 * plane.half_width,
           2 * plane.half_height,
           plane.likeness,
-          is_mirror ? "a mirror" : "none"
+          !is_one ? "none" : (plane.pane ? "a pane" : "a mirror")
       ));
-      if (!is_mirror) continue;
-      model_.mirrors.planes.push_back(plane);
-      fade_behind(plane, scene_->train, model_.transmission.cloud());
+      if (is_one && !plane.pane) fade_behind(plane, scene_->train, model_.transmission.cloud());
     }
+    std::erase_if(planes, [&](const MirrorPlane& p) { return !is_mirroring(p, settings); });
+    model_.set_planes(planes);
   }
   TrainableSet new_set(
       const PointCloud& points,

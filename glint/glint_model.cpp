@@ -15,6 +15,17 @@ constexpr std::size_t kGrain = 4096;  // pixels a block
 
 }  // namespace
 
+std::vector<MirrorPlane> GlintModel::planes() const {
+  std::vector<MirrorPlane> all = mirrors.planes;
+  all.insert(all.end(), panes.planes.begin(), panes.planes.end());
+  return all;
+}
+
+void GlintModel::set_planes(const std::vector<MirrorPlane>& planes) {
+  mirrors.planes.clear(), panes.planes.clear();
+  for (const MirrorPlane& plane : planes) (plane.pane ? panes : mirrors).planes.push_back(plane);
+}
+
 const Image& GlintModel::forward(
     const Camera& camera, const GlintConfig& config, const GlintPhase& phase
 ) {
@@ -47,16 +58,18 @@ const Image& GlintModel::compose(
   layered_ = rasterized_ && config.layers > 1;
   if (phase.transmission) render_transmission(camera, config, with_behind);
   if (layered_) add_inner_layers(config);
-  if (phase.reflection)
-    mirrored_.trace(
-        buffer, reflection, phase.reflection_degree, config.mirror, phase.step, layers_.reflection
-    );
-  return mirrors.put(
-      {interface, transmission},
-      mirrors_call(camera, config, phase),
-      buffer.depth,
-      transport_.compose(layers_)
+  const MirrorsCall call = mirrors_call(camera, config, phase);
+  if (phase.reflection) render_reflection(config, call);
+  return mirrors.put({interface, transmission}, call, buffer.depth, transport_.compose(layers_));
+}
+
+void GlintModel::render_reflection(const GlintConfig& config, const MirrorsCall& call) {
+  mirrored_.trace(
+      buffer(), reflection, phase_.reflection_degree, config.mirror, phase_.step, layers_.reflection
   );
+  const Image& with_panes =
+      panes.put({interface, transmission}, call, buffer().depth, layers_.reflection);
+  if (&with_panes != &layers_.reflection) copy_color(with_panes, layers_.reflection);
 }
 
 MirrorsCall GlintModel::mirrors_call(
@@ -158,7 +171,10 @@ void GlintModel::backward(
       layers_, mirrors.put_vjp({interface, transmission}, dL_dimage, interface_too)
   );
   const Rays* dL_drays = nullptr;
-  if (phase_.reflection) dL_drays = &mirrored_.trace_backward(reflection, dL_dlayers.reflection);
+  if (phase_.reflection)
+    dL_drays = &mirrored_.trace_backward(
+        reflection, panes.put_vjp({interface, transmission}, dL_dlayers.reflection, interface_too)
+    );
   if (phase_.transmission) transmission_vjp(dL_dlayers.transmission, interface_too);
   if (!interface_too) return;
   const bool given = surface_ != interface_output_;

@@ -29,7 +29,12 @@ struct GlintPhase {
 class GlintModel {
  public:
   TrainableSet interface, transmission, reflection;
-  PlaneMirrors mirrors;
+  // What is seen in mirrors; and in panes of glass, as the radiance that they mirror.
+  PlaneMirrors mirrors, panes;
+
+  // Of mirrors and panes.
+  std::vector<MirrorPlane> planes() const;
+  void set_planes(const std::vector<MirrorPlane>& planes);
 
   // The picture [H][W][3]; it and the buffers below stay valid until the next call.
   const Image& forward(const Camera& camera, const GlintConfig& config, const GlintPhase& phase);
@@ -62,6 +67,7 @@ class GlintModel {
   const Image& compose(
       const Camera& camera, const GlintConfig& config, const GlintPhase& phase, bool with_behind
   );
+  void render_reflection(const GlintConfig& config, const MirrorsCall& call);
   void render_transmission(const Camera& camera, const GlintConfig& config, bool with_behind);
   void add_inner_layers(const GlintConfig& config);
   void transmission_vjp(const Image& dL_dradiance, bool interface_too);

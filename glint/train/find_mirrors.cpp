@@ -12,13 +12,15 @@ namespace glint {
 
 namespace {
 
-constexpr int kPixelStep = 3;              // of the pixels that points are made of, along each side
-constexpr double kToleranceShare = 0.05;   // of the scene's scale: distance from a plane
-constexpr double kStepShare = 0.015;       // of it: step of the search for where a plane is
-constexpr double kInner = 0.9;             // of a rectangle's sides, without its frame
-constexpr double kWide = 3;                // tolerances: points that tell how far a plane goes
-constexpr int kScan = 6;                   // such steps forth and back
-constexpr double kTurn = 0.017;            // a degree
+constexpr int kPixelStep = 3;             // of the pixels that points are made of, along each side
+constexpr double kToleranceShare = 0.05;  // of the scene's scale: distance from a plane
+constexpr double kStepShare = 0.015;      // of it: step of the search for where a plane is
+constexpr double kInner = 0.9;            // of a rectangle's sides, without its frame
+constexpr double kWide = 3;               // tolerances: points that tell how far a plane goes
+constexpr int kScan = 6;                  // such steps forth and back
+constexpr double kTurn = 0.017;           // a degree
+constexpr double kPaneStep = 0.35;        // of a mirror's, of a pane: the interface is there
+constexpr int kPaneFinest = 6;
 constexpr double kWorthPlacing = 0.25;     // likeness from which a plane is placed more finely
 constexpr int kRounds = 40, kFinest = 48;  // at most; the last step's share of the first
 constexpr int kWindows = 3;                // along an image's height
@@ -130,19 +132,62 @@ class Likeness {
   std::array<double, 3> photo_{}, mirrored_{};
 };
 
+// A view as the sets show it without what its glass mirrors.
+struct KnownView {
+  const View* view;
+  Image depth;    // [H][W][1] metres, of the interface
+  Image without;  // [H][W][3] where nothing is mirrored
+  Image share;    // [H][W][1] k_s
+};
+
+// What of the photos is left for mirrored rays, and what they would add by a pane's plane: their
+// correlation about the means of windows, for the sets make up for what is missing on average.
+class Remainder {
+ public:
+  void add(const KnownView& known, const MirrorView& mirror) {
+    const ImageSize size = known.view->camera.size();
+    const int side = std::max(4, size.height / kWindows);
+    for (int y = 0; y < size.height; y += side)
+      for (int x = 0; x < size.width; x += side) add_window(known, mirror, x, y, side);
+  }
+  double correlation() const {
+    return photo_ > 0 && mirrored_ > 0 ? both_ / std::sqrt(photo_ * mirrored_) : 0;
+  }
+
+ private:
+  void add_window(const KnownView& known, const MirrorView& mirror, int left, int top, int side) {
+    const ImageSize size = known.view->camera.size();
+    double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+    for (int y = top; y < std::min(top + side, size.height); ++y)
+      for (int x = left; x < std::min(left + side, size.width); ++x) {
+        if (mirror.seen().at(x, y) <= 0) continue;
+        const Vec3f rest =
+            get3(known.view->rgb.pixel(x, y), 0) - get3(known.without.pixel(x, y), 0);
+        const Vec3f m =
+            known.share.at(x, y) * get3(mirror.picture().pixel(size.width - 1 - x, y), 0);
+        const auto r = static_cast<double>(rest.x + rest.y + rest.z);
+        const auto s = static_cast<double>(m.x + m.y + m.z);
+        n += 1, a += r, b += s, aa += r * r, bb += s * s, ab += r * s;
+      }
+    if (n < 2) return;
+    photo_ += aa - a * a / n, mirrored_ += bb - b * b / n, both_ += ab - a * b / n;
+  }
+
+  double photo_ = 0, mirrored_ = 0, both_ = 0;
+};
+
 // How well planes explain what the photos show.
 class MirrorSearch {
  public:
   MirrorSearch(const Scene& scene, MirroredSets sets, MirrorsCall call, const FindMirrors& settings)
-      : sets_(sets), call_(std::move(call)) {
-    for (const std::size_t i : evenly_chosen(kMostViews, scene.train.size()))
-      views_.push_back(&scene.train[i]);
-    RasterPass pass;
-    for (const View* view : views_) {
+      : sets_(sets), call_(std::move(call)), settings_(settings) {
+    RasterPass passes[2];
+    for (const std::size_t i : evenly_chosen(kMostViews, scene.train.size())) {
+      const View& view = scene.train[i];
       const RasterOutput& surface =
-          sets.interface.forward(pass, view->camera, call_.interface_degree, call_.settings);
-      expected_depth_map(surface, depths_.emplace_back());
-      if (view->priors.has("albedo")) add_points(*view, surface, settings.low_albedo, points_);
+          sets.interface.forward(passes[0], view.camera, call_.interface_degree, call_.settings);
+      know(view, surface, passes[1]);
+      if (view.priors.has("albedo")) add_points(view, surface, settings.low_albedo, points_);
     }
     const double scale = static_cast<double>(scene.spatial_scale);
     step_ = kStepShare * scale;
@@ -151,27 +196,75 @@ class MirrorSearch {
 
   std::vector<MirrorPlane> run() {
     std::vector<MirrorPlane> planes;
-    for (PlaneOfPoints& fitted : fit_planes(points_, fit_)) {
-      place(fitted);
-      PlaneFit wide = fit_;
-      wide.tolerance *= kWide;
-      fitted.points = points_on(fitted.plane, points_, wide);
-      fit_rectangle(fitted);
-      planes.push_back(fitted.plane);
+    for (const PlaneOfPoints& fitted : fit_planes(points_, fit_)) {
+      PlaneOfPoints placed = fitted;
+      place(placed);
+      if (placed.plane.likeness >= settings_.least_likeness)
+        planes.push_back(with_its_rectangle(placed));
+      else
+        planes.push_back(settings_.panes ? pane(fitted) : placed.plane);
     }
     return planes;
   }
 
  private:
+  MirrorPlane with_its_rectangle(PlaneOfPoints& placed) const {
+    PlaneFit wide = fit_;
+    wide.tolerance *= kWide;
+    placed.points = points_on(placed.plane, points_, wide);
+    fit_rectangle(placed);
+    return placed.plane;
+  }
+  // As the priors say how it lies (the mean of many is off by less than a degree), about where the
+  // interface is, which guidance of t holds to glass but for some centimetres.
+  MirrorPlane pane(PlaneOfPoints fitted) {
+    MirrorPlane& plane = fitted.plane;
+    plane.pane = true;
+    plane.half_width *= kInner, plane.half_height *= kInner;
+    plane = best_of_scan(plane, kPaneStep * step_);
+    move_and_turn(plane, kPaneStep * step_ / 2, kTurn / 4, kPaneFinest);
+    return with_its_rectangle(fitted);
+  }
+  void know(const View& view, const RasterOutput& surface, RasterPass& behind) {
+    GlassTransport transport;
+    transport.set_options(
+        {.channels = interface_channels(sets_.interface.cloud()),
+         .transmission = call_.transmission,
+         .linear_light = call_.linear_light}
+    );
+    const GlassBuffer& buffer = transport.read_interface(view.camera, surface);
+    GlassLayers layers;
+    copy_color(surface.features, layers.interface);
+    clear_image(layers.reflection, view.camera.size(), 3);
+    if (call_.transmission)
+      copy_color(
+          sets_.transmission
+              .forward(behind, view.camera, call_.transmission_degree, {}, buffer.depth)
+              .features,
+          layers.transmission
+      );
+    views_.push_back({&view, buffer.depth, transport.compose(layers), buffer.specularity});
+  }
+  // Sets its likeness, and a mirror's tint.
   void look_at(MirrorPlane& plane) {
     Likeness likeness;
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-      if (!is_in_view(plane, views_[i]->camera)) continue;
-      call_.camera = views_[i]->camera;
-      mirror_.see(sets_, call_, plane, depths_[i]);
-      likeness.add(*views_[i], mirror_);
+    Remainder remainder;
+    for (const KnownView& known : views_) {
+      if (!is_in_view(plane, known.view->camera)) continue;
+      MirrorsCall call = call_;
+      call.camera = known.view->camera;
+      call.transmission =
+          call_.transmission && !plane.pane;  // half the time, and as good for panes
+      mirror_.see(sets_, call, plane, known.depth);
+      if (plane.pane)
+        remainder.add(known, mirror_);
+      else
+        likeness.add(*known.view, mirror_);
     }
-    likeness.tell(plane);
+    if (plane.pane)
+      plane.likeness = remainder.correlation();
+    else
+      likeness.tell(plane);
   }
   bool try_moved(MirrorPlane& best, double forth, double about_up, double about_across) {
     MirrorPlane moved = best;
@@ -185,22 +278,30 @@ class MirrorSearch {
     best = moved;
     return true;
   }
+  MirrorPlane best_of_scan(const MirrorPlane& start, double step) {
+    MirrorPlane best = start;
+    look_at(best);
+    for (int k = -kScan; k <= kScan; ++k) {
+      MirrorPlane moved = start;
+      moved.center += (k * step) * start.normal;
+      look_at(moved);
+      if (moved.likeness > best.likeness) best = moved;
+    }
+    return best;
+  }
   // Forth and back, then also turned, by ever smaller steps: interface surfels before a mirror are
   // off by up to a decimetre, for the photos draw them to where the mirrored room appears to be.
   void place(PlaneOfPoints& fitted) {
     MirrorPlane best = fitted.plane;
     best.half_width *= kInner, best.half_height *= kInner;
-    look_at(best);
-    const MirrorPlane start = best;
-    for (int k = -kScan; k <= kScan; ++k) {
-      MirrorPlane moved = start;
-      moved.center += (k * step_) * start.normal;
-      look_at(moved);
-      if (moved.likeness > best.likeness) best = moved;
-    }
-    double step = step_ / 2, turn = kTurn;
-    if (best.likeness <= kWorthPlacing) step = 0;
-    for (int round = 0; round < kRounds && step > step_ / kFinest; ++round) {
+    best = best_of_scan(best, step_);
+    if (best.likeness > kWorthPlacing) move_and_turn(best, step_ / 2, kTurn, kFinest);
+    fitted.plane = best;
+  }
+  // Until steps are this share of the first.
+  void move_and_turn(MirrorPlane& best, double step, double turn, int finest) {
+    const double least = 2 * step / finest;
+    for (int round = 0; round < kRounds && step > least; ++round) {
       bool better = false;
       for (const double sign : {-1.0, 1.0}) {
         better = try_moved(best, sign * step, 0, 0) || better;
@@ -209,17 +310,16 @@ class MirrorSearch {
       }
       if (!better) step /= 2, turn /= 2;
     }
-    fitted.plane = best;
   }
 
   MirroredSets sets_;
   MirrorsCall call_;
-  std::vector<const View*> views_;
-  std::vector<Image> depths_;
+  std::vector<KnownView> views_;
   std::vector<SurfacePoint> points_;  // of all dark pixels
   PlaneFit fit_;
   MirrorView mirror_;
   double step_ = 0;  // metres
+  FindMirrors settings_;
 };
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Which planes of a half-trained scene are mirrors (beyond the paper). Priors call a mirror what
-// they call glass, a dark plane. What tells them apart: the camera behind the plane sees in the
-// room that was learnt so far what the photos show there.
+// Which planes of a half-trained scene are mirrors, and where its panes of glass are (beyond the
+// paper). Priors call both a dark plane. What tells a mirror: the camera behind the plane sees in
+// the room that was learnt so far what the photos show there. A pane lies as the mean of normal
+// priors says, where that camera explains best what the photos have beside what is seen through it.
 #pragma once
 
 #include "glint/scene/scene.h"
@@ -12,12 +13,20 @@ namespace glint {
 
 struct FindMirrors {
   float low_albedo = 0.05f;  // of what may be a mirror; a view's albedo prior
-  // Correlation with the photos from which a plane is a mirror. Measured (docs/design/glint.md).
-  double least_likeness = 0.55;
+  // Correlation with the photos from which a plane is a mirror, and of what is left of the photos
+  // from which it is a pane. Measured (docs/design/glint.md).
+  double least_likeness = 0.55, least_remainder = 0.1;
+  bool panes = false;  // looks whether a plane that is no mirror is a pane
 };
 
-// The planes that were looked at, with their likeness and tint. `call`: as in training, whose
-// camera is not looked at. Waits for the GPU; needs albedo priors, and finds nothing without.
+// Whether it shows what it mirrors: by its likeness.
+inline bool is_mirroring(const MirrorPlane& plane, const FindMirrors& settings) {
+  return plane.likeness >= (plane.pane ? settings.least_remainder : settings.least_likeness);
+}
+
+// The planes that were looked at, with their likeness and tint; those that are no mirrors as panes,
+// if these are asked for. `call`: as in training, whose camera is not looked at. Waits for the GPU;
+// needs albedo priors, and finds nothing without.
 std::vector<MirrorPlane> candidate_mirrors(
     const Scene& scene, MirroredSets sets, MirrorsCall call, const FindMirrors& settings
 );

@@ -19,6 +19,7 @@ struct StoredMirror {
   std::array<double, 3> center{}, normal{}, across{};
   double half_width = 0, half_height = 0, likeness = 0;
   std::array<float, 3> tint{};
+  bool pane = false;
 
   template <class V>
   void visit(V&& v) {
@@ -29,10 +30,11 @@ struct StoredMirror {
     v("half_height", half_height, "metres");
     v("tint", tint, "displayed values, times this");
     v("likeness", likeness, "correlation with the photos when it was found");
+    v("pane", pane, "true: of glass");
   }
   MirrorPlane plane() const {
     const auto vec = [](const std::array<double, 3>& a) { return Vec3d{a[0], a[1], a[2]}; };
-    return {vec(center), vec(normal), vec(across), half_width, half_height, tint, likeness};
+    return {vec(center), vec(normal), vec(across), half_width, half_height, tint, likeness, pane};
   }
 };
 
@@ -102,7 +104,8 @@ std::string mirrors_text(const std::vector<MirrorPlane>& planes) {
         p.half_width,
         p.half_height,
         p.likeness,
-        p.tint}));
+        p.tint,
+        p.pane}));
   return list.dump(1) + "\n";
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Plane mirrors (beyond the paper): a rectangle in the world, and the camera behind it that sees
-// what another sees in it.
+// Plane mirrors and panes (beyond the paper): a rectangle in the world, and the camera behind it
+// that sees what another sees in it.
 #pragma once
 
 #include <array>
@@ -17,6 +17,7 @@ struct MirrorPlane {
   double half_width = 0, half_height = 0;  // metres, along across and up()
   std::array<float, 3> tint{1, 1, 1};      // displayed: what it mirrors, times this
   double likeness = 0;  // correlation of what it should mirror with the photos, at most 1
+  bool pane = false;    // of glass: what it mirrors comes on top of what is seen through it
 
   Vec3d up() const { return cross(normal, across); }
   double signed_distance(Vec3d point) const { return dot(normal, point - center); }

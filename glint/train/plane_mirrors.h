@@ -3,7 +3,8 @@
 // behind it sees it, by the same sets, in the place of the transport at that pixel. So k_s is 1 and
 // t is 0 there, normals that are off by a degree do no harm, and photos of a mirror train the room.
 // In a mirror the interface and what is seen through it are shown, and neither what glass mirrors
-// there nor another mirror.
+// there nor another mirror. Of a pane of glass the same camera gives the radiance R that it mirrors
+// [Na26 Eq. 10], in the place of the reflection set's (GlintModel::panes).
 #pragma once
 
 #include <list>

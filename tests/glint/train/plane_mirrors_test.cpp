@@ -248,10 +248,13 @@ TEST_CASE("A frozen interface gets no gradient through a mirror") {
 }
 
 TEST_CASE("Mirrors are written and read, and other texts are errors that say what is wrong") {
-  const std::vector<MirrorPlane> planes{mirror(), mirror()};
+  std::vector<MirrorPlane> planes{mirror(), mirror()};
+  planes[1].pane = true;
   const std::string text = mirrors_text(planes);
   const auto read = mirrors_of(text, "mirrors.json");
   REQUIRE(read.size() == 2);
+  CHECK_FALSE(read[0].pane);
+  CHECK(read[1].pane);
   CHECK(mirrors_text(read) == text);
   CHECK(mirrors_of(mirrors_text({}), "f").empty());
   const auto error_of = [](const std::string& bad) {
