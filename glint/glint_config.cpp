@@ -204,10 +204,14 @@ void set_plus(GlintConfig& config) {
   config.freeze = "nothing";
 }
 
-void set_nested(GlintConfig& config, int layers) {
+void set_panes(GlintConfig& config) {
   set_plus(config);
-  config.layers = layers;
   config.plane_mirrors = true;
+}
+
+void set_nested(GlintConfig& config, int layers) {
+  set_panes(config);
+  config.layers = layers;
 }
 
 void set_oracle(GlintConfig& config) {

@@ -40,7 +40,7 @@ struct GlintConfig {
   int layers = 1;  // surfaces along the straight ray that let light through and mirror it
   float layer_gap = 0.05f, pane_gap = 0.4f;  // metres, LayersCall
   MirrorCutoffs mirror;
-  bool plane_mirrors = false;  // looks for them when guidance of t begins (find_mirrors.h)
+  bool plane_mirrors = false;  // and panes: looks for them once guidance of t begins
   // Initial sets.
   float initial_transparency = 0.01f, initial_specular = 1e-3f;
   float reflection_opacity = 0.1f;
@@ -144,7 +144,9 @@ void set_release(GlintConfig& config);
 void set_text(GlintConfig& config);
 // Beyond the paper.
 void set_plus(GlintConfig& config);
-// GLINT+ with so many layers.
+// GLINT+ with mirrors and panes whose planes are found.
+void set_panes(GlintConfig& config);
+// The same with so many layers.
 void set_nested(GlintConfig& config, int layers);
 // With the true interface.
 void set_oracle(GlintConfig& config);

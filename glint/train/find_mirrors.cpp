@@ -298,7 +298,7 @@ class MirrorSearch {
     if (best.likeness > kWorthPlacing) move_and_turn(best, step_ / 2, kTurn, kFinest);
     fitted.plane = best;
   }
-  // Until steps are this share of the first.
+  // Until steps are 2 / finest of the first.
   void move_and_turn(MirrorPlane& best, double step, double turn, int finest) {
     const double least = 2 * step / finest;
     for (int round = 0; round < kRounds && step > least; ++round) {
