@@ -12,15 +12,15 @@ namespace glint {
 
 namespace {
 
-constexpr int kPixelStep = 3;             // of the pixels that points are made of, along each side
-constexpr double kToleranceShare = 0.05;  // of the scene's scale: distance from a plane
-constexpr double kStepShare = 0.015;      // of it: step of the search for where a plane is
-constexpr double kInner = 0.9;            // of a rectangle's sides, without its frame
-constexpr double kWide = 3;               // tolerances: points that tell how far a plane goes
-constexpr int kScan = 6;                  // such steps forth and back
-constexpr double kTurn = 0.017;           // a degree
-constexpr double kPaneStep = 0.35;        // of a mirror's, of a pane: the interface is there
-constexpr int kPaneFinest = 6;
+constexpr int kPixelStep = 3;              // of the pixels that points are made of, along each side
+constexpr double kToleranceShare = 0.05;   // of the scene's scale: distance from a plane
+constexpr double kStepShare = 0.015;       // of it: step of the search for where a plane is
+constexpr double kInner = 0.9;             // of a rectangle's sides, without its frame
+constexpr double kWide = 3;                // tolerances: points that tell how far a plane goes
+constexpr int kScan = 6;                   // such steps forth and back
+constexpr double kTurn = 0.017;            // a degree
+constexpr double kPaneStep = 0.35;         // of a mirror's, of a pane: the interface is there
+constexpr int kPaneFinest = 6;             // kFinest of a pane
 constexpr double kWorthPlacing = 0.25;     // likeness from which a plane is placed more finely
 constexpr int kRounds = 40, kFinest = 48;  // at most; the last step's share of the first
 constexpr int kWindows = 3;                // along an image's height
@@ -225,6 +225,7 @@ class MirrorSearch {
     move_and_turn(plane, kPaneStep * step_ / 2, kTurn / 4, kPaneFinest);
     return with_its_rectangle(fitted);
   }
+  // The view with its glass mirroring black, as GlintModel composes it.
   void know(const View& view, const RasterOutput& surface, RasterPass& behind) {
     GlassTransport transport;
     transport.set_options(
@@ -253,8 +254,8 @@ class MirrorSearch {
       if (!is_in_view(plane, known.view->camera)) continue;
       MirrorsCall call = call_;
       call.camera = known.view->camera;
-      call.transmission =
-          call_.transmission && !plane.pane;  // half the time, and as good for panes
+      // To spare time: what a pane mirrors seldom stands behind another.
+      call.transmission = call_.transmission && !plane.pane;
       mirror_.see(sets_, call, plane, known.depth);
       if (plane.pane)
         remainder.add(known, mirror_);
