@@ -196,6 +196,8 @@ void set_plus(GlintConfig& config) {
   config.densify.min_opacity = row.densify.min_opacity;
   config.transmission_min_opacity = row.transmission_min_opacity;
   config.mirror.observe_every = row.mirror.observe_every;
+  // Mirrors and panes show what the camera behind their plane sees.
+  config.plane_mirrors = true;
   // The transmission set alone is held to the photos, less than in the row.
   config.transmission_losses.lambda_direct = 0.3f;
   config.transmission_losses.lambda_direct_consistency = 0.1f;
@@ -204,13 +206,8 @@ void set_plus(GlintConfig& config) {
   config.freeze = "nothing";
 }
 
-void set_panes(GlintConfig& config) {
-  set_plus(config);
-  config.plane_mirrors = true;
-}
-
 void set_nested(GlintConfig& config, int layers) {
-  set_panes(config);
+  set_plus(config);
   config.layers = layers;
 }
 

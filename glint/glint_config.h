@@ -144,9 +144,7 @@ void set_release(GlintConfig& config);
 void set_text(GlintConfig& config);
 // Beyond the paper.
 void set_plus(GlintConfig& config);
-// GLINT+ with mirrors and panes whose planes are found.
-void set_panes(GlintConfig& config);
-// The same with so many layers.
+// GLINT+ with so many layers.
 void set_nested(GlintConfig& config, int layers);
 // With the true interface.
 void set_oracle(GlintConfig& config);
