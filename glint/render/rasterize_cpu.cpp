@@ -270,12 +270,17 @@ class RasterOnCpu final : public RasterBackend {
 
 }  // namespace
 
+// A pixel is not where nobody looks at it, nor where its limit says that nothing counts: a mirrored
+// camera's tiles beside its mirror have no such pixel.
 bool TileContext::is_needed() const {
+  constexpr float kNever = 1e30f;  // metres; no hit is as far
   const ImageView needed = call.input.needed.view();
-  if (needed.empty()) return true;
+  if (needed.empty() && near_limit.empty()) return true;
   for (int y = y0(); y < std::min(y0() + kTileSize, size.height); ++y)
-    for (int x = x0(); x < std::min(x0() + kTileSize, size.width); ++x)
-      if (needed.at(x, y) != 0) return true;
+    for (int x = x0(); x < std::min(x0() + kTileSize, size.width); ++x) {
+      const bool looked_at = needed.empty() || needed.at(x, y) != 0;
+      if (looked_at && (near_limit.empty() || near_limit.at(x, y) < kNever)) return true;
+    }
   return false;
 }
 

@@ -431,6 +431,49 @@ std::vector<bool> pixels_of_tiles(ImageSize size, std::initializer_list<PixelAt>
   return pixels;
 }
 
+TEST_CASE("Tiles in which no hit can count have the same bytes as if they were gone through") {
+  const ImageSize size{28, 18};
+  for (const int lanes : {1, 8, 16}) {
+    CAPTURE(lanes);
+    RandomSurfels options = smooth_surfels();
+    options.count = 200;
+    options.channels = 4;
+    Rng rng(38);
+    Case c;
+    c.camera = random_camera(rng, size);
+    c.surfels = random_surfels(options, c.camera, rng);
+    c.settings.lanes = lanes;
+    const std::vector<bool> all(size.num_pixels(), true);
+    c.dL_doutput.features = random_weights(rng, all, size, options.channels);
+    Rasterizer skips, goes_through;
+    Image far(size.width, size.height, 1);
+    const auto forward = [&](Rasterizer& rasterizer, float elsewhere, Image& limit) {
+      limit = Image(size.width, size.height, 1);
+      std::ranges::fill(limit.values(), elsewhere);
+      limit.at(7, 7) = limit.at(8, 17) = limit.at(27, 8) = 0;
+      RasterInput input = c.input();
+      input.near_limit = limit;
+      return &rasterizer.forward({input, c.camera, c.settings});
+    };
+    const RasterOutput& a = *forward(skips, 1e30f, c.near_limit);
+    const RasterOutput& b = *forward(goes_through, 1e20f, far);
+    for_each_map(
+        skips.call().maps(),
+        [](const char* name, int, const Image& x, const Image& y) {
+          CAPTURE(name);
+          CHECK(std::ranges::equal(x.values(), y.values()));
+        },
+        a,
+        b
+    );
+    const RasterGradient& gradient = skips.backward(c.dL_doutput);
+    CHECK(std::ranges::any_of(gradient.features, [](float g) { return g != 0; }));
+    const RasterGradient& other = goes_through.backward(c.dL_doutput);
+    CHECK(gradient.features == other.features);
+    CHECK(gradient.means == other.means);
+  }
+}
+
 TEST_CASE("Tiles that nobody needs are empty, all others and their gradients have the same bytes") {
   const ImageSize size{28, 18};
   Image needed(size.width, size.height, 1);

@@ -150,6 +150,7 @@ async function testProbe(page, server) {
 }
 
 async function testAddress(page, server) {
+  await wholeShown(page, server); // else the last motion goes on
   await page.keyboard.press("3");
   await until(() => server.last("look").panes[0].layer === "depth", "a number key");
   const link = page.url();
