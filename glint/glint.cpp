@@ -452,6 +452,11 @@ SettingGuide guide() {
       "beyond the paper: secondary sets start as copies of the interface, few resets, rates that "
       "settle, panes that show what the camera behind them sees",
       set_plus},
+     {"glint/backs",
+      "GLINT+ (backs)",
+      "",
+      "beyond the paper: GLINT+ whose panes, seen through others, mirror as well",
+      set_backs},
      {"glint/nested",
       "GLINT (2 layers)",
       "",

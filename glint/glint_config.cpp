@@ -206,6 +206,11 @@ void set_plus(GlintConfig& config) {
   config.freeze = "nothing";
 }
 
+void set_backs(GlintConfig& config) {
+  set_plus(config);
+  config.pane_backs = true;
+}
+
 void set_nested(GlintConfig& config, int layers) {
   set_plus(config);
   config.layers = layers;

@@ -22,8 +22,11 @@ std::vector<MirrorPlane> GlintModel::planes() const {
 }
 
 void GlintModel::set_planes(const std::vector<MirrorPlane>& planes) {
-  mirrors.planes.clear(), panes.planes.clear();
-  for (const MirrorPlane& plane : planes) (plane.pane ? panes : mirrors).planes.push_back(plane);
+  mirrors.planes.clear(), panes.planes.clear(), backs_.planes.clear();
+  for (const MirrorPlane& plane : planes) {
+    (plane.pane ? panes : mirrors).planes.push_back(plane);
+    if (plane.pane) backs_.planes.push_back(plane.turned());
+  }
 }
 
 const Image& GlintModel::forward(
@@ -141,12 +144,23 @@ void GlintModel::render_transmission(
     copy_color(out.color, layers_.transmission);
   } else {
     RasterSettings settings;
-    settings.with_surface = with_behind || layered_;
+    const bool with_backs = config.pane_backs && !layered_ && !backs_.planes.empty();
+    settings.with_surface = with_behind || layered_ || with_backs;
     if (layered_) settings.detached_features = interface_settings(config, false).detached_features;
     const RasterOutput& out =
         transmission.forward(camera, phase_.transmission_degree, settings, near_limit_);
     copy_color(out.features, layers_.transmission);
+    if (with_backs) add_backs(config, out.depth_median);
   }
+}
+
+// depth: [H][W][1] of what stands behind the interface.
+void GlintModel::add_backs(const GlintConfig& config, const Image& depth) {
+  MirrorsCall call = mirrors_call(camera_, config, phase_);
+  call.backs = true;
+  const Image& with_backs =
+      backs_.put({interface, transmission}, call, depth, layers_.transmission);
+  if (&with_backs != &layers_.transmission) copy_color(with_backs, layers_.transmission);
 }
 
 void GlintModel::transmission_vjp(const Image& dL_dradiance, bool interface_too) {
@@ -156,7 +170,10 @@ void GlintModel::transmission_vjp(const Image& dL_dradiance, bool interface_too)
     copy_color(dL_dradiance, dL_dthrough_.color);
     transmission.trace_backward(dL_dthrough_);
   } else {
-    copy_color(dL_dradiance, dL_dtransmission_.features);
+    copy_color(
+        backs_.put_vjp({interface, transmission}, dL_dradiance, interface_too),
+        dL_dtransmission_.features
+    );
     transmission.backward(dL_dtransmission_);
   }
 }

@@ -69,6 +69,7 @@ class GlintModel {
   );
   void render_reflection(const GlintConfig& config, const MirrorsCall& call);
   void render_transmission(const Camera& camera, const GlintConfig& config, bool with_behind);
+  void add_backs(const GlintConfig& config, const Image& depth);
   void add_inner_layers(const GlintConfig& config);
   void transmission_vjp(const Image& dL_dradiance, bool interface_too);
   void add_behind_depth(const Camera& camera, MapSet& out);
@@ -85,6 +86,7 @@ class GlintModel {
   bool layered_ = false;     // by inner_
   InnerLayers inner_;
   GlassLayers layers_;
+  PlaneMirrors backs_;  // of panes
   Image near_limit_;
   Rays through_;
   RasterPass behind_pass_;

@@ -20,6 +20,12 @@ struct MirrorPlane {
   bool pane = false;    // of glass: what it mirrors comes on top of what is seen through it
 
   Vec3d up() const { return cross(normal, across); }
+  // Seen from its other side.
+  MirrorPlane turned() const {
+    MirrorPlane back = *this;
+    back.normal = -normal, back.across = -across;
+    return back;
+  }
   double signed_distance(Vec3d point) const { return dot(normal, point - center); }
   // The point behind the plane that a mirror shows it at.
   Vec3d mirrored(Vec3d point) const { return point - (2 * signed_distance(point)) * normal; }

@@ -34,11 +34,25 @@ void MirrorView::mark_pixels(const MirrorPlane& plane, const Image& depth) {
           static_cast<float>(plane.half_width),
           static_cast<float>(plane.half_height),
           call_.gap,
+          call_.backs ? kGlassF0 : 1.0f,
           depth.on_device(),
           seen_.on_device(),
           plane_depth_.on_device(),
           limit_.on_device()}
   );
+}
+
+// Where the transmission set begins: behind the first surface. What stands in a case is of that
+// set, too, and between a pane's back and the interface, so there it begins at the pane.
+const Image& MirrorView::limit_behind(const Image& depth) {
+  if (call_.backs) return limit_;
+  fit(behind_limit_, camera_.size(), 1);
+  run_kernel(
+      behind_limit_.num_pixels(),
+      kGrain,
+      LimitBehind{depth.on_device(), limit_.on_device(), nullptr, 0, behind_limit_.on_device()}
+  );
+  return behind_limit_;
 }
 
 void MirrorView::see(
@@ -59,15 +73,8 @@ void MirrorView::see(
   const GlassBuffer& buffer = transport_.read_interface(camera_, surface);
   copy_color(surface.features, radiance_.interface);
   if (call.transmission) {
-    fit(behind_limit_, camera_.size(), 1);
-    run_kernel(
-        behind_limit_.num_pixels(),
-        kGrain,
-        LimitBehind{
-            buffer.depth.on_device(), limit_.on_device(), nullptr, 0, behind_limit_.on_device()}
-    );
     const RasterOutput& behind = sets.transmission.forward(
-        transmission_, camera_, call.transmission_degree, {}, behind_limit_
+        transmission_, camera_, call.transmission_degree, {}, limit_behind(buffer.depth)
     );
     copy_color(behind.features, radiance_.transmission);
   }

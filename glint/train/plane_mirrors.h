@@ -4,7 +4,8 @@
 // t is 0 there, normals that are off by a degree do no harm, and photos of a mirror train the room.
 // In a mirror the interface and what is seen through it are shown, and neither what glass mirrors
 // there nor another mirror. Of a pane of glass the same camera gives the radiance R that it mirrors
-// [Na26 Eq. 10], in the place of the reflection set's (GlintModel::panes).
+// [Na26 Eq. 10], in the place of the reflection set's (GlintModel::panes). A pane that is seen from
+// behind, through another, mirrors Fresnel's share of what reaches it: part of what is transmitted.
 #pragma once
 
 #include <list>
@@ -26,7 +27,8 @@ struct MirrorsCall {
   RasterSettings settings;  // of the interface
   int interface_degree = 3, transmission_degree = 3;
   bool transmission = true;
-  float gap = 0.05f;  // metres about a mirror in which nothing counts as before or behind it
+  float gap = 0.05f;   // metres about a mirror in which nothing counts as before or behind it
+  bool backs = false;  // planes are backs of panes
   bool linear_light = false;
 };
 
@@ -43,13 +45,14 @@ class MirrorView {
   // seen in it, where that appears to stand.
   void put_maps(MapSet& maps) const;
 
-  const Image& seen() const { return seen_; }         // [H][W][1] 1 or 0
+  const Image& seen() const { return seen_; }         // [H][W][1] share that is mirrored, or 0
   const Image& picture() const { return *picture_; }  // [H][W][3], mirrored left to right
   Vec3f tint() const { return tint_; }
   Image& gradient() { return dL_dpicture_; }  // of picture()
 
  private:
   void mark_pixels(const MirrorPlane& plane, const Image& depth);
+  const Image& limit_behind(const Image& depth);
 
   MirrorsCall call_;
   Camera camera_;  // in the mirror

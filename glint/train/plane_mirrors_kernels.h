@@ -5,6 +5,7 @@
 #include "glint/core/kernel.h"
 #include "glint/render/blend.h"
 #include "glint/render/pinhole.h"
+#include "glint/render/transport.h"
 
 namespace glint {
 
@@ -14,8 +15,8 @@ GLINT_HD std::size_t left_to_right(std::size_t i, int width) {
   return i - x + (across - 1 - x);
 }
 
-// Which pixels see the front of a rectangle with nothing before it, how far away, and where what
-// the camera in the mirror sees begins.
+// Which pixels see the front of a rectangle with nothing before it, how far away, what share of the
+// light there is mirrored, and where what the camera in the mirror sees begins.
 struct SeeMirror {
   static constexpr float kNever = 1e30f;  // metres
   // Of its depth: a thing that is nearer is before it. What the photos of a mirror draw off its
@@ -25,8 +26,9 @@ struct SeeMirror {
   Pinhole<float> camera;
   Vec3f center, normal, across, up;    // camera space
   float half_width, half_height, gap;  // metres
+  float f0;                            // of the share; 1: all
   const float* depth;                  // [H][W][1] of the first surface; 0: none
-  float *seen, *plane_depth;           // [H][W][1] 1: seen; metres, 0: not seen
+  float *seen, *plane_depth;           // [H][W][1] the share; metres; 0: not seen
   float* limit;                        // [H][W][1] of the camera in the mirror
 
   GLINT_HD void operator()(std::size_t i) const {
@@ -40,20 +42,22 @@ struct SeeMirror {
         z > 0 && x * x <= half_width * half_width && y * y <= half_height * half_height;
     const bool hidden = depth[i] > 0 && depth[i] < kBefore * z - gap;
     const bool sees = inside && !hidden;
-    seen[i] = sees ? 1.0f : 0.0f;
+    seen[i] = sees ? schlick(f0, -facing / length(ray)) : 0.0f;
     plane_depth[i] = sees ? z : 0.0f;
     limit[left_to_right(i, w)] = sees ? z + gap : kNever;
   }
 };
 
-// What a mirror shows, in the picture.
+// What a mirror shows, in the picture, at its share.
 struct PutMirror {
   int width;
   Vec3f tint;
   const float *seen, *mirrored;
   float* image;
   GLINT_HD void operator()(std::size_t i) const {
-    if (seen[i] > 0) put3(image, i, hadamard(tint, get3(mirrored, left_to_right(i, width))));
+    if (seen[i] <= 0) return;
+    const Vec3f other = seen[i] < 1 ? (1 - seen[i]) * get3(image, i) : Vec3f{};
+    put3(image, i, other + seen[i] * hadamard(tint, get3(mirrored, left_to_right(i, width))));
   }
 };
 // Takes the gradient of its pixels out of the picture's.
@@ -65,8 +69,8 @@ struct PutMirrorVjp {
   GLINT_HD void operator()(std::size_t i) const {
     const bool sees = seen[i] > 0;
     const Vec3f g = sees ? get3(dL_dimage, i) : Vec3f{};
-    put3(dL_dmirrored, left_to_right(i, width), hadamard(tint, g));
-    if (sees) put3(dL_dimage, i, Vec3f{});
+    put3(dL_dmirrored, left_to_right(i, width), seen[i] * hadamard(tint, g));
+    if (sees) put3(dL_dimage, i, seen[i] < 1 ? (1 - seen[i]) * g : Vec3f{});
   }
 };
 

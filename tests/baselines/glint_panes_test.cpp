@@ -139,6 +139,42 @@ TEST_CASE("Gradients reach the sets through what a pane mirrors") {
   check(f.model.reflection, &SurfelCloud::sh_dc, "colours of the reflection set");
 }
 
+TEST_CASE(
+    "The back of a pane mirrors Fresnel's share of what the other side sees, through the front"
+) {
+  Fixture f;
+  MirrorPlane front = pane().turned();
+  front.center = {0.1, 0, 3};
+  CHECK(dot(front.normal, Vec3d{0, 0, -1}) < 0);
+  SurfelCloud inside = f.model.transmission.cloud();  // seen by the far pane only
+  Rng rng(2);
+  add_wall(inside, -2.5, 0, 0, rng);
+  f.model.transmission = TrainableSet(inside, {});
+  const Image without = f.picture();
+  const Image behind = f.model.layers().transmission;
+  f.model.set_planes({front});
+  CHECK(same_bytes(f.picture(), without));  // not GLINT+'s
+  f.config.pane_backs = true;
+  const Image with = f.picture();
+  const Image t = f.model.buffer().transparency, k = f.model.buffer().specularity;
+  int changed = 0;
+  for (std::size_t i = 0; i < kSize.num_pixels(); ++i) {
+    const Vec3f other = get3(f.model.layers().transmission.data(), i) - get3(behind.data(), i);
+    const Vec3f more = get3(with.data(), i) - get3(without.data(), i);
+    CHECK(length(more - (1 - k.data()[i]) * t.data()[i] * other) < 1e-5f);
+    CHECK(length(other) < 0.1f);  // a twentieth of a picture, where it is seen steeply
+    changed += length(other) > 1e-4f ? 1 : 0;
+  }
+  CHECK(changed > 20);
+  const auto check = [&](TrainableSet& set, FloatArray SurfelCloud::*array, const char* name) {
+    check_array_gradient([&] { return f.loss(); }, set, array, name);
+  };
+  f.backward();
+  check(f.model.interface, &SurfelCloud::sh_dc, "colours of the interface");
+  check(f.model.interface, &SurfelCloud::extra_logits, "t and s of the interface");
+  check(f.model.transmission, &SurfelCloud::sh_dc, "colours behind");
+}
+
 namespace {
 
 // Views of the pane, dark and flat to priors; the interface has it 4 cm farther away.
