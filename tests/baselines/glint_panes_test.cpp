@@ -173,6 +173,9 @@ TEST_CASE(
   check(f.model.interface, &SurfelCloud::sh_dc, "colours of the interface");
   check(f.model.interface, &SurfelCloud::extra_logits, "t and s of the interface");
   check(f.model.transmission, &SurfelCloud::sh_dc, "colours behind");
+  f.model.set_planes({});
+  f.backward();
+  check(f.model.transmission, &SurfelCloud::sh_dc, "colours behind, without the pane");
 }
 
 namespace {
