@@ -173,9 +173,16 @@ TEST_CASE(
   check(f.model.interface, &SurfelCloud::sh_dc, "colours of the interface");
   check(f.model.interface, &SurfelCloud::extra_logits, "t and s of the interface");
   check(f.model.transmission, &SurfelCloud::sh_dc, "colours behind");
-  f.model.set_planes({});
-  f.backward();
-  check(f.model.transmission, &SurfelCloud::sh_dc, "colours behind, without the pane");
+
+  Fixture later;  // the pane is there no more
+  later.config.pane_backs = true;
+  later.model.set_planes({front});
+  later.picture();
+  later.model.set_planes({});
+  later.backward();
+  check_array_gradient(
+      [&] { return later.loss(); }, later.model.transmission, &SurfelCloud::sh_dc, "without it"
+  );
 }
 
 namespace {
