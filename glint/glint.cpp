@@ -199,10 +199,11 @@ class Glint final : public MethodOf<GlintConfig> {
       notes.push_back(
           "given the true depth, normals and transparency of the first surface: no rival"
       );
-    if (const std::size_t count = model_.mirrors.planes.size(); count > 0)
-      notes.push_back(fmt::format("mirrors found: {}, which show what is seen from behind", count));
-    if (const std::size_t count = model_.panes.planes.size(); count > 0)
-      notes.push_back(fmt::format("panes found: {}, which mirror what is seen from behind", count));
+    // How many and where is in the log and the mirrors' file: cells of one method share a note.
+    if (!model_.mirrors.planes.empty())
+      notes.push_back("mirrors found: they show what the camera behind them sees");
+    if (!model_.panes.planes.empty())
+      notes.push_back("panes found: they mirror what the camera behind them sees");
     return notes;
   }
 
@@ -336,6 +337,7 @@ class Glint final : public MethodOf<GlintConfig> {
           iteration, kTransparencyChannel, interface, model_.interface, stats
       );
     transmission_losses_.leave_out(model_.mirrors.seen());
+    transmission_losses_.look_at(model_.without_panes(view.rgb));
     if (phase_.transmission)
       transmission_losses_.add(
           view,
@@ -452,11 +454,6 @@ SettingGuide guide() {
       "beyond the paper: secondary sets start as copies of the interface, few resets, rates that "
       "settle, panes that show what the camera behind them sees",
       set_plus},
-     {"glint/backs",
-      "GLINT+ (backs)",
-      "",
-      "beyond the paper: GLINT+ whose panes, seen through others, mirror as well",
-      set_backs},
      {"glint/nested",
       "GLINT (2 layers)",
       "",

@@ -6,6 +6,7 @@
 #include "glint/core/kernel.h"
 #include "glint/render/map_kernels.h"
 #include "glint/render/map_ops.h"
+#include "glint/train/plane_mirrors_kernels.h"
 
 namespace glint {
 
@@ -144,7 +145,7 @@ void GlintModel::render_transmission(
     copy_color(out.color, layers_.transmission);
   } else {
     RasterSettings settings;
-    const bool with_backs = config.pane_backs && !layered_;
+    const bool with_backs = !backs_.planes.empty() && !layered_;
     settings.with_surface = with_behind || layered_ || with_backs;
     if (layered_) settings.detached_features = interface_settings(config, false).detached_features;
     const RasterOutput& out =
@@ -161,6 +162,22 @@ void GlintModel::add_backs(const GlintConfig& config, const Image& depth) {
   const Image& with_backs =
       backs_.put({interface, transmission}, call, depth, layers_.transmission);
   if (&with_backs != &layers_.transmission) copy_color(with_backs, layers_.transmission);
+}
+
+const Image& GlintModel::without_panes(const Image& photo) {
+  if (!phase_.reflection || panes.seen() == nullptr) return photo;
+  copy_color(photo, through_photo_);
+  run_kernel(
+      photo.num_pixels(),
+      kGrain,
+      TakeOutReflection{
+          panes.seen()->on_device(),
+          buffer().specularity.on_device(),
+          layers_.reflection.on_device(),
+          through_photo_.on_device()}
+  );
+  backs_.take_out(through_photo_);
+  return through_photo_;
 }
 
 void GlintModel::transmission_vjp(const Image& dL_dradiance, bool interface_too) {

@@ -55,6 +55,9 @@ class GlintModel {
   // How mirrors are seen, as in forward() with these.
   MirrorsCall mirrors_call(const Camera& camera, const GlintConfig& config, const GlintPhase& phase)
       const;
+  // Of a photo of the last view, what came through: without what panes mirror by the last forward
+  // call; the photo itself where none is in view.
+  const Image& without_panes(const Image& photo);
   // Of the last forward call: what rasterised the transmission set; null: nothing, or it was
   // traced.
   RasterPass* transmission_pass() { return rasterized_ ? &transmission.pass() : nullptr; }
@@ -87,6 +90,7 @@ class GlintModel {
   InnerLayers inner_;
   GlassLayers layers_;
   PlaneMirrors backs_;  // of panes
+  Image through_photo_;
   Image near_limit_;
   Rays through_;
   RasterPass behind_pass_;

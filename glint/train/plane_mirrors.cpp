@@ -183,6 +183,21 @@ const Image& PlaneMirrors::put_vjp(
   return dL_dimage_;
 }
 
+void PlaneMirrors::take_out(Image& image) const {
+  auto view = views_.begin();
+  for (std::size_t k = 0; k < num_seen_; ++k, ++view)
+    run_kernel(
+        image.num_pixels(),
+        kGrain,
+        TakeOutMirror{
+            image.width(),
+            view->tint(),
+            view->seen().on_device(),
+            view->picture().on_device(),
+            image.on_device()}
+    );
+}
+
 void PlaneMirrors::put_maps(MapSet& maps) const {
   auto view = views_.begin();
   for (std::size_t k = 0; k < num_seen_; ++k) (view++)->put_maps(maps);

@@ -78,6 +78,8 @@ class PlaneMirrors {
   // Back through it to the sets; the gradient of `image`.
   const Image& put_vjp(MirroredSets sets, const Image& dL_dpicture, bool interface_too);
   void put_maps(MapSet& maps) const;
+  // Takes what the last put() has put in out of a picture of the same view [H][W][3].
+  void take_out(Image& image) const;
   // [H][W][1] 1 where the last picture shows a mirror; null: nowhere.
   const Image* seen() const { return num_seen_ > 0 ? &seen_ : nullptr; }
 

@@ -74,6 +74,33 @@ struct PutMirrorVjp {
   }
 };
 
+// What is left of a picture without a share of it that is mirrored, brought back to the whole: the
+// other way round as PutMirror. Photos are clipped, so it may be too dark, and never below black.
+GLINT_HD Vec3f without_share(Vec3f whole, float share, Vec3f mirrored) {
+  const Vec3f rest = (1 / (1 - share)) * (whole - share * mirrored);
+  return {max_of(rest.x, 0.0f), max_of(rest.y, 0.0f), max_of(rest.z, 0.0f)};
+}
+struct TakeOutMirror {
+  int width;
+  Vec3f tint;
+  const float *seen, *mirrored;
+  float* image;
+  GLINT_HD void operator()(std::size_t i) const {
+    if (seen[i] <= 0 || seen[i] >= 1) return;
+    const Vec3f part = hadamard(tint, get3(mirrored, left_to_right(i, width)));
+    put3(image, i, without_share(get3(image, i), seen[i], part));
+  }
+};
+// In pixels that see a pane, what the interface mirrors there by its k_s.
+struct TakeOutReflection {
+  const float *seen, *specularity, *reflection;
+  float* image;
+  GLINT_HD void operator()(std::size_t i) const {
+    if (seen[i] > 0 && specularity[i] < 1)
+      put3(image, i, without_share(get3(image, i), specularity[i], get3(reflection, i)));
+  }
+};
+
 // 1 where a pixel counts and sees no mirror. counted: null: all do.
 struct CountOutsideMirror {
   const float *counted, *seen;
@@ -91,6 +118,13 @@ struct AddSeen {
 };
 
 using PlaneMirrorsKernels =
-    KernelList<SeeMirror, PutMirror, PutMirrorVjp, CountOutsideMirror, AddSeen>;
+    KernelList<
+    SeeMirror,
+    PutMirror,
+    PutMirrorVjp,
+    TakeOutMirror,
+    TakeOutReflection,
+    CountOutsideMirror,
+    AddSeen>;
 
 }  // namespace glint

@@ -172,7 +172,8 @@ void TransmissionLosses::add_direct_geometry(
 }
 
 Photo TransmissionLosses::direct_photo(const View& view) {
-  if (left_out_ == nullptr) return view;
+  const Image& photo = photo_ != nullptr ? *photo_ : view.rgb;
+  if (left_out_ == nullptr) return {photo, view.counted};
   fit(direct_counted_, view.camera.size(), 1);
   run_kernel(
       direct_counted_.num_pixels(),
@@ -180,7 +181,7 @@ Photo TransmissionLosses::direct_photo(const View& view) {
       CountOutsideMirror{
           view.counted.on_device(), left_out_->on_device(), direct_counted_.on_device()}
   );
-  return {view.rgb, direct_counted_};
+  return {photo, direct_counted_};
 }
 
 void TransmissionLosses::add_direct(

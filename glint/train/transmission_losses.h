@@ -77,6 +77,9 @@ class TransmissionLosses {
   // [H][W][1] 1: pixels of the next add() of which the set on its own says nothing; null: none. It
   // must stay until then.
   void leave_out(const Image* pixels) { left_out_ = pixels; }
+  // [H][W][3] what the set on its own is held to in the next add(), in the photo's place; it must
+  // stay until then.
+  void look_at(const Image& photo) { photo_ = &photo; }
   // Adds the gradient of the entropy of the surfels' t, the last stretch of the masked prior.
   void add_surfel_entropy(
       int iteration,
@@ -143,7 +146,7 @@ class TransmissionLosses {
   RasterPass pass_;
   RasterOutputGradient dL_ddirect_;
   Image direct_color_, dL_dcolor_;  // [H][W][3]
-  const Image* left_out_ = nullptr;
+  const Image *left_out_ = nullptr, *photo_ = nullptr;
   Image direct_counted_;  // [H][W][1] the view's, less what is left out
   TransparencyMasks masks_;
   Image direct_depth_, cosine_, dL_ddepth_, needed_, plausible_;
