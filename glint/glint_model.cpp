@@ -155,7 +155,8 @@ void GlintModel::render_transmission(
   }
 }
 
-// depth: [H][W][1] of what stands behind the interface.
+// depth: [H][W][1] of what stands behind the interface. What is mirrored there is a constant to
+// training: at Fresnel's share it says little of the sets, and to go back costs most of its time.
 void GlintModel::add_backs(const GlintConfig& config, const Image& depth) {
   MirrorsCall call = mirrors_call(camera_, config, phase_);
   call.backs = true;
@@ -187,10 +188,7 @@ void GlintModel::transmission_vjp(const Image& dL_dradiance, bool interface_too)
     copy_color(dL_dradiance, dL_dthrough_.color);
     transmission.trace_backward(dL_dthrough_);
   } else {
-    copy_color(
-        backs_.put_vjp({interface, transmission}, dL_dradiance, interface_too),
-        dL_dtransmission_.features
-    );
+    copy_color(backs_.put_vjp(dL_dradiance), dL_dtransmission_.features);
     transmission.backward(dL_dtransmission_);
   }
 }

@@ -27,6 +27,7 @@ constexpr int kWindows = 3;                // along an image's height
 constexpr double kLeastSeen = 0.75;        // of a window's pixels
 constexpr double kLeastVariance = 1e-4;    // of a window of a photo: flatter ones say nothing
 constexpr std::size_t kLeastWindows = 8, kMostViews = 24;
+constexpr std::size_t kSearchEvery = 3;  // of these views, while a mirror is placed
 constexpr float kFaint = -4.6f;  // logit of 0.01
 
 bool is_dark(const Image& albedo, std::size_t i, float low) {
@@ -96,9 +97,9 @@ class Likeness {
     for (int y = 0; y + side <= size.height; y += side)
       for (int x = 0; x + side <= size.width; x += side) add_window(view, mirror, x, y, side);
   }
-  void tell(MirrorPlane& plane) const {
+  void tell(MirrorPlane& plane, std::size_t least_windows) const {
     const auto count = static_cast<double>(correlations_.size());
-    plane.likeness = correlations_.size() < kLeastWindows
+    plane.likeness = correlations_.size() < least_windows
                          ? 0
                          : std::accumulate(correlations_.begin(), correlations_.end(), 0.0) / count;
     for (std::size_t c = 0; c < 3; ++c)
@@ -250,7 +251,8 @@ class MirrorSearch {
   void look_at(MirrorPlane& plane) {
     Likeness likeness;
     Remainder remainder;
-    for (const KnownView& known : views_) {
+    for (std::size_t i = 0; i < views_.size(); i += every_) {
+      const KnownView& known = views_[i];
       if (!is_in_view(plane, known.view->camera)) continue;
       MirrorsCall call = call_;
       call.camera = known.view->camera;
@@ -265,7 +267,7 @@ class MirrorSearch {
     if (plane.pane)
       plane.likeness = remainder.correlation();
     else
-      likeness.tell(plane);
+      likeness.tell(plane, kLeastWindows / every_);
   }
   bool try_moved(MirrorPlane& best, double forth, double about_up, double about_across) {
     MirrorPlane moved = best;
@@ -295,8 +297,11 @@ class MirrorSearch {
   void place(PlaneOfPoints& fitted) {
     MirrorPlane best = fitted.plane;
     best.half_width *= kInner, best.half_height *= kInner;
+    every_ = kSearchEvery;
     best = best_of_scan(best, step_);
     if (best.likeness > kWorthPlacing) move_and_turn(best, step_ / 2, kTurn, kFinest);
+    every_ = 1;
+    look_at(best);  // all views decide
     fitted.plane = best;
   }
   // Until steps are 2 / finest of the first.
@@ -319,7 +324,8 @@ class MirrorSearch {
   std::vector<SurfacePoint> points_;  // of all dark pixels
   PlaneFit fit_;
   MirrorView mirror_;
-  double step_ = 0;  // metres
+  double step_ = 0;        // metres
+  std::size_t every_ = 1;  // of the views that are looked at
   FindMirrors settings_;
 };
 

@@ -160,9 +160,9 @@ const Image& PlaneMirrors::put(
   return num_seen_ == 0 ? image : image_;
 }
 
-const Image& PlaneMirrors::put_vjp(
-    MirroredSets sets, const Image& dL_dpicture, bool interface_too
-) {
+// The last one first.
+template <class F>
+const Image& PlaneMirrors::put_vjp_of_each(const Image& dL_dpicture, F&& mirrored) {
   if (num_seen_ == 0) return dL_dpicture;
   copy_color(dL_dpicture, dL_dimage_);
   auto view = std::next(views_.begin(), static_cast<std::ptrdiff_t>(num_seen_));
@@ -178,9 +178,19 @@ const Image& PlaneMirrors::put_vjp(
             dL_dimage_.on_device(),
             view->gradient().on_device()}
     );
-    view->backward(sets, interface_too);
+    mirrored(*view);
   }
   return dL_dimage_;
+}
+
+const Image& PlaneMirrors::put_vjp(
+    MirroredSets sets, const Image& dL_dpicture, bool interface_too
+) {
+  return put_vjp_of_each(dL_dpicture, [&](MirrorView& v) { v.backward(sets, interface_too); });
+}
+
+const Image& PlaneMirrors::put_vjp(const Image& dL_dpicture) {
+  return put_vjp_of_each(dL_dpicture, [](MirrorView&) {});
 }
 
 void PlaneMirrors::take_out(Image& image) const {

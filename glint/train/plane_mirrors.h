@@ -77,6 +77,8 @@ class PlaneMirrors {
   );
   // Back through it to the sets; the gradient of `image`.
   const Image& put_vjp(MirroredSets sets, const Image& dL_dpicture, bool interface_too);
+  // The gradient of `image` alone, for what is mirrored is a constant.
+  const Image& put_vjp(const Image& dL_dpicture);
   void put_maps(MapSet& maps) const;
   // Takes what the last put() has put in out of a picture of the same view [H][W][3].
   void take_out(Image& image) const;
@@ -84,6 +86,9 @@ class PlaneMirrors {
   const Image* seen() const { return num_seen_ > 0 ? &seen_ : nullptr; }
 
  private:
+  template <class F>
+  const Image& put_vjp_of_each(const Image& dL_dpicture, F&& mirrored);
+
   std::list<MirrorView>
       views_;  // of planes in view, in their order; those behind num_seen_: unused
   std::size_t num_seen_ = 0;
