@@ -11,17 +11,23 @@
 
 namespace glint::test {
 
-// Of a few parameters of an array, whose gradient by loss() the set holds.
+// Of a few parameters of an array (of its first `among`; 0: of all), whose gradient by loss() the
+// set holds.
 template <class Loss>
 void check_array_gradient(
-    Loss&& loss, TrainableSet& set, FloatArray SurfelCloud::*array, const std::string& name
+    Loss&& loss,
+    TrainableSet& set,
+    FloatArray SurfelCloud::*array,
+    const std::string& name,
+    std::size_t among = 0
 ) {
   FloatArray& values = set.cloud().*array;
+  if (among == 0) among = values.size();
   std::vector<double> expected;
   std::vector<float> actual;
   Rng rng(5);
   for (int k = 0; k < 40; ++k) {
-    const std::size_t i = rng.below(static_cast<std::uint32_t>(values.size()));
+    const std::size_t i = rng.below(static_cast<std::uint32_t>(among));
     const float at = values[i], h = 0.02f;
     values[i] = at + h;
     const double above = loss();
