@@ -337,7 +337,7 @@ class Glint final : public MethodOf<GlintConfig> {
           iteration, kTransparencyChannel, interface, model_.interface, stats
       );
     transmission_losses_.leave_out(model_.mirrors.seen());
-    transmission_losses_.look_at(model_.without_panes(view.rgb));
+    transmission_losses_.look_at(config_.pane_backs ? model_.without_panes(view.rgb) : view.rgb);
     if (phase_.transmission)
       transmission_losses_.add(
           view,
@@ -454,6 +454,11 @@ SettingGuide guide() {
       "beyond the paper: secondary sets start as copies of the interface, few resets, rates that "
       "settle, panes that show what the camera behind them sees",
       set_plus},
+     {"glint/backs",
+      "GLINT+ (backs)",
+      "",
+      "beyond the paper: GLINT+ whose panes, seen through others, mirror as well",
+      set_backs},
      {"glint/nested",
       "GLINT (2 layers)",
       "",

@@ -198,12 +198,18 @@ void set_plus(GlintConfig& config) {
   config.mirror.observe_every = row.mirror.observe_every;
   // Mirrors and panes show what the camera behind their plane sees.
   config.plane_mirrors = true;
-  // The transmission set alone is held to the photos, as in the row, but without what panes mirror.
-  config.transmission_losses.lambda_direct = 1;
+  // The transmission set alone is held to the photos, less than in the row.
+  config.transmission_losses.lambda_direct = 0.3f;
   config.transmission_losses.lambda_direct_consistency = 0.1f;
   // Once the sets are grown, rates fall: what is left of the run averages over views and noise.
   config.rates.settled = 0.03f;
   config.freeze = "nothing";
+}
+
+void set_backs(GlintConfig& config) {
+  set_plus(config);
+  config.pane_backs = true;
+  config.transmission_losses.lambda_direct = 1;
 }
 
 void set_nested(GlintConfig& config, int layers) {

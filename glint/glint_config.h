@@ -41,6 +41,9 @@ struct GlintConfig {
   float layer_gap = 0.05f, pane_gap = 0.4f;  // metres, LayersCall
   MirrorCutoffs mirror;
   bool plane_mirrors = false;  // and panes: looks for them once guidance of t begins
+  // Panes seen through others mirror, too, and the transmission set alone is held to photos
+  // without what panes mirror in them.
+  bool pane_backs = false;
   // Initial sets.
   float initial_transparency = 0.01f, initial_specular = 1e-3f;
   float reflection_opacity = 0.1f;
@@ -144,6 +147,8 @@ void set_release(GlintConfig& config);
 void set_text(GlintConfig& config);
 // Beyond the paper.
 void set_plus(GlintConfig& config);
+// GLINT+ whose panes' backs mirror, too.
+void set_backs(GlintConfig& config);
 // GLINT+ with so many layers.
 void set_nested(GlintConfig& config, int layers);
 // With the true interface.

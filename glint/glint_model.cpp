@@ -145,7 +145,7 @@ void GlintModel::render_transmission(
     copy_color(out.color, layers_.transmission);
   } else {
     RasterSettings settings;
-    const bool with_backs = !backs_.planes.empty() && !layered_;
+    const bool with_backs = config.pane_backs && !layered_;
     settings.with_surface = with_behind || layered_ || with_backs;
     if (layered_) settings.detached_features = interface_settings(config, false).detached_features;
     const RasterOutput& out =

@@ -154,6 +154,8 @@ TEST_CASE(
   const Image without = f.picture();
   const Image behind = f.model.layers().transmission;
   f.model.set_planes({front});
+  CHECK(same_bytes(f.picture(), without));  // not GLINT+'s
+  f.config.pane_backs = true;
   const Image with = f.picture();
   const Image t = f.model.buffer().transparency, k = f.model.buffer().specularity;
   int changed = 0;
@@ -173,6 +175,7 @@ TEST_CASE(
   for (std::size_t i = num_behind; i < gradient.size(); ++i) CHECK(gradient[i] == 0);
 
   Fixture later;  // the pane is there no more
+  later.config.pane_backs = true;
   later.model.set_planes({front});
   later.picture();
   later.model.set_planes({});
