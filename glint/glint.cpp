@@ -457,7 +457,8 @@ SettingGuide guide() {
      {"glint/backs",
       "GLINT+ (backs)",
       "",
-      "beyond the paper: GLINT+ whose panes, seen through others, mirror as well",
+      "beyond the paper: GLINT+ whose panes, seen through others, mirror as well; the transmission "
+      "set alone is held to photos without what panes mirror",
       set_backs},
      {"glint/nested",
       "GLINT (2 layers)",

@@ -209,7 +209,6 @@ void set_plus(GlintConfig& config) {
 void set_backs(GlintConfig& config) {
   set_plus(config);
   config.pane_backs = true;
-  config.transmission_losses.lambda_direct = 1;
 }
 
 void set_nested(GlintConfig& config, int layers) {
