@@ -156,7 +156,7 @@ void GlintModel::render_transmission(
 }
 
 // depth: [H][W][1] of what stands behind the interface. What is mirrored there is a constant to
-// training: at Fresnel's share it says little of the sets, and to go back costs most of its time.
+// training: at Fresnel's share it says little of the sets, and the way back is a fifth of a step.
 void GlintModel::add_backs(const GlintConfig& config, const Image& depth) {
   MirrorsCall call = mirrors_call(camera_, config, phase_);
   call.backs = true;

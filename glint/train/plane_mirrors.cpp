@@ -193,9 +193,11 @@ const Image& PlaneMirrors::put_vjp(const Image& dL_dpicture) {
   return put_vjp_of_each(dL_dpicture, [](MirrorView&) {});
 }
 
+// The last one first.
 void PlaneMirrors::take_out(Image& image) const {
-  auto view = views_.begin();
-  for (std::size_t k = 0; k < num_seen_; ++k, ++view)
+  auto view = std::next(views_.begin(), static_cast<std::ptrdiff_t>(num_seen_));
+  for (std::size_t k = 0; k < num_seen_; ++k) {
+    --view;
     run_kernel(
         image.num_pixels(),
         kGrain,
@@ -206,6 +208,7 @@ void PlaneMirrors::take_out(Image& image) const {
             view->picture().on_device(),
             image.on_device()}
     );
+  }
 }
 
 void PlaneMirrors::put_maps(MapSet& maps) const {

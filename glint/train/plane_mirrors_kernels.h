@@ -117,8 +117,7 @@ struct AddSeen {
   }
 };
 
-using PlaneMirrorsKernels =
-    KernelList<
+using PlaneMirrorsKernels = KernelList<
     SeeMirror,
     PutMirror,
     PutMirrorVjp,

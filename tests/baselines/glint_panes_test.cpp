@@ -206,8 +206,9 @@ TEST_CASE("A picture without what panes mirror in it is what came through") {
 
   MirrorsCall call = f.model.mirrors_call(camera(), f.config, f.phase);
   call.backs = true;
-  PlaneMirrors backs;
-  backs.planes = {pane()};
+  PlaneMirrors backs;  // two of them, one before the other
+  backs.planes = {pane(), pane()};
+  backs.planes[1].center.z += 0.1;
   const Image& behind = f.model.layers().transmission;
   const Image far_away(kSize.width, kSize.height, 1);
   Image both = backs.put({f.model.interface, f.model.transmission}, call, far_away, behind);
