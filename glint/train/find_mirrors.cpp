@@ -28,7 +28,7 @@ constexpr double kLeastSeen = 0.75;        // of a window's pixels
 constexpr double kLeastVariance = 1e-4;    // of a window of a photo: flatter ones say nothing
 constexpr std::size_t kLeastWindows = 8, kMostViews = 24;
 constexpr std::size_t kSearchEvery = 3;  // of these views, while a mirror is placed
-constexpr float kFaint = -4.6f;  // logit of 0.01
+constexpr float kFaint = -4.6f;          // logit of 0.01
 
 bool is_dark(const Image& albedo, std::size_t i, float low) {
   const Vec3f a = get3(albedo.data(), i);
