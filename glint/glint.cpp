@@ -35,6 +35,7 @@
 #include "glint/render/map_ops.h"
 #include "glint/setting_guide.h"
 #include "glint/surfel_method.h"
+#include "glint/train/clip_at_white.h"
 #include "glint/train/find_mirrors.h"
 #include "glint/train/photometric.h"
 #include "glint/train/planar_losses.h"
@@ -287,6 +288,7 @@ class Glint final : public MethodOf<GlintConfig> {
           transmission_losses_.set_up(windows_.transmission_losses, *scene_, "glint")})
       warnings_.insert(warnings_.end(), of_losses.begin(), of_losses.end());
     transmission_losses_.use_perceptual(perceptual_.get(), windows_.perceptual);
+    transmission_losses_.clip_at_white(config_.clip_at_white);
   }
 
   void set_phase(int iteration) {
@@ -321,12 +323,16 @@ class Glint final : public MethodOf<GlintConfig> {
   PhotometricWeights photo_weights() const { return {config_.l1_weight, config_.ssim_weight}; }
   void add_picture_losses(const View& view, int iteration, const Image& image, StepStats& stats) {
     const PhotometricWeights weights = photo_weights();
-    const PhotometricTerms photo = photometric_.evaluate(image, view, weights, dL_dimage_);
+    const bool clips = config_.clip_at_white;
+    const PhotometricTerms photo = photometric_.evaluate(
+        clips ? white_.clip(image, view.rgb, view.rgb) : image, view, weights, dL_dimage_
+    );
     stats.terms["photometric"] = photo.weighted(weights);
     stats.psnr = photo.psnr();
     add_perceptual(
         perceptual_.get(), windows_.perceptual, iteration, image, view, dL_dimage_, stats
     );
+    if (clips) white_.vjp(image, view.rgb, view.rgb, dL_dimage_);
   }
   void add_map_losses(const View& view, int iteration, StepStats& stats) {
     const RasterOutput& interface = model_.interface_output();
@@ -374,6 +380,7 @@ class Glint final : public MethodOf<GlintConfig> {
   static constexpr std::size_t kTransparencyChannel = 0;  // of the interface's extra ones
   static constexpr const char* kMirrorsFile = "mirrors.json";
   PhotometricLoss photometric_;
+  WhiteClip white_;
   PlanarLosses planes_;
   std::unique_ptr<PerceptualLoss> perceptual_;
   GeometryLosses geometry_;
@@ -458,7 +465,8 @@ SettingGuide guide() {
       "GLINT+ (backs)",
       "",
       "beyond the paper: GLINT+ whose panes, seen through others, mirror as well; the transmission "
-      "set alone is held to photos without what panes mirror",
+      "set alone is held to photos without what panes mirror; being brighter than white is no "
+      "error",
       set_backs},
      {"glint/nested",
       "GLINT (2 layers)",

@@ -208,7 +208,7 @@ void set_plus(GlintConfig& config) {
 
 void set_backs(GlintConfig& config) {
   set_plus(config);
-  config.pane_backs = true;
+  config.pane_backs = config.clip_at_white = true;
 }
 
 void set_nested(GlintConfig& config, int layers) {

@@ -44,6 +44,7 @@ struct GlintConfig {
   // Panes seen through others mirror, too, and the transmission set alone is held to photos
   // without what panes mirror in them.
   bool pane_backs = false;
+  bool clip_at_white = false;  // where a photo is white, a brighter picture is no error
   // Initial sets.
   float initial_transparency = 0.01f, initial_specular = 1e-3f;
   float reflection_opacity = 0.1f;

@@ -201,8 +201,14 @@ void TransmissionLosses::add_direct(
   if (config_.lambda_direct > 0) {
     const PhotometricWeights direct{
         config_.lambda_direct * weights.l1, config_.lambda_direct * weights.ssim};
-    const PhotometricTerms terms =
-        photometric_.evaluate(direct_color_, direct_photo(view), direct, dL_dcolor_);
+    const Photo photo = direct_photo(view);
+    const PhotometricTerms terms = photometric_.evaluate(
+        clips_at_white_ ? white_.clip(direct_color_, view.rgb, photo.rgb) : direct_color_,
+        photo,
+        direct,
+        dL_dcolor_
+    );
+    if (clips_at_white_) white_.vjp(direct_color_, view.rgb, photo.rgb, dL_dcolor_);
     stats.terms["direct"] = terms.weighted(direct);
   }
   add_direct_geometry(view, iteration, out, stats);

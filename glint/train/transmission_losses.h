@@ -7,6 +7,7 @@
 #include <string>
 
 #include "glint/render/glass_transport.h"
+#include "glint/train/clip_at_white.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/masked_transparency.h"
 #include "glint/train/perceptual.h"
@@ -80,6 +81,8 @@ class TransmissionLosses {
   // [H][W][3] what the set on its own is held to in the next add(), in the photo's place; it must
   // stay until then.
   void look_at(const Image& photo) { photo_ = &photo; }
+  // Whether its picture is no error where the photo is white and it is brighter.
+  void clip_at_white(bool clips) { clips_at_white_ = clips; }
   // Adds the gradient of the entropy of the surfels' t, the last stretch of the masked prior.
   void add_surfel_entropy(
       int iteration,
@@ -138,6 +141,8 @@ class TransmissionLosses {
   TransparencyPriorLoss transparency_prior_;
   MaskedTransparencyLoss masked_prior_;
   PhotometricLoss photometric_;
+  WhiteClip white_;
+  bool clips_at_white_ = false;
   PerceptualLoss* perceptual_ = nullptr;
   PerceptualConfig perceptual_config_;
   GeometryLosses direct_geometry_;
