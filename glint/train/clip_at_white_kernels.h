@@ -9,20 +9,23 @@ namespace glint {
 
 inline constexpr float kWhite = 0.995f;  // of a photo's channel, 8 bits: 254 and 255
 
-// target: what the picture is held to; the photo, or what is left of it.
+// Of a channel of a pixel. target: what the picture is held to; the photo, or what is left of it.
+GLINT_HD bool is_beyond_white(float image, float photo, float target) {
+  return photo >= kWhite && image > target;
+}
+
 struct ClipAtWhite {
   const float *image, *photo, *target;  // [H][W][3]
   float* clipped;
   GLINT_HD void operator()(std::size_t i) const {
-    const bool no_error = photo[i] >= kWhite && image[i] > target[i];
-    clipped[i] = no_error ? target[i] : image[i];
+    clipped[i] = is_beyond_white(image[i], photo[i], target[i]) ? target[i] : image[i];
   }
 };
 struct ClipAtWhiteVjp {
   const float *image, *photo, *target;
   float* gradient;
   GLINT_HD void operator()(std::size_t i) const {
-    if (photo[i] >= kWhite && image[i] > target[i]) gradient[i] = 0;
+    if (is_beyond_white(image[i], photo[i], target[i])) gradient[i] = 0;
   }
 };
 
