@@ -343,7 +343,7 @@ class Glint final : public MethodOf<GlintConfig> {
           iteration, kTransparencyChannel, interface, model_.interface, stats
       );
     transmission_losses_.leave_out(model_.mirrors.seen());
-    transmission_losses_.look_at(config_.pane_backs ? model_.without_panes(view.rgb) : view.rgb);
+    transmission_losses_.look_at(model_.without_panes(view.rgb));
     if (phase_.transmission)
       transmission_losses_.add(
           view,
@@ -461,13 +461,6 @@ SettingGuide guide() {
       "beyond the paper: secondary sets start as copies of the interface, few resets, rates that "
       "settle, panes that show what the camera behind them sees",
       set_plus},
-     {"glint/backs",
-      "GLINT+ (backs)",
-      "",
-      "beyond the paper: GLINT+ whose panes, seen through others, mirror as well; the transmission "
-      "set alone is held to photos without what panes mirror; being brighter than white is no "
-      "error",
-      set_backs},
      {"glint/nested",
       "GLINT (2 layers)",
       "",

@@ -196,19 +196,17 @@ void set_plus(GlintConfig& config) {
   config.densify.min_opacity = row.densify.min_opacity;
   config.transmission_min_opacity = row.transmission_min_opacity;
   config.mirror.observe_every = row.mirror.observe_every;
-  // Mirrors and panes show what the camera behind their plane sees.
+  // Mirrors and panes show what the camera behind their plane sees; a pane has two faces.
   config.plane_mirrors = true;
+  config.glass_f0 = 2 * kGlassF0;
+  // So mirrored windows may teach what is brighter than white.
+  config.clip_at_white = true;
   // The transmission set alone is held to the photos, less than in the row.
   config.transmission_losses.lambda_direct = 0.3f;
   config.transmission_losses.lambda_direct_consistency = 0.1f;
   // Once the sets are grown, rates fall: what is left of the run averages over views and noise.
   config.rates.settled = 0.03f;
   config.freeze = "nothing";
-}
-
-void set_backs(GlintConfig& config) {
-  set_plus(config);
-  config.pane_backs = config.clip_at_white = true;
 }
 
 void set_nested(GlintConfig& config, int layers) {

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "glint/render/transport.h"
 #include "glint/train/densify.h"
 #include "glint/train/geometry_losses.h"
 #include "glint/train/initial_points.h"
@@ -41,9 +42,7 @@ struct GlintConfig {
   float layer_gap = 0.05f, pane_gap = 0.4f;  // metres, LayersCall
   MirrorCutoffs mirror;
   bool plane_mirrors = false;  // and panes: looks for them once guidance of t begins
-  // Panes seen through others mirror, too, and the transmission set alone is held to photos
-  // without what panes mirror in them.
-  bool pane_backs = false;
+  float glass_f0 = kGlassF0;   // what glass mirrors at normal incidence: of one surface
   bool clip_at_white = false;  // where a photo is white, a brighter picture is no error
   // Initial sets.
   float initial_transparency = 0.01f, initial_specular = 1e-3f;
@@ -149,7 +148,6 @@ void set_text(GlintConfig& config);
 // Beyond the paper.
 void set_plus(GlintConfig& config);
 // GLINT+ whose panes' backs mirror, too.
-void set_backs(GlintConfig& config);
 // GLINT+ with so many layers.
 void set_nested(GlintConfig& config, int layers);
 // With the true interface.

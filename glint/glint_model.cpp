@@ -44,6 +44,7 @@ const Image& GlintModel::compose(
   phase_ = phase;
   transport_.set_options(
       {.channels = interface_channels(interface.cloud()),
+       .glass_f0 = config.glass_f0,
        .transmission = phase.transmission,
        .reflection = phase.reflection,
        .detach_origins = true,
@@ -145,13 +146,12 @@ void GlintModel::render_transmission(
     copy_color(out.color, layers_.transmission);
   } else {
     RasterSettings settings;
-    const bool with_backs = config.pane_backs && !layered_;
-    settings.with_surface = with_behind || layered_ || with_backs;
+    settings.with_surface = with_behind || layered_ || !backs_.planes.empty();
     if (layered_) settings.detached_features = interface_settings(config, false).detached_features;
     const RasterOutput& out =
         transmission.forward(camera, phase_.transmission_degree, settings, near_limit_);
     copy_color(out.features, layers_.transmission);
-    if (with_backs) add_backs(config, out.depth_median);
+    if (!layered_) add_backs(config, out.depth_median);
   }
 }
 
@@ -159,7 +159,7 @@ void GlintModel::render_transmission(
 // training: at Fresnel's share it says little of the sets, and the way back is a fifth of a step.
 void GlintModel::add_backs(const GlintConfig& config, const Image& depth) {
   MirrorsCall call = mirrors_call(camera_, config, phase_);
-  call.backs = true;
+  call.f0 = config.glass_f0;
   const Image& with_backs =
       backs_.put({interface, transmission}, call, depth, layers_.transmission);
   if (&with_backs != &layers_.transmission) copy_color(with_backs, layers_.transmission);

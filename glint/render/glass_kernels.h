@@ -20,13 +20,17 @@ GLINT_HD float feature_or_zero(const float* feature, int channel) {
 
 struct GlassOptions {
   InterfaceChannels channels;
-  float f0 = 0.04f;             // of Fresnel's term
+  float f0 = kGlassF0;          // of Fresnel's term
+  float glass_f0 = kGlassF0;    // where t is above 0.5
   bool transmission = true;     // off: t counts as 0
   bool reflection = true;       // off: k_s counts as 0
   bool detach_origins = false;  // no gradient from reflections to the interface's depth
   bool fresnel = true;          // off: k_s = s, for methods without it
   bool opaque_fresnel = true;   // off: so where t is at most 0.5
   bool linear_light = false;    // layers are added as linear values, not as displayed ones
+
+  static GLINT_HD bool is_glass(float t) { return t > 0.5f; }
+  GLINT_HD float f0_at(float t) const { return is_glass(t) ? glass_f0 : f0; }
 };
 
 // Zero where there is no such map.
@@ -85,8 +89,8 @@ struct ReadInterface {
     const PixelRay ray = rays.at(i);
     const float specular = feature_or_zero(feature, options.channels.specular);
     const float t = feature_or_zero(feature, options.channels.transparency);
-    const bool has_fresnel = options.fresnel && (options.opaque_fresnel || t > 0.5f);
-    const float fresnel = keep(has_fresnel, schlick(options.f0, -dot(n, ray.unit())));
+    const bool has_fresnel = options.fresnel && (options.opaque_fresnel || options.is_glass(t));
+    const float fresnel = keep(has_fresnel, schlick(options.f0_at(t), -dot(n, ray.unit())));
     out.depth[i] = z;
     put3(out.normal, i, n);
     out.transparency[i] = options.transmission ? t : 0.0f;
@@ -146,7 +150,7 @@ struct ReadInterfaceVjp {
   PixelRays rays;
   GlassOptions options;
   int channels;
-  const float *alpha, *depth_sum, *raw_normal;                   // of the interface
+  const float *features, *alpha, *depth_sum, *raw_normal;        // of the interface
   const float *normal, *specular, *fresnel;                      // of the buffer
   const float *dL_dcolor, *dL_dt, *dL_dmirrored;                 // of compose()
   const float *dL_dmap_t, *dL_dorigins, *dL_ddirections;         // may be null
@@ -167,7 +171,9 @@ struct ReadInterfaceVjp {
     mirrored_share_vjp(specular[i], fresnel[i], dL_dmirrored[i], dL_dspecular, dL_dfresnel);
     if (options.channels.specular >= 0) feature[options.channels.specular] += dL_dspecular;
     dL_dfresnel = keep(fresnel[i] > 0, dL_dfresnel);  // 0 is none: F is at least f0
-    Vec3f dL_dn = -schlick_vjp(options.f0, -dot(n, ray.unit()), dL_dfresnel) * ray.unit();
+    const float* read = features + static_cast<std::size_t>(channels) * i;
+    const float f0 = options.f0_at(feature_or_zero(read, options.channels.transparency));
+    Vec3f dL_dn = -schlick_vjp(f0, -dot(n, ray.unit()), dL_dfresnel) * ray.unit();
     if (dL_dorigins != nullptr) through_rays(i, ray, n, dL_dn);
     const float norm = length(map3(raw_normal, i));
     put3(dL_dnormal, i, map3(dL_dnormal, i) + normalize_vjp(n, norm, dL_dn));

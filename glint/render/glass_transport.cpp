@@ -131,6 +131,7 @@ void GlassTransport::interface_vjp(
           pixel_rays(camera),
           options_,
           dL_dinterface.features.channels(),
+          interface.features.on_device(),
           interface.alpha.on_device(),
           interface.depth_sum.on_device(),
           interface.normal.on_device(),

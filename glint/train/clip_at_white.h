@@ -14,7 +14,7 @@ class WhiteClip {
   const Image& clip(const Image& image, const Image& photo, const Image& target) {
     fit(clipped_, image.size(), 3);
     run_kernel(
-        image.values().size(),
+        3 * image.num_pixels(),
         kGrain,
         ClipAtWhite{image.on_device(), photo.on_device(), target.on_device(), clipped_.on_device()}
     );
@@ -23,7 +23,7 @@ class WhiteClip {
   // From the gradient of clip() to that of `image`, in place.
   void vjp(const Image& image, const Image& photo, const Image& target, Image& gradient) const {
     run_kernel(
-        image.values().size(),
+        3 * image.num_pixels(),
         kGrain,
         ClipAtWhiteVjp{
             image.on_device(), photo.on_device(), target.on_device(), gradient.on_device()}

@@ -34,7 +34,7 @@ void MirrorView::mark_pixels(const MirrorPlane& plane, const Image& depth) {
           static_cast<float>(plane.half_width),
           static_cast<float>(plane.half_height),
           call_.gap,
-          call_.backs ? kGlassF0 : 1.0f,
+          call_.f0,
           depth.on_device(),
           seen_.on_device(),
           plane_depth_.on_device(),
@@ -45,7 +45,7 @@ void MirrorView::mark_pixels(const MirrorPlane& plane, const Image& depth) {
 // Where the transmission set begins: behind the first surface. What stands in a case is of that
 // set, too, and between a pane's back and the interface, so there it begins at the pane.
 const Image& MirrorView::limit_behind(const Image& depth) {
-  if (call_.backs) return limit_;
+  if (call_.of_backs()) return limit_;
   fit(behind_limit_, camera_.size(), 1);
   run_kernel(
       behind_limit_.num_pixels(),

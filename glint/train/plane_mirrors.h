@@ -27,9 +27,10 @@ struct MirrorsCall {
   RasterSettings settings;  // of the interface
   int interface_degree = 3, transmission_degree = 3;
   bool transmission = true;
-  float gap = 0.05f;   // metres about a mirror in which nothing counts as before or behind it
-  bool backs = false;  // planes are backs of panes
+  float gap = 0.05f;  // metres about a mirror in which nothing counts as before or behind it
+  float f0 = 1;       // of what planes mirror; below 1: backs of panes, at Fresnel's share
   bool linear_light = false;
+  bool of_backs() const { return f0 < 1; }
 };
 
 // One mirror in one picture.

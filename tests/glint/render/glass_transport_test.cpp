@@ -30,6 +30,7 @@ struct Fixture {
     Rng rng(seed);
     camera = random_camera(rng, {kWidth, kHeight});
     options.channels = {.transparency = 3, .specular = 4};
+    options.glass_f0 = 0.2f;
     interface.features =
         random_map(rng, camera.size(), static_cast<int>(kInterfaceChannels), 0.1f, 0.9f);
     interface.alpha = random_map(rng, camera.size(), 1, 0.5f, 1);
@@ -159,6 +160,20 @@ TEST_CASE("a set that is switched off leaves neither darkness nor gradient") {
   const GlassLayers& g = transport.compose_vjp(l, f.weights);
   for (std::size_t i = 0; i < image.values().size(); ++i)
     CHECK(g.interface.values()[i] == f.weights.values()[i]);
+}
+
+TEST_CASE("glass mirrors its own share of what meets it along the normal") {
+  Fixture f(8);
+  GlassTransport transport(f.options);
+  const Image glass = transport.read_interface(f.camera, f.interface).fresnel;
+  f.options.glass_f0 = f.options.f0;
+  transport.set_options(f.options);
+  const GlassBuffer& alike = transport.read_interface(f.camera, f.interface);
+  for (std::size_t i = 0; i < glass.num_pixels(); ++i) {
+    const float plain = alike.fresnel.data()[i], steep = (plain - 0.04f) / 0.96f;
+    const bool is_glass = alike.transparency.data()[i] > 0.5f;
+    CHECK(glass.data()[i] == Approx(is_glass ? 0.2f + 0.8f * steep : plain));
+  }
 }
 
 TEST_CASE("pixels without a surface mirror nothing and show the interface as it is") {
