@@ -67,6 +67,7 @@ void InnerLayers::see(
   layer.mirrors = call_.reflection && first;
   layer.transport.set_options(
       {.channels = channels_,
+       .glass_f0 = call_.glass_f0,
        .reflection = layer.mirrors,
        .detach_origins = true,
        .opaque_fresnel = false,

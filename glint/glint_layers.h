@@ -44,6 +44,7 @@ struct LayersCall {
   // around a pane there are faint surfels with its t.
   float gap = 0, pane_gap = 0;
   bool linear_light = false;
+  float glass_f0 = kGlassF0;  // of glass, along its normal
 };
 
 // One of the layers behind the interface.

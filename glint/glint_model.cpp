@@ -101,7 +101,8 @@ void GlintModel::add_inner_layers(const GlintConfig& config) {
       .step = phase_.step,
       .gap = config.layer_gap,
       .pane_gap = config.pane_gap,
-      .linear_light = config.linear_light};
+      .linear_light = config.linear_light,
+      .glass_f0 = config.glass_f0};
   copy_color(
       inner_.forward(
           {interface, transmission, reflection}, call, config.layers - 1, buffer(), near_limit_

@@ -33,6 +33,10 @@ struct Fixture {
     options.glass_f0 = 0.2f;
     interface.features =
         random_map(rng, camera.size(), static_cast<int>(kInterfaceChannels), 0.1f, 0.9f);
+    for (std::size_t i = 0; i < interface.features.num_pixels(); ++i) {
+      float& t = interface.features.data()[kInterfaceChannels * i + 3];
+      if (std::abs(t - 0.5f) < 0.02f) t = 0.45f;  // what is glass does not depend on a step
+    }
     interface.alpha = random_map(rng, camera.size(), 1, 0.5f, 1);
     interface.depth_sum = random_map(rng, camera.size(), 1, 1, 2);
     interface.normal = random_map(rng, camera.size(), 3, -0.3f, 0.3f);
