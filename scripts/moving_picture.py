@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """An animated WebP of a camera path, for pages that show no video: what README opens with.
 
-    glint-bench dataset make glassroom --scene room_2 --width 240 --height 135 --views 48 --spp 48 --out ROOM
+    glint-bench dataset make glassroom --scene room_2 --width 128 --height 72 --views 48 --spp 64 --out ROOM
     glint-bench train --dataset ROOM --method glint/plus --iterations 8000 --run RUN
     glint-bench render --run RUN --path orbit --frames 60 --size 320x180 \\
         --maps rgb,away,reflection,depth,behind_depth,normal --to FOLDER
