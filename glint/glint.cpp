@@ -459,7 +459,8 @@ SettingGuide guide() {
       "GLINT+",
       "",
       "beyond the paper: secondary sets start as copies of the interface, few resets, rates that "
-      "settle, panes that show what the camera behind them sees",
+      "settle, panes that show what the camera behind them sees, pictures clipped where photos are "
+      "white",
       set_plus},
      {"glint/nested",
       "GLINT (2 layers)",

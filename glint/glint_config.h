@@ -42,7 +42,7 @@ struct GlintConfig {
   float layer_gap = 0.05f, pane_gap = 0.4f;  // metres, LayersCall
   MirrorCutoffs mirror;
   bool plane_mirrors = false;  // and panes: looks for them once guidance of t begins
-  float glass_f0 = kGlassF0;   // what glass mirrors at normal incidence: of one surface
+  float glass_f0 = kGlassF0;   // what glass mirrors along its normal; the paper: as one face does
   bool clip_at_white = false;  // where a photo is white, a brighter picture is no error
   // Initial sets.
   float initial_transparency = 0.01f, initial_specular = 1e-3f;
@@ -147,7 +147,6 @@ void set_release(GlintConfig& config);
 void set_text(GlintConfig& config);
 // Beyond the paper.
 void set_plus(GlintConfig& config);
-// GLINT+ whose panes' backs mirror, too.
 // GLINT+ with so many layers.
 void set_nested(GlintConfig& config, int layers);
 // With the true interface.
