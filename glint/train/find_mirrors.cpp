@@ -226,7 +226,8 @@ class MirrorSearch {
     move_and_turn(plane, kPaneStep * step_ / 2, kTurn / 4, kPaneFinest);
     return with_its_rectangle(fitted);
   }
-  // The view with its glass mirroring black, as GlintModel composes it.
+  // The view with its glass mirroring black, as GlintModel composes it but for GLINT+'s second face
+  // of glass: what the panes of docs/results were found with.
   void know(const View& view, const RasterOutput& surface, RasterPass& behind) {
     GlassTransport transport;
     transport.set_options(
