@@ -26,7 +26,6 @@ bool reaches_terminal() {
 }  // namespace
 
 void set_quiet(bool value) { quiet = value; }
-bool is_quiet() { return quiet; }
 
 namespace log {
 void text(std::string_view text) {

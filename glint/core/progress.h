@@ -16,7 +16,6 @@ namespace glint {
 inline constexpr const char* kDrawnProgress = "GLINT_PROGRESS=drawn";
 
 void set_quiet(bool quiet);  // silences progress and log::info; warnings stay
-bool is_quiet();
 
 // One line an event on standard error; standard output carries results only.
 // Nobody who can read it, or no room, is no reason to stop.
