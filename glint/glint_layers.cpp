@@ -159,7 +159,7 @@ struct SeenLayer {
   // Behind a surface that lets little through: that surface again.
   void fill_behind_opaque(const SeenLayer& before) {
     for (std::size_t i = 0; i < depth.num_pixels(); ++i) {
-      if (before.transparency.data()[i] > 0.5f) continue;
+      if (is_glass(before.transparency.data()[i])) continue;
       depth.data()[i] = before.depth.data()[i];
       put3(normal.data(), i, get3(before.normal.data(), i));
       transparency.data()[i] = 0;

@@ -21,7 +21,7 @@ GLINT_HD float feature_or_zero(const float* feature, int channel) {
 struct GlassOptions {
   InterfaceChannels channels;
   float f0 = kGlassF0;          // of Fresnel's term
-  float glass_f0 = kGlassF0;    // where t is above 0.5
+  float glass_f0 = kGlassF0;    // of panes
   bool transmission = true;     // off: t counts as 0
   bool reflection = true;       // off: k_s counts as 0
   bool detach_origins = false;  // no gradient from reflections to the interface's depth
@@ -29,7 +29,6 @@ struct GlassOptions {
   bool opaque_fresnel = true;   // off: so where t is at most 0.5
   bool linear_light = false;    // layers are added as linear values, not as displayed ones
 
-  static GLINT_HD bool is_glass(float t) { return t > 0.5f; }
   GLINT_HD float f0_at(float t) const { return is_glass(t) ? glass_f0 : f0; }
 };
 
@@ -89,7 +88,7 @@ struct ReadInterface {
     const PixelRay ray = rays.at(i);
     const float specular = feature_or_zero(feature, options.channels.specular);
     const float t = feature_or_zero(feature, options.channels.transparency);
-    const bool has_fresnel = options.fresnel && (options.opaque_fresnel || options.is_glass(t));
+    const bool has_fresnel = options.fresnel && (options.opaque_fresnel || is_glass(t));
     const float fresnel = keep(has_fresnel, schlick(options.f0_at(t), -dot(n, ray.unit())));
     out.depth[i] = z;
     put3(out.normal, i, n);

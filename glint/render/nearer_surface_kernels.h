@@ -5,6 +5,7 @@
 #include "glint/core/kernel.h"
 #include "glint/render/blend.h"
 #include "glint/render/depth_normal.h"
+#include "glint/render/transport.h"
 
 namespace glint {
 
@@ -37,7 +38,7 @@ struct SurfaceMapRefs {
 
 // What the interface set has there counts where it is a pane, in front of what the other set has.
 GLINT_HD bool is_nearer_pane(float transparency, float pane_depth, float other_depth) {
-  return transparency > 0.5f && pane_depth > 0 && (other_depth <= 0 || pane_depth < other_depth);
+  return is_glass(transparency) && pane_depth > 0 && (other_depth <= 0 || pane_depth < other_depth);
 }
 
 struct PickNearer {

@@ -10,6 +10,9 @@ namespace glint {
 
 inline constexpr float kGlassF0 = 0.04f;  // reflectance of glass at normal incidence
 
+// Whether a surface counts as a pane, where that is yes or no.
+GLINT_HD bool is_glass(float transparency) { return transparency > 0.5f; }
+
 // Schlick's Fresnel term [Na26 Eq. 6]: F0 + (1 - F0)(1 - c)^5, c = max(0, n.w_o).
 template <class T>
 GLINT_HD T schlick(T f0, T cosine) {

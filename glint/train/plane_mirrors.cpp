@@ -120,13 +120,13 @@ void MirrorView::put_maps(MapSet& maps) const {
          {MapId("transmitted"), MapId("path_t"), MapId("path_tt"), MapId("path_tr")})
       put_vector(id, i, {});
     for (std::size_t layer = 1; layer < kMaxLayers; ++layer) {
-      const bool further = layer > 1 && t > 0.5f;
+      const bool further = layer > 1 && is_glass(t);
       const Vec3f n = get3(normals[further ? 1 : 0].data(), there);
       put(kLayerDepth[layer], i, (further ? behind : surface).depth_median.data()[there]);
       put_vector(kLayerNormal[layer], i, {-n.x, n.y, n.z});
       put(kLayerTransparency[layer], i, layer == 1 ? t : 0);
     }
-    put("behind_depth", i, (t > 0.5f ? behind : surface).depth_median.data()[there]);
+    put("behind_depth", i, (is_glass(t) ? behind : surface).depth_median.data()[there]);
   }
 }
 

@@ -57,9 +57,9 @@ void add_profile_options(const CommonOptionAdder& add, CommonOptions& common) {
   const char* methods =
       "globs of whole ids, a,b*,c (* also runs over /); also beyond the profile's";
   add.option(kCellOptions, "--methods", common.methods, methods)->delimiter(',');
-  const char* only = "only cells whose scene/method/seed matches a glob";
-  add.option(kCellOptions, "--only", common.only, only);
-  add.option(kCellOptions, "--skip", common.skip, "no cells that match a glob");
+  const char* only = "only cells whose scene/method/seed matches a glob: a,b*,c";
+  add.option(kCellOptions, "--only", common.only, only)->delimiter(',');
+  add.option(kCellOptions, "--skip", common.skip, "no cells that match a glob")->delimiter(',');
 }
 
 // How a method is trained.

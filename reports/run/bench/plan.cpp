@@ -8,11 +8,11 @@ namespace glint {
 
 namespace {
 
-// For a misspelt scene or method of --only.
-std::string hint_for(const Profile& profile, const CellFilter& filter) {
+// For a misspelt scene or method.
+std::string hint_for(const Profile& profile, const std::vector<std::string>& patterns) {
   std::vector<std::string> known = named_methods(profile.methods);
   for (const SceneSource& source : profile.sources()) known.push_back(source.scene);
-  for (const std::string& pattern : filter.only)
+  for (const std::string& pattern : patterns)
     if (const std::string nearest = nearest_word(pattern, known); !nearest.empty())
       return fmt::format("; did you mean '{}'?", nearest);
   return "; scenes and methods: " + comma_list(known) +
@@ -41,9 +41,9 @@ bool fits_any(
   return false;
 }
 
-// A misspelt pattern would leave nothing out without a word. `methods`: those that are run; the
-// profile's others may be named, too.
-void check_left_out(
+// A misspelt pattern would choose or leave out nothing without a word. `methods`: those that are
+// run; the profile's others may be named, too.
+void check_patterns(
     const Profile& profile, const CellFilter& filter, std::vector<std::string> methods
 ) {
   const std::vector<std::string> named = named_methods(profile.methods);
@@ -54,12 +54,14 @@ void check_left_out(
       GLINT_CHECK(
           fits_any(pattern, sources, methods),
           kUsage,
-          "{} '{}' fits no scene, method or cell of profile {}",
+          "{} '{}' fits no scene, method or cell of profile {}{}",
           where,
           pattern,
-          profile.name
+          profile.name,
+          hint_for(profile, {pattern})
       );
   };
+  check(filter.only, "--only");
   check(filter.skip, "--skip");
   check(profile.leave_out, "leave_out");
 }
@@ -72,7 +74,7 @@ std::vector<PlanCell> make_plan(
   const auto methods = planned_methods(profile.methods, filter.methods);
   for (const auto& entry : profile.overrides.items())
     create_method(entry.key(), entry.value());  // also of those that are not run
-  check_left_out(profile, filter, methods);
+  check_patterns(profile, filter, methods);
   const CellFilter of_profile{.skip = profile.leave_out};
   std::vector<PlanCell> plan;
   for (const SceneSource& source : profile.sources())
@@ -91,7 +93,7 @@ std::vector<PlanCell> make_plan(
       profile.name,
       profile.scenes.size(),
       methods.size(),
-      hint_for(profile, filter)
+      hint_for(profile, filter.only)
   );
   return plan;
 }

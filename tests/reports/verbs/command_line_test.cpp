@@ -45,6 +45,7 @@ TEST_CASE("wrong command lines exit with 1") {
   CHECK(run({"status", "--threads", "-1"}) == 1);
   CHECK(run({"status", "--set", "nonsense"}) == 1);
   CHECK(run({"status", "--only", "room_9"}) == 1);
+  CHECK(run({"status", "--only", "room_1,room_9"}) == 1);
   CHECK(run({"status", "--device", "tpu"}) == 1);
   CHECK(run({"table", "--format", "docx"}) == 1);
   CHECK(run({"table", "table9", "--profile", "ci"}) == 1);
@@ -141,6 +142,7 @@ TEST_CASE("a choice of methods is printed, not written, and names what there is"
   );
   CHECK(run({"table", "--profile", "smoke", "--out", out, "--methods", "mine"}) == 0);
   CHECK(run({"table", "--profile", "smoke", "--out", out, "--only", "room_1"}) == 0);
+  CHECK(run({"table", "--profile", "smoke", "--out", out, "--only", "room_9,room_1"}) == 0);
   CHECK_FALSE(fs::exists(folder / "smoke/tables"));
   CHECK(run({"table", "--profile", "smoke", "--out", out, "--methods", "2dgs"}) == 1);
   CHECK(run({"table", "--profile", "smoke", "--out", out, "--methods", "nothing"}) == 1);
