@@ -51,7 +51,11 @@ TEST_CASE("filters match the whole cell or its scene or method") {
 }
 
 TEST_CASE("filters that leave nothing are a usage error") {
-  CHECK_THROWS_WITH(count({{"room_9"}, {}}), Catch::Contains("no cell left"));
+  CHECK_THROWS_WITH(count({{"room_1/fake/7"}, {}}), Catch::Contains("no cell left"));
+  CHECK_THROWS_WITH(
+      count({{"room_1", "rom_2"}, {}}),
+      Catch::Contains("--only 'rom_2'") && Catch::Contains("did you mean 'room_2'?")
+  );
 }
 
 TEST_CASE("unknown methods and fields stop a plan before anything runs") {
