@@ -26,7 +26,7 @@ struct GlassOptions {
   bool reflection = true;       // off: k_s counts as 0
   bool detach_origins = false;  // no gradient from reflections to the interface's depth
   bool fresnel = true;          // off: k_s = s, for methods without it
-  bool opaque_fresnel = true;   // off: so where t is at most 0.5
+  bool opaque_fresnel = true;   // off: none but panes have it
   bool linear_light = false;    // layers are added as linear values, not as displayed ones
 
   GLINT_HD float f0_at(float t) const { return is_glass(t) ? glass_f0 : f0; }
