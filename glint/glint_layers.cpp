@@ -186,7 +186,8 @@ SeenLayer seen_behind(const InnerLayer& last) {
 
 }  // namespace
 
-void InnerLayers::add_maps(const GlassBuffer& interface, MapSet& out) const {
+void InnerLayers::add_maps(const GlassBuffer& interface, const PlaneMirrors& backs, MapSet& out)
+    const {
   SeenLayer before;
   for (std::size_t m = 0; m <= layers_.size(); ++m) {
     const bool is_rest = m == layers_.size();
@@ -199,27 +200,38 @@ void InnerLayers::add_maps(const GlassBuffer& interface, MapSet& out) const {
     if (!is_rest) out[kLayerTransparency[m + 1]] = before.transparency;
   }
   out["behind_depth"] = before.depth;
-  add_parts(interface, out);
+  add_parts(interface, backs, out);
 }
 
 // By the first two layers; what the first mirrors is not told apart by what its rays met.
-void InnerLayers::add_parts(const GlassBuffer& interface, MapSet& out) const {
+void InnerLayers::add_parts(const GlassBuffer& interface, const PlaneMirrors& backs, MapSet& out)
+    const {
   const InnerLayer& second = layers_.front();
   const GlassBuffer& buffer = second.transport.buffer();
-  Image straight = buffer.transparency, through = buffer.transparency, mirrored = straight;
+  // Of black, what backs mirror; of white, with what they leave.
+  const ImageSize size = buffer.depth.size();
+  Image by_backs(size.width, size.height, 3), with_white(size.width, size.height, 3, 1);
+  backs.put_again(by_backs), backs.put_again(with_white);
+  Image straight = buffer.transparency, through = straight, mirrored = straight,
+        to_backs = straight;
   for (std::size_t i = 0; i < straight.num_pixels(); ++i) {
     const float light = (1 - interface.specularity.data()[i]) * interface.transparency.data()[i];
+    const float left = light * (with_white.data()[3 * i] - by_backs.data()[3 * i]);
     const float t = buffer.transparency.data()[i], k = buffer.specularity.data()[i];
-    straight.data()[i] = light * (1 - k) * (1 - t);
-    through.data()[i] = light * (1 - k) * t;
-    mirrored.data()[i] = light * k;
+    straight.data()[i] = left * (1 - k) * (1 - t);
+    through.data()[i] = left * (1 - k) * t;
+    mirrored.data()[i] = left * k;
+    to_backs.data()[i] = light;
   }
   const auto part = [&](const Image& layer, const Image& weight) {
     return part_of_picture(out["rgb"], layer, weight, call_.linear_light);
   };
   out["path_t"] = part(second.radiance.interface, straight);
   out["path_tt"] = part(second.radiance.transmission, through);
-  if (second.mirrors) out["path_tr"] = part(second.radiance.reflection, mirrored);
+  if (second.mirrors)
+    out["path_tr"] = part(second.radiance.reflection, mirrored);
+  else if (!backs.planes.empty())
+    out["path_tr"] = part(by_backs, to_backs);
 }
 
 }  // namespace glint

@@ -11,11 +11,12 @@
 // only glass (t > 0.5) has Fresnel's term, an opaque surface has k = s: so the official code's one
 // path of second order is k = 2 where t_2 = 0.
 //
-// Deviations: the first two layers mirror, further ones only let light through; mirrored rays meet
-// the reflection set alone, for in the interface set the pane they come from and the next one are
-// opaque. A layer to which less than 0.02 of a pixel's light gets is as without layers, and
-// density control of the transmission set looks at the first and the last of its rasterisations.
-// Mirrors are no layer: glint/train/plane_mirrors.h.
+// Deviations: the first two layers mirror, further ones only let light through; where planes of
+// panes are known, their backs mirror and not the second layer (glint/train/plane_mirrors.h);
+// mirrored rays meet the reflection set alone, for in the interface set the pane they come from and
+// the next one are opaque. A layer to which less than 0.02 of a pixel's light gets is as without
+// layers, and density control of the transmission set looks at the first and the last of its
+// rasterisations. Mirrors are no layer: glint/train/plane_mirrors.h.
 #pragma once
 
 #include <vector>
@@ -24,6 +25,7 @@
 #include "glint/render/glass_transport.h"
 #include "glint/render/nearer_surface.h"
 #include "glint/train/mirrored_layer.h"
+#include "glint/train/plane_mirrors.h"
 #include "glint/train/trainable_set.h"
 
 namespace glint {
@@ -75,13 +77,14 @@ class InnerLayers {
   );
   // Back through it, to all sets; interface_too off: that set stays as it is.
   void backward(GlassSets sets, const Image& dL_dradiance, bool interface_too);
-  // Adds the maps of the layers and of the parts of the picture; `interface`: as in forward().
-  void add_maps(const GlassBuffer& interface, MapSet& out) const;
+  // Adds the maps of the layers and of the parts of the picture; `interface`: as in forward();
+  // backs: what panes mirror in what forward() has returned.
+  void add_maps(const GlassBuffer& interface, const PlaneMirrors& backs, MapSet& out) const;
 
  private:
   void see(GlassSets sets, std::size_t m, const GlassBuffer& before, const Image& near_limit);
   const Image& radiance_vjp(GlassSets sets, std::size_t m, const Image& dL_dradiance);
-  void add_parts(const GlassBuffer& interface, MapSet& out) const;
+  void add_parts(const GlassBuffer& interface, const PlaneMirrors& backs, MapSet& out) const;
 
   LayersCall call_;
   InterfaceChannels channels_;

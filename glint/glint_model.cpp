@@ -62,7 +62,6 @@ const Image& GlintModel::compose(
   rasterized_ = phase.transmission && config.transmission != "trace";
   layered_ = rasterized_ && config.layers > 1;
   if (phase.transmission) render_transmission(camera, config, with_behind);
-  if (layered_) add_inner_layers(config);
   const MirrorsCall call = mirrors_call(camera, config, phase);
   if (phase.reflection) render_reflection(config, call);
   return mirrors.put({interface, transmission}, call, buffer.depth, transport_.compose(layers_));
@@ -90,13 +89,14 @@ MirrorsCall GlintModel::mirrors_call(
       .linear_light = config.linear_light};
 }
 
-// Their radiance in the place of the transmission set's.
+// Their radiance in the place of the transmission set's. Where panes are known, their backs mirror,
+// not the second layer.
 void GlintModel::add_inner_layers(const GlintConfig& config) {
   const LayersCall call{
       .camera = camera_,
       .settings = interface_settings(config, false),
       .mirror = config.mirror,
-      .reflection = phase_.reflection,
+      .reflection = phase_.reflection && backs_.planes.empty(),
       .reflection_degree = phase_.reflection_degree,
       .step = phase_.step,
       .gap = config.layer_gap,
@@ -152,7 +152,8 @@ void GlintModel::render_transmission(
     const RasterOutput& out =
         transmission.forward(camera, phase_.transmission_degree, settings, near_limit_);
     copy_color(out.features, layers_.transmission);
-    if (!layered_) add_backs(config, out.depth_median);
+    if (layered_) add_inner_layers(config);
+    add_backs(config, out.depth_median);
   }
 }
 
@@ -184,7 +185,9 @@ const Image& GlintModel::without_panes(const Image& photo) {
 
 void GlintModel::transmission_vjp(const Image& dL_dradiance, bool interface_too) {
   if (layered_) {
-    inner_.backward({interface, transmission, reflection}, dL_dradiance, interface_too);
+    inner_.backward(
+        {interface, transmission, reflection}, backs_.put_vjp(dL_dradiance), interface_too
+    );
   } else if (!rasterized_) {
     copy_color(dL_dradiance, dL_dthrough_.color);
     transmission.trace_backward(dL_dthrough_);
@@ -261,7 +264,7 @@ MapSet GlintModel::render(
   add_depth_modes(interface.pass().rasterizer, out);
   if (phase.reflection) out["reflection"] = layers_.reflection;
   add_components(config.linear_light, out);
-  if (layered_) inner_.add_maps(buffer(), out);
+  if (layered_) inner_.add_maps(buffer(), backs_, out);
   mirrors.put_maps(out);
   return out;
 }

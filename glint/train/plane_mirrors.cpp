@@ -143,21 +143,27 @@ const Image& PlaneMirrors::put(
       copy_color(image, image_);
       clear_image(seen_, image.size(), 1);
     }
-    const std::size_t pixels = image_.num_pixels();
+    run_kernel(seen_.num_pixels(), kGrain, AddSeen{view->seen().on_device(), seen_.on_device()});
+    ++view;
+  }
+  if (num_seen_ == 0) return image;
+  put_again(image_);
+  return image_;
+}
+
+void PlaneMirrors::put_again(Image& image) const {
+  auto view = views_.begin();
+  for (std::size_t k = 0; k < num_seen_; ++k, ++view)
     run_kernel(
-        pixels,
+        image.num_pixels(),
         kGrain,
         PutMirror{
-            image_.width(),
+            image.width(),
             view->tint(),
             view->seen().on_device(),
             view->picture().on_device(),
-            image_.on_device()}
+            image.on_device()}
     );
-    run_kernel(pixels, kGrain, AddSeen{view->seen().on_device(), seen_.on_device()});
-    ++view;
-  }
-  return num_seen_ == 0 ? image : image_;
 }
 
 // The last one first.

@@ -81,7 +81,9 @@ class PlaneMirrors {
   // The gradient of `image` alone, for what is mirrored is a constant.
   const Image& put_vjp(const Image& dL_dpicture);
   void put_maps(MapSet& maps) const;
-  // Takes what the last put() has put in out of a picture of the same view [H][W][3].
+  // Puts what the last put() has put in into another picture of the same view [H][W][3].
+  void put_again(Image& image) const;
+  // Takes it out of one.
   void take_out(Image& image) const;
   // [H][W][1] 1 where the last picture shows a mirror; null: nowhere.
   const Image* seen() const { return num_seen_ > 0 ? &seen_ : nullptr; }

@@ -276,6 +276,32 @@ TEST_CASE("Maps of layers stand where the walls do, and the parts add up") {
     }
 }
 
+TEST_CASE("Where panes are known, their backs mirror in the place of the second layer") {
+  Fixture f(2);
+  const std::vector<Wall> behind = {{7, 0, 1, 0.04, 0.01}, {3, 0.8, 1}};
+  f.model.transmission = TrainableSet(walls(behind, true, 2), {});
+  const std::size_t far_wall = walls({behind[0]}, true, 2).sh_dc.size();
+  const Image without = f.picture();
+  MirrorPlane front;  // of the far pane, seen from the other side
+  front.center = {0, 0, 4}, front.normal = {0, 0, 1}, front.across = {-1, 0, 0};
+  front.half_width = 2, front.half_height = 1, front.pane = true;
+  f.model.set_planes({front});
+  const MapSet maps = f.model.render(camera(), f.config, f.phase);
+  int mirrored = 0;
+  for (std::size_t i = 0; i < maps["rgb"].values().size(); ++i) {
+    const auto value = [&](MapId id) { return maps[id].data()[i]; };
+    const float sum = value("path_t") + value("path_tt") + value("path_tr");
+    CHECK(sum == Approx(value("transmitted")).margin(1e-5));
+    mirrored += value("path_tr") > 1e-3f ? 1 : 0;
+  }
+  CHECK(mirrored > 100);
+  CHECK_FALSE(same_bytes(maps["rgb"], without));
+  f.backward();
+  check_array_gradient(
+      [&] { return f.loss(); }, f.model.transmission, &SurfelCloud::sh_dc, "far wall", far_wall
+  );
+}
+
 // V2: k_s2 = k_t0 s_tr, k_t = k_t0 (1 - s_tr), C = k_d L_intr + k_s L_refl + k_t L_trans
 // + k_s2 L_refl2, with k_t0 = (1 - k_s) t and k_d = (1 - k_s)(1 - t).
 TEST_CASE("The official code's path of second order is two layers, the inner one without t") {

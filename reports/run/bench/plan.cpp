@@ -8,15 +8,17 @@ namespace glint {
 
 namespace {
 
-// For a misspelt scene or method.
-std::string hint_for(const Profile& profile, const std::vector<std::string>& patterns) {
+// For a misspelt scene or method; `only`: what should be run, which --methods may add.
+std::string hint_for(
+    const Profile& profile, const std::vector<std::string>& patterns, bool only = true
+) {
   std::vector<std::string> known = named_methods(profile.methods);
   for (const SceneSource& source : profile.sources()) known.push_back(source.scene);
   for (const std::string& pattern : patterns)
     if (const std::string nearest = nearest_word(pattern, known); !nearest.empty())
       return fmt::format("; did you mean '{}'?", nearest);
   return "; scenes and methods: " + comma_list(known) +
-         "; a method that the profile does not name is run by --methods";
+         (only ? "; a method that the profile does not name is run by --methods" : "");
 }
 
 // A pattern of cells without its seed, if it ends in one.
@@ -58,7 +60,7 @@ void check_patterns(
           where,
           pattern,
           profile.name,
-          hint_for(profile, {pattern})
+          hint_for(profile, {pattern}, where == "--only")
       );
   };
   check(filter.only, "--only");
