@@ -126,6 +126,22 @@ TEST_CASE("A pane mirrors what the camera behind it sees, at k_s of the picture"
   CHECK(same_bytes(f.picture(), dull));
 }
 
+TEST_CASE("What is behind the pane may be traced, to the same picture") {
+  Fixture f;
+  const Image rasterized = f.picture();
+  f.config.transmission = "trace";
+  const Image traced = f.picture();
+  CHECK_FALSE(same_bytes(traced, rasterized));
+  for (std::size_t i = 0; i < traced.values().size(); ++i)
+    CHECK(traced.values()[i] == Approx(rasterized.values()[i]).margin(2e-3));
+  f.backward();
+  const auto check = [&](TrainableSet& set, FloatArray SurfelCloud::*array, const char* name) {
+    check_array_gradient([&] { return f.loss(); }, set, array, name);
+  };
+  check(f.model.transmission, &SurfelCloud::sh_dc, "colours behind");
+  check(f.model.interface, &SurfelCloud::extra_logits, "t and s of the interface");
+}
+
 TEST_CASE("Gradients reach the sets through what a pane mirrors") {
   Fixture f;
   f.model.set_planes({pane()});

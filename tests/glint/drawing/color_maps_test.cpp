@@ -79,6 +79,18 @@ TEST_CASE("colour maps leave missing pixels black and turn normals towards the v
   CHECK(shown.at(1, 0, 0) == 0);
 }
 
+TEST_CASE("shares are grey from black to white, by their first channel") {
+  Image map(3, 1, 2, 0.7f);
+  map.at(0, 0, 0) = -1, map.at(1, 0, 0) = 0.25f, map.at(2, 0, 0) = 2;
+  const Image picture = grey_picture(map);
+  REQUIRE(picture.channels() == 3);
+  for (int c = 0; c < 3; ++c) {
+    CHECK(picture.at(0, 0, c) == 0);
+    CHECK(picture.at(1, 0, c) == 0.25f);
+    CHECK(picture.at(2, 0, c) == 1);
+  }
+}
+
 TEST_CASE("colours of scalar maps get lighter with the value, and grey where there is none") {
   Image ramp(11, 1, 1);
   for (int i = 0; i < 10; ++i) ramp.at(i, 0) = 2.0f + static_cast<float>(i) / 9;

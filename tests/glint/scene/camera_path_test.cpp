@@ -171,6 +171,23 @@ TEST_CASE("a path comes back from its file") {
   }
 }
 
+TEST_CASE("a camera comes back from its JSON, with another's lens where it has none") {
+  const Camera camera = ring(5, {0.1, 0.2, 0.3}).at(2);
+  const Json json = camera_to_json(camera);
+  const Camera read = camera_from_json(json, {}, "camera");
+  CHECK(pose_difference(read, camera) < 1e-6);
+  CHECK(read.size() == camera.size());
+  CHECK(read.fx == Approx(camera.fx));
+  CHECK(read.cy == Approx(camera.cy));
+  Camera lens = camera;
+  lens.fx = 2 * camera.fx;
+  const Json pose = {{"world_from_cam", json["world_from_cam"]}};
+  CHECK(camera_from_json(pose, lens, "camera").fx == lens.fx);
+  CHECK_THROWS_WITH(
+      camera_from_json(Json::object(), lens, "cameras[3]"), Catch::Contains("cameras[3]")
+  );
+}
+
 TEST_CASE("transforms.json and the viewer's camera_path.json are read, with OpenGL axes") {
   const test::TempFolder folder;
   // At (1, 2, 3), looking along -z of the world with y up: the identity in OpenGL's axes.

@@ -57,6 +57,25 @@ TEST_CASE("colour JPEGs are read, and one that is cut off anywhere is an error")
   }
 }
 
+TEST_CASE("pictures come back from the JPEGs that are made of them, grey and in colour") {
+  const TempFolder folder;
+  for (const int channels : {1, 3}) {
+    Image image(24, 16, channels);
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 24; ++x)
+        for (int c = 0; c < channels; ++c)
+          image.at(x, y, c) = static_cast<float>(x + 2 * y + 10 * c) / 80;
+    const std::string bytes = jpeg_bytes(to_bytes(image), 95);
+    CHECK(jpeg_bytes(to_bytes(image), 20).size() < bytes.size());
+    write_file(folder / "x.jpg", bytes);
+    const Image read = read_image(folder / "x.jpg");
+    REQUIRE(read.size() == image.size());
+    REQUIRE(read.channels() == channels);
+    for (std::size_t i = 0; i < read.values().size(); ++i)
+      CHECK(read.data()[i] == Approx(image.data()[i]).margin(0.03));
+  }
+}
+
 TEST_CASE("grey JPEGs have one channel, inks are an error") {
   const TempFolder folder;
   write_file(folder / "grey.jpg", jpeg(9, 5, TJPF_GRAY, {51}));

@@ -173,6 +173,28 @@ TEST_CASE("text points with doubles and Windows line ends are read; colours may 
   CHECK(read_point_ply(folder / "plain.ply").colors.at(0).x == 0.5f);
 }
 
+TEST_CASE("binary points may be of any type of number") {
+  const TempFolder folder;
+  std::string file =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty short x\n"
+      "property double y\nproperty char z\nproperty ushort a\nproperty uint b\n"
+      "property int c\nend_header\n";
+  const auto put = [&](auto value) {
+    file.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  const auto put_row = [&](std::int16_t x, double y, std::int8_t z) {
+    put(x), put(y), put(z);
+    put(std::uint16_t{60000}), put(std::uint32_t{4000000000}), put(std::int32_t{-5});
+  };
+  put_row(-300, 0.25, -7);
+  put_row(1000, -2.5, 100);
+  write_file(folder / "x.ply", file);
+  const PointCloud points = read_point_ply(folder / "x.ply");
+  REQUIRE(points.positions.size() == 2);
+  CHECK(length(points.positions[0] - Vec3f{-300, 0.25f, -7}) == 0);
+  CHECK(length(points.positions[1] - Vec3f{1000, -2.5f, 100}) == 0);
+}
+
 TEST_CASE("a point that is not finite is named by its index") {
   const TempFolder folder;
   write_file(folder / "x.ply", ascii_points("1 2 3 0 0 0\n1 nan 3 0 0 0\n", 2));

@@ -46,10 +46,16 @@ struct Fixture {
     wall.opacity_logits = {3};
     transmission = TrainableSet(wall, SetTraining{});
   }
-  // behind: see TransmissionLosses::add().
-  StepStats add(const TransmissionLossConfig& config, int iteration, RasterPass* behind = nullptr) {
+  // behind: see TransmissionLosses::add(); mirrors: of leave_out().
+  StepStats add(
+      const TransmissionLossConfig& config,
+      int iteration,
+      RasterPass* behind = nullptr,
+      const Image* mirrors = nullptr
+  ) {
     TransmissionLosses losses;
     CHECK(losses.set_up(config, scene, "test").empty());
+    losses.leave_out(mirrors);
     StepStats stats;
     losses.add(
         scene.train[0],
@@ -161,6 +167,25 @@ TEST_CASE("Direct supervision is the photometric loss of the set on its own, tim
   CHECK(stats.terms.at("direct") == Approx(expected));
   CHECK(norm(f.transmission.gradient().sh_dc) > 0);
   CHECK(f.transmission.gradient().sh_dc == other.transmission.gradient().sh_dc);
+}
+
+TEST_CASE("Pixels that show a mirror do not count for the set on its own") {
+  TransmissionLossConfig config;
+  config.lambda_transparency = 0;
+  config.lambda_direct = 2;
+  Image mirrors = constant(1, 0), others = constant(1, 1);
+  for (int y = 0; y < kSize.height; ++y)
+    for (int x = 0; x < 5; ++x) mirrors.at(x, y) = 1, others.at(x, y) = 0;
+  Fixture all, masked, with_mirrors;
+  for (Fixture* f : {&all, &masked, &with_mirrors})
+    for (int y = 0; y < kSize.height; ++y) f->scene.train[0].rgb.at(1, y, 0) = 1;
+  masked.scene.train[0].counted = others;
+  const double expected = masked.add(config, 0).terms.at("direct");
+  CHECK(with_mirrors.add(config, 0, nullptr, &mirrors).terms.at("direct") == expected);
+  CHECK(with_mirrors.transmission.gradient().sh_dc == masked.transmission.gradient().sh_dc);
+  CHECK(all.add(config, 0).terms.at("direct") != expected);
+  with_mirrors.scene.train[0].counted = others;  // both
+  CHECK(with_mirrors.add(config, 0, nullptr, &mirrors).terms.at("direct") == expected);
 }
 
 TEST_CASE("The set on its own has consistent normals") {

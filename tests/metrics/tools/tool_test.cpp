@@ -106,6 +106,19 @@ TEST_CASE("glint-psnr gives psnr for a float file and psnr-8bit for a PNG") {
   CHECK(png["protocol"]["psnr-8bit"]["eight_bit"] == true);
 }
 
+TEST_CASE("maps in memory are scored as files of floats are") {
+  const test::TempFolder folder;
+  const Image truth = stored_reference(folder);
+  const std::unique_ptr<MetricTool> tool = make_psnr_tool();
+  MapPair pair;
+  pair.prediction = rendered(), pair.reference = truth, pair.family = 0;
+  const ImageScores scores = score_maps(*tool, pair);
+  REQUIRE(scores.scores.size() == 1);
+  CHECK(scores.scores[0] == std::pair<std::string, double>("psnr", psnr(rendered(), truth)));
+  pair.mask = MaskImage(kWidth - 1, kHeight, 1);
+  CHECK_THROWS_WITH(score_maps(*tool, pair), Catch::Contains("mask"));
+}
+
 TEST_CASE("integers are told by what the file holds, whatever its name") {
   const test::TempFolder folder;
   const ByteImage bytes = to_bytes(rendered());

@@ -102,7 +102,10 @@ TEST_CASE("patterns that leave nothing out are refused") {
        {"room_1", "fake", "room_1/fake", "*/fake/7", "room_[12]/fa*", "room_2/*"})
     CHECK_NOTHROW(make_plan(profile, {.skip = {good}, .methods = {"2dgs"}}, {}));
   for (const char* bad : {"rom_1", "room_1/fakee", "fake/room_1"})
-    CHECK_THROWS_WITH(make_plan(profile, {.skip = {bad}}, {}), Catch::Contains("--skip"));
+    CHECK_THROWS_WITH(
+        make_plan(profile, {.skip = {bad}}, {}),
+        Catch::Contains("--skip") && !Catch::Contains("--methods")
+    );
   profile.leave_out = {"rom_1/*"};
   CHECK_THROWS_WITH(make_plan(profile, {}, {}), Catch::Contains("leave_out 'rom_1/*' fits no"));
 }
