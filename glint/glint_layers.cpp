@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kGrain = 4096;  // pixels a block
 constexpr float kLeastLight = 0.02f;  // of a pixel's, for a layer to be looked at
 
-// What a layer lets pass; light: what gets to it, null: all.
-void pass_light(const GlassBuffer& layer, const Image* light, Image& passed) {
+// What a layer lets pass; light: what gets to it, null: all; known: pixels that need none.
+void pass_light(const GlassBuffer& layer, const Image* light, const Image* known, Image& passed) {
   fit(passed, layer.depth.size(), 1);
   run_kernel(
       passed.num_pixels(),
@@ -24,6 +24,7 @@ void pass_light(const GlassBuffer& layer, const Image* light, Image& passed) {
           layer.transparency.on_device(),
           layer.specularity.on_device(),
           light == nullptr ? nullptr : light->array().device_for_reading(),
+          known == nullptr ? nullptr : known->array().device_for_reading(),
           kLeastLight,
           passed.on_device()}
   );
@@ -53,7 +54,12 @@ void InnerLayers::see(
 ) {
   InnerLayer& layer = layers_[m];
   const bool first = m == 0;
-  pass_light(before, first ? nullptr : &layers_[m - 1].light, layer.light);
+  pass_light(
+      before,
+      first ? nullptr : &layers_[m - 1].light,
+      first ? call_.known_panes : nullptr,
+      layer.light
+  );
   limit_behind(before, near_limit, nullptr, call_.pane_gap, layer.pane_limit);
   RasterPass& interface = sets.interface.pass();
   RasterPass& transmission = sets.transmission.pass();
@@ -178,10 +184,26 @@ SeenLayer seen_at(const InnerLayer& layer) {
   return seen;
 }
 
-SeenLayer seen_behind(const InnerLayer& last) {
-  const RasterOutput& rest = last.rest.rasterizer.output();
-  const ImageSize size = rest.alpha.size();
-  return {rest.depth_median, unit_normals(rest.normal), Image(size.width, size.height, 1)};
+SeenLayer opaque_layer(const RasterOutput& out) {
+  const ImageSize size = out.alpha.size();
+  return {out.depth_median, unit_normals(out.normal), Image(size.width, size.height, 1)};
+}
+
+// In pixels where a pane is known by its plane: itself as the second layer, and as the third what
+// the transmission set has, which is not parted there.
+void put_known(const PlaneMirrors& backs, SeenLayer& second) {
+  backs.put_surface(second.depth, second.normal);
+  for (std::size_t i = 0; i < second.depth.num_pixels(); ++i)
+    if (backs.seen()->data()[i] > 0) second.transparency.data()[i] = 1;
+}
+void put_behind_known(const Image& known, const RasterOutput& behind, SeenLayer& third) {
+  const SeenLayer seen = opaque_layer(behind);
+  for (std::size_t i = 0; i < known.num_pixels(); ++i) {
+    if (known.data()[i] <= 0) continue;
+    third.depth.data()[i] = seen.depth.data()[i];
+    put3(third.normal.data(), i, get3(seen.normal.data(), i));
+    third.transparency.data()[i] = 0;
+  }
 }
 
 }  // namespace
@@ -189,9 +211,13 @@ SeenLayer seen_behind(const InnerLayer& last) {
 void InnerLayers::add_maps(const GlassBuffer& interface, const PlaneMirrors& backs, MapSet& out)
     const {
   SeenLayer before;
+  const Image* known = backs.seen();
   for (std::size_t m = 0; m <= layers_.size(); ++m) {
     const bool is_rest = m == layers_.size();
-    SeenLayer seen = is_rest ? seen_behind(layers_.back()) : seen_at(layers_[m]);
+    SeenLayer seen =
+        is_rest ? opaque_layer(layers_.back().rest.rasterizer.output()) : seen_at(layers_[m]);
+    if (m == 0 && known != nullptr) put_known(backs, seen);
+    if (m == 1 && known != nullptr) put_behind_known(*known, *layers_.front().others, seen);
     if (m > 0) seen.fill_behind_opaque(before);
     before = std::move(seen);
     if (m + 1 == kMaxLayers) continue;  // the fifth has no map
@@ -212,12 +238,16 @@ void InnerLayers::add_parts(const GlassBuffer& interface, const PlaneMirrors& ba
   const ImageSize size = buffer.depth.size();
   Image by_backs(size.width, size.height, 3), with_white(size.width, size.height, 3, 1);
   backs.put_again(by_backs), backs.put_again(with_white);
+  Image beyond = second.radiance.transmission;
   Image straight = buffer.transparency, through = straight, mirrored = straight,
         to_backs = straight;
   for (std::size_t i = 0; i < straight.num_pixels(); ++i) {
     const float light = (1 - interface.specularity.data()[i]) * interface.transparency.data()[i];
     const float left = light * (with_white.data()[3 * i] - by_backs.data()[3 * i]);
-    const float t = buffer.transparency.data()[i], k = buffer.specularity.data()[i];
+    const bool known = backs.seen() != nullptr && backs.seen()->data()[i] > 0;
+    const float t = known ? 1 : buffer.transparency.data()[i];
+    const float k = known ? 0 : buffer.specularity.data()[i];
+    if (known) put3(beyond.data(), i, get3(second.radiance.interface.data(), i));
     straight.data()[i] = left * (1 - k) * (1 - t);
     through.data()[i] = left * (1 - k) * t;
     mirrored.data()[i] = left * k;
@@ -227,7 +257,7 @@ void InnerLayers::add_parts(const GlassBuffer& interface, const PlaneMirrors& ba
     return part_of_picture(out["rgb"], layer, weight, call_.linear_light);
   };
   out["path_t"] = part(second.radiance.interface, straight);
-  out["path_tt"] = part(second.radiance.transmission, through);
+  out["path_tt"] = part(beyond, through);
   if (second.mirrors)
     out["path_tr"] = part(second.radiance.reflection, mirrored);
   else if (!backs.planes.empty())

@@ -11,12 +11,13 @@
 // only glass (t > 0.5) has Fresnel's term, an opaque surface has k = s: so the official code's one
 // path of second order is k = 2 where t_2 = 0.
 //
-// Deviations: the first two layers mirror, further ones only let light through; where planes of
-// panes are known, their backs mirror and not the second layer (glint/train/plane_mirrors.h);
-// mirrored rays meet the reflection set alone, for in the interface set the pane they come from and
-// the next one are opaque. A layer to which less than 0.02 of a pixel's light gets is as without
-// layers, and density control of the transmission set looks at the first and the last of its
-// rasterisations. Mirrors are no layer: glint/train/plane_mirrors.h.
+// Deviations: the first two layers mirror, further ones only let light through; mirrored rays meet
+// the reflection set alone, for in the interface set the pane they come from and the next one are
+// opaque. A layer to which less than 0.02 of a pixel's light gets is as without layers, and
+// density control of the transmission set looks at the first and the last of its rasterisations.
+// Where panes are known by their planes (glint/train/plane_mirrors.h), their backs mirror and no
+// other second layer does; in a pixel that sees one it is the second layer, and nothing is peeled.
+// Mirrors are no layer.
 #pragma once
 
 #include <vector>
@@ -39,7 +40,10 @@ struct LayersCall {
   Camera camera;
   RasterSettings settings;  // of every rasterisation
   MirrorCutoffs mirror;
-  bool reflection = true;
+  bool reflection = true;  // of the second layer
+  // [H][W][1] 1 where a pane is known to be the second layer, by its plane; null: nowhere. It is
+  // not looked for there, and what it mirrors is put in by others.
+  const Image* known_panes = nullptr;
   int reflection_degree = 3;
   std::optional<int> step;  // of training; none: a picture for someone
   // Metres behind a layer where the next one of the same set may begin; of panes it is more, for

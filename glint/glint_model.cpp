@@ -89,14 +89,14 @@ MirrorsCall GlintModel::mirrors_call(
       .linear_light = config.linear_light};
 }
 
-// Their radiance in the place of the transmission set's. Where panes are known, their backs mirror,
-// not the second layer.
+// Their radiance in the place of the transmission set's, with what backs of panes mirror in it.
 void GlintModel::add_inner_layers(const GlintConfig& config) {
   const LayersCall call{
       .camera = camera_,
       .settings = interface_settings(config, false),
       .mirror = config.mirror,
       .reflection = phase_.reflection && backs_.planes.empty(),
+      .known_panes = backs_.seen(),
       .reflection_degree = phase_.reflection_degree,
       .step = phase_.step,
       .gap = config.layer_gap,
@@ -109,6 +109,7 @@ void GlintModel::add_inner_layers(const GlintConfig& config) {
       ),
       layers_.transmission
   );
+  backs_.put_again(layers_.transmission);
 }
 
 RasterSettings GlintModel::interface_settings(const GlintConfig& config, bool with_planes) const {
@@ -152,8 +153,8 @@ void GlintModel::render_transmission(
     const RasterOutput& out =
         transmission.forward(camera, phase_.transmission_degree, settings, near_limit_);
     copy_color(out.features, layers_.transmission);
-    if (layered_) add_inner_layers(config);
     add_backs(config, out.depth_median);
+    if (layered_) add_inner_layers(config);
   }
 }
 

@@ -76,11 +76,13 @@ struct PickNearerVjp {
 // What a layer lets pass of the light that gets to it, (1 - k_s) t; below `least`, none.
 struct PassLight {
   const float *transparency, *mirrored, *light;  // light: null: all of it
+  const float* known;                            // null or 0: looks for its surface
   float least;
   float* passed;
   GLINT_HD void operator()(std::size_t i) const {
     const float share = (1 - mirrored[i]) * transparency[i] * (light == nullptr ? 1.0f : light[i]);
-    passed[i] = share < least ? 0.0f : share;
+    const bool looks = share >= least && (known == nullptr || known[i] <= 0);
+    passed[i] = looks ? share : 0.0f;
   }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "glint/train/plane_mirrors.h"
 
-#include <ranges>
+#include <limits>
 
 #include "glint/core/kernel.h"
 #include "glint/render/map_ops.h"
@@ -149,6 +149,18 @@ const Image& PlaneMirrors::put(
   if (num_seen_ == 0) return image;
   put_again(image_);
   return image_;
+}
+
+void PlaneMirrors::put_surface(Image& depth, Image& normal) const {
+  std::vector<float> nearest(depth.num_pixels(), std::numeric_limits<float>::infinity());
+  auto view = views_.begin();
+  for (std::size_t k = 0; k < num_seen_; ++k, ++view)
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const float z = view->depth().data()[i];
+      if (z <= 0 || z >= nearest[i]) continue;
+      depth.data()[i] = nearest[i] = z;
+      put3(normal.data(), i, view->normal());
+    }
 }
 
 void PlaneMirrors::put_again(Image& image) const {

@@ -49,7 +49,9 @@ class MirrorView {
   const Image& seen() const { return seen_; }         // [H][W][1] share that is mirrored, or 0
   const Image& picture() const { return *picture_; }  // [H][W][3], mirrored left to right
   Vec3f tint() const { return tint_; }
-  Image& gradient() { return dL_dpicture_; }  // of picture()
+  Vec3f normal() const { return normal_; }             // camera space
+  const Image& depth() const { return plane_depth_; }  // [H][W][1] metres; 0: not seen
+  Image& gradient() { return dL_dpicture_; }           // of picture()
 
  private:
   void mark_pixels(const MirrorPlane& plane, const Image& depth);
@@ -81,6 +83,9 @@ class PlaneMirrors {
   // The gradient of `image` alone, for what is mirrored is a constant.
   const Image& put_vjp(const Image& dL_dpicture);
   void put_maps(MapSet& maps) const;
+  // Depth [H][W][1] in metres and normals [H][W][3] of the planes, where the last put() shows one:
+  // the nearest.
+  void put_surface(Image& depth, Image& normal) const;
   // Puts what the last put() has put in into another picture of the same view [H][W][3].
   void put_again(Image& image) const;
   // Takes it out of one.

@@ -287,6 +287,22 @@ TEST_CASE("Where panes are known, their backs mirror in the place of the second 
   front.half_width = 2, front.half_height = 1, front.pane = true;
   f.model.set_planes({front});
   const MapSet maps = f.model.render(camera(), f.config, f.phase);
+  Fixture one(1);
+  one.model.transmission = TrainableSet(walls(behind, true, 2), {});
+  one.model.set_planes({front});
+  const Image& alone = one.picture();
+  int known = 0;
+  for (std::size_t i = 0; i < kSize.num_pixels(); ++i) {
+    if (std::abs(maps["layer_2_depth"].data()[i] - 4) > 1e-5f) continue;
+    ++known;  // the thing at 3 m hides the others
+    CHECK(maps["layer_2_transparency"].data()[i] == 1);
+    CHECK(maps["layer_3_depth"].data()[i] == Approx(7).margin(0.3));
+    CHECK(length(get3(maps["layer_2_normal"].data(), i) - Vec3f{0, 0, -1}) < 1e-6f);
+    CHECK(length(get3(maps["path_t"].data(), i)) < 1e-6f);
+    CHECK(length(get3(maps["rgb"].data(), i) - get3(alone.data(), i)) < 1e-6f);
+  }
+  CHECK(known > 100);
+  CHECK(known < 160);
   int mirrored = 0;
   for (std::size_t i = 0; i < maps["rgb"].values().size(); ++i) {
     const auto value = [&](MapId id) { return maps[id].data()[i]; };
