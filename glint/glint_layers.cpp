@@ -162,14 +162,16 @@ namespace {
 struct SeenLayer {
   Image depth, normal, transparency;
 
+  // In pixel i, another one's surface, which nothing shines through.
+  void put_opaque(std::size_t i, const SeenLayer& other) {
+    depth.data()[i] = other.depth.data()[i];
+    put3(normal.data(), i, get3(other.normal.data(), i));
+    transparency.data()[i] = 0;
+  }
   // Behind a surface that lets little through: that surface again.
   void fill_behind_opaque(const SeenLayer& before) {
-    for (std::size_t i = 0; i < depth.num_pixels(); ++i) {
-      if (is_glass(before.transparency.data()[i])) continue;
-      depth.data()[i] = before.depth.data()[i];
-      put3(normal.data(), i, get3(before.normal.data(), i));
-      transparency.data()[i] = 0;
-    }
+    for (std::size_t i = 0; i < depth.num_pixels(); ++i)
+      if (!is_glass(before.transparency.data()[i])) put_opaque(i, before);
   }
 };
 
@@ -198,12 +200,8 @@ void put_known(const PlaneMirrors& backs, SeenLayer& second) {
 }
 void put_behind_known(const Image& known, const RasterOutput& behind, SeenLayer& third) {
   const SeenLayer seen = opaque_layer(behind);
-  for (std::size_t i = 0; i < known.num_pixels(); ++i) {
-    if (known.data()[i] <= 0) continue;
-    third.depth.data()[i] = seen.depth.data()[i];
-    put3(third.normal.data(), i, get3(seen.normal.data(), i));
-    third.transparency.data()[i] = 0;
-  }
+  for (std::size_t i = 0; i < known.num_pixels(); ++i)
+    if (known.data()[i] > 0) third.put_opaque(i, seen);
 }
 
 }  // namespace
