@@ -236,10 +236,11 @@ class Glint final : public MethodOf<GlintConfig> {
     for (const MirrorPlane& plane : planes) {
       const bool is_one = is_mirroring(plane, settings);
       stats.events.push_back(fmt::format(
-          "a dark plane of {:.2f} x {:.2f} m, likeness {:.2f}: {}",
+          "a dark plane of {:.2f} x {:.2f} m, likeness {:.2f}{}: {}",
           2 * plane.half_width,
           2 * plane.half_height,
           plane.likeness,
+          plane.outlined > 0 ? fmt::format(", outlines {:.2f}", plane.outlined) : "",
           !is_one ? "none" : (plane.pane ? "a pane" : "a mirror")
       ));
       if (is_one && !plane.pane) fade_behind(plane, scene_->train, model_.transmission.cloud());

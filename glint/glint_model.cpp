@@ -265,6 +265,8 @@ MapSet GlintModel::render(
   add_depth_modes(interface.pass().rasterizer, out);
   if (phase.reflection) out["reflection"] = layers_.reflection;
   add_components(config.linear_light, out);
+  // Surfels of a pane are off by some centimetres and degrees, for photos show other things there.
+  if (phase.reflection) panes.put_surface(out["depth"], out["normal"]);
   if (layered_) inner_.add_maps(buffer(), backs_, out);
   mirrors.put_maps(out);
   return out;

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <optional>
 
 #include "glint/core/evenly_chosen.h"
 #include "glint/render/map_ops.h"
+#include "glint/train/mirror_likeness.h"
+#include "glint/train/pane_outlines.h"
 
 namespace glint {
 
@@ -23,9 +25,9 @@ constexpr double kPaneStep = 0.35;         // of a mirror's, of a pane: the inte
 constexpr int kPaneFinest = 6;             // kFinest of a pane
 constexpr double kWorthPlacing = 0.25;     // likeness from which a plane is placed more finely
 constexpr int kRounds = 40, kFinest = 48;  // at most; the last step's share of the first
-constexpr int kWindows = 3;                // along an image's height
-constexpr double kLeastSeen = 0.75;        // of a window's pixels
-constexpr double kLeastVariance = 1e-4;    // of a window of a photo: flatter ones say nothing
+constexpr int kOutlineRows = 24;           // of a view, at most, by which a pane is placed
+constexpr double kOutlinedReach = 0.15;    // tolerances from where outlines say that a pane is
+constexpr double kOutlinedCosine = 0.9998;  // a degree about how priors say that it lies
 constexpr std::size_t kLeastWindows = 8, kMostViews = 24;
 constexpr std::size_t kSearchEvery = 3;  // of these views, while a mirror is placed
 constexpr float kFaint = -4.6f;          // logit of 0.01
@@ -39,160 +41,44 @@ bool is_dark(const Image& albedo, std::size_t i, float low) {
 bool is_seen_through(const MirrorPlane& plane, Vec3d eye, Vec3d behind) {
   const double a = plane.signed_distance(eye), b = plane.signed_distance(behind);
   if (a <= 0) return false;
-  const Vec3d p = eye + (a / (a - b)) * (behind - eye) - plane.center;
-  return std::abs(dot(p, plane.across)) <= plane.half_width &&
-         std::abs(dot(p, plane.up())) <= plane.half_height;
+  return plane.holds(eye + (a / (a - b)) * (behind - eye));
 }
 
-// Where the interface is in dark pixels, and how a surface lies there by the prior, if there is
-// one.
-void add_points(
-    const View& view, const RasterOutput& surface, float low, std::vector<SurfacePoint>& points
-) {
-  Image depth;
-  expected_depth_map(surface, depth);
-  const Image normal =
-      unit_normals(view.priors.has("normal") ? view.priors["normal"] : surface.normal);
-  const Mat3d& turn = view.camera.rotation_cam_from_world;
-  const Vec3d eye = view.camera.center();
-  for (int y = 0; y < depth.height(); y += kPixelStep)
-    for (int x = 0; x < depth.width(); x += kPixelStep) {
-      const std::size_t i = depth.view().offset(x, y);
-      const double z = static_cast<double>(depth.data()[i]);
-      const Vec3d n = cast<double>(get3(normal.data(), i));
-      if (z <= 0 || length2(n) < 0.5 || !is_dark(view.priors["albedo"], i, low)) continue;
-      const Vec3d ray = view.camera.ray_in_cam(x + 0.5, y + 0.5);
-      const double towards = dot(n, ray) > 0 ? -1 : 1;
-      points.push_back({view.camera.to_world(z * ray), transpose_times(turn, towards * n), eye});
+// f(pixel's offset, what is there) for every so manieth pixel of a view with albedo priors;
+// `normal`: camera space, unit or 0. What has none is not dark: nothing can be said of it.
+template <class F>
+void visit_pixels(const View& view, const Image& normal, float low, int step, F&& f) {
+  const Camera& camera = view.camera;
+  const Vec3d eye = camera.center();
+  for (int y = 0; y < normal.height(); y += step)
+    for (int x = 0; x < normal.width(); x += step) {
+      const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(normal.width()) +
+                     static_cast<std::size_t>(x);
+      const Vec3d n =
+          transpose_times(camera.rotation_cam_from_world, cast<double>(get3(normal.data(), i)));
+      const Vec3d ray = camera.ray_in_world(x + 0.5, y + 0.5);
+      const bool dark = length2(n) > 0.5 && is_dark(view.priors["albedo"], i, low);
+      f(i, OutlinePixel{eye, ray, (dot(n, ray) > 0 ? -1.0 : 1.0) * n, dark});
     }
 }
-
-// A window of a photo and of what the camera in the mirror sees.
-struct Window {
-  std::vector<double> photo, mirrored;
-
-  // None (0) where the photo is flat.
-  bool correlation(double& result) const {
-    const auto n = static_cast<double>(photo.size());
-    const double a = std::accumulate(photo.begin(), photo.end(), 0.0) / n;
-    const double b = std::accumulate(mirrored.begin(), mirrored.end(), 0.0) / n;
-    double aa = 0, bb = 0, ab = 0;
-    for (std::size_t i = 0; i < photo.size(); ++i) {
-      aa += (photo[i] - a) * (photo[i] - a);
-      bb += (mirrored[i] - b) * (mirrored[i] - b);
-      ab += (photo[i] - a) * (mirrored[i] - b);
-    }
-    if (aa < kLeastVariance * n) return false;
-    result = bb > 0 ? ab / std::sqrt(aa * bb) : 0;
-    return true;
-  }
-};
-
-// What all views say about a plane.
-class Likeness {
- public:
-  void add(const View& view, const MirrorView& mirror) {
-    const ImageSize size = view.camera.size();
-    const int side = std::max(4, size.height / kWindows);
-    for (int y = 0; y + side <= size.height; y += side)
-      for (int x = 0; x + side <= size.width; x += side) add_window(view, mirror, x, y, side);
-  }
-  void tell(MirrorPlane& plane, std::size_t least_windows) const {
-    const auto count = static_cast<double>(correlations_.size());
-    plane.likeness = correlations_.size() < least_windows
-                         ? 0
-                         : std::accumulate(correlations_.begin(), correlations_.end(), 0.0) / count;
-    for (std::size_t c = 0; c < 3; ++c)
-      plane.tint[c] =
-          static_cast<float>(mirrored_[c] > 0 ? std::min(1.0, photo_[c] / mirrored_[c]) : 1);
-  }
-
- private:
-  void add_window(const View& view, const MirrorView& mirror, int left, int top, int side) {
-    Window window;
-    const int width = view.camera.width;
-    for (int y = top; y < top + side; ++y)
-      for (int x = left; x < left + side; ++x) {
-        if (mirror.seen().at(x, y) <= 0) continue;
-        const Vec3f a = get3(view.rgb.pixel(x, y), 0);
-        const Vec3f b = get3(mirror.picture().pixel(width - 1 - x, y), 0);
-        window.photo.push_back(static_cast<double>(a.x + a.y + a.z) / 3);
-        window.mirrored.push_back(static_cast<double>(b.x + b.y + b.z) / 3);
-        for (int c = 0; c < 3; ++c) {
-          photo_[static_cast<std::size_t>(c)] += static_cast<double>(a[c]);
-          mirrored_[static_cast<std::size_t>(c)] += static_cast<double>(b[c]);
-        }
-      }
-    double correlation = 0;
-    if (static_cast<double>(window.photo.size()) >= kLeastSeen * side * side &&
-        window.correlation(correlation))
-      correlations_.push_back(correlation);
-  }
-
-  std::vector<double> correlations_;
-  std::array<double, 3> photo_{}, mirrored_{};
-};
-
-// A view as the sets show it without what its glass mirrors.
-struct KnownView {
-  const View* view;
-  Image depth;    // [H][W][1] metres, of the interface
-  Image without;  // [H][W][3] where nothing is mirrored
-  Image share;    // [H][W][1] k_s
-};
-
-// What of the photos is left for mirrored rays, and what they would add by a pane's plane: their
-// correlation about the means of windows, for the sets make up for what is missing on average.
-class Remainder {
- public:
-  void add(const KnownView& known, const MirrorView& mirror) {
-    const ImageSize size = known.view->camera.size();
-    const int side = std::max(4, size.height / kWindows);
-    for (int y = 0; y < size.height; y += side)
-      for (int x = 0; x < size.width; x += side) add_window(known, mirror, x, y, side);
-  }
-  double correlation() const {
-    return photo_ > 0 && mirrored_ > 0 ? both_ / std::sqrt(photo_ * mirrored_) : 0;
-  }
-
- private:
-  void add_window(const KnownView& known, const MirrorView& mirror, int left, int top, int side) {
-    const ImageSize size = known.view->camera.size();
-    double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-    for (int y = top; y < std::min(top + side, size.height); ++y)
-      for (int x = left; x < std::min(left + side, size.width); ++x) {
-        if (mirror.seen().at(x, y) <= 0) continue;
-        const Vec3f rest =
-            get3(known.view->rgb.pixel(x, y), 0) - get3(known.without.pixel(x, y), 0);
-        const Vec3f m =
-            known.share.at(x, y) * get3(mirror.picture().pixel(size.width - 1 - x, y), 0);
-        const auto r = static_cast<double>(rest.x + rest.y + rest.z);
-        const auto s = static_cast<double>(m.x + m.y + m.z);
-        n += 1, a += r, b += s, aa += r * r, bb += s * s, ab += r * s;
-      }
-    if (n < 2) return;
-    photo_ += aa - a * a / n, mirrored_ += bb - b * b / n, both_ += ab - a * b / n;
-  }
-
-  double photo_ = 0, mirrored_ = 0, both_ = 0;
-};
 
 // How well planes explain what the photos show.
 class MirrorSearch {
  public:
   MirrorSearch(const Scene& scene, MirroredSets sets, MirrorsCall call, const FindMirrors& settings)
       : sets_(sets), call_(std::move(call)), settings_(settings) {
+    const double scale = static_cast<double>(scene.spatial_scale);
+    step_ = kStepShare * scale;
+    fit_.tolerance = kToleranceShare * scale;
+    outlines_ = PaneOutlines(fit_);
     RasterPass passes[2];
     for (const std::size_t i : evenly_chosen(kMostViews, scene.train.size())) {
       const View& view = scene.train[i];
       const RasterOutput& surface =
           sets.interface.forward(passes[0], view.camera, call_.interface_degree, call_.settings);
       know(view, surface, passes[1]);
-      if (view.priors.has("albedo")) add_points(view, surface, settings.low_albedo, points_);
+      if (view.priors.has("albedo")) add_pixels(view, surface);
     }
-    const double scale = static_cast<double>(scene.spatial_scale);
-    step_ = kStepShare * scale;
-    fit_.tolerance = kToleranceShare * scale;
   }
 
   std::vector<MirrorPlane> run() {
@@ -203,12 +89,37 @@ class MirrorSearch {
       if (placed.plane.likeness >= settings_.least_likeness)
         planes.push_back(with_its_rectangle(placed));
       else
-        planes.push_back(settings_.panes ? pane(fitted) : placed.plane);
+        add_pane(settings_.panes ? pane(fitted) : placed.plane, planes);
     }
     return planes;
   }
 
  private:
+  // Where the interface is in dark pixels, and how a surface lies there by the prior, if there is
+  // one.
+  void add_pixels(const View& view, const RasterOutput& surface) {
+    Image depth;
+    expected_depth_map(surface, depth);
+    const Image normal =
+        unit_normals(view.priors.has("normal") ? view.priors["normal"] : surface.normal);
+    const float low = settings_.low_albedo;
+    visit_pixels(view, normal, low, kPixelStep, [&](std::size_t i, const OutlinePixel& pixel) {
+      const auto z = static_cast<double>(depth.data()[i]);
+      if (z > 0 && pixel.dark)
+        points_.push_back({pixel.eye + z * pixel.ray, pixel.normal, pixel.eye});
+    });
+    const int step = std::max(kPixelStep, depth.height() / kOutlineRows);
+    visit_pixels(view, normal, low, step, [&](std::size_t, const OutlinePixel& pixel) {
+      outlines_.add(pixel);
+    });
+  }
+  // But one that is known: its surfels may lie at two depths.
+  void add_pane(const MirrorPlane& pane, std::vector<MirrorPlane>& planes) const {
+    const bool known = std::any_of(planes.begin(), planes.end(), [&](const MirrorPlane& other) {
+      return pane.pane && other.pane && lies_on(pane, other, fit_);
+    });
+    if (!known) planes.push_back(pane);
+  }
   MirrorPlane with_its_rectangle(PlaneOfPoints& placed) const {
     PlaneFit wide = fit_;
     wide.tolerance *= kWide;
@@ -216,15 +127,20 @@ class MirrorSearch {
     fit_rectangle(placed);
     return placed.plane;
   }
-  // As the priors say how it lies (the mean of many is off by less than a degree), about where the
-  // interface is, which guidance of t holds to glass but for some centimetres.
+  // As the priors say how it lies (the mean of many is off by less than a degree), where outlines
+  // agree; where these do not tell, about where the interface is, which guidance of t holds to
+  // glass but for some centimetres.
   MirrorPlane pane(PlaneOfPoints fitted) {
     MirrorPlane& plane = fitted.plane;
     plane.pane = true;
+    plane.outlined = outlines_.place(fitted);
     plane.half_width *= kInner, plane.half_height *= kInner;
+    if (plane.outlined > 0) outlined_ = plane;
     plane = best_of_scan(plane, kPaneStep * step_);
     move_and_turn(plane, kPaneStep * step_ / 2, kTurn / 4, kPaneFinest);
-    return with_its_rectangle(fitted);
+    outlined_.reset();
+    fit_rectangle(fitted);
+    return plane;
   }
   // The view with its glass mirroring black, as GlintModel composes it but for GLINT+'s second face
   // of glass: what the panes of docs/results were found with.
@@ -250,8 +166,8 @@ class MirrorSearch {
   }
   // Sets its likeness, and a mirror's tint.
   void look_at(MirrorPlane& plane) {
-    Likeness likeness;
-    Remainder remainder;
+    MirrorLikeness mirror;
+    PaneLikeness pane;
     for (std::size_t i = 0; i < views_.size(); i += every_) {
       const KnownView& known = views_[i];
       if (!is_in_view(plane, known.view->camera)) continue;
@@ -261,14 +177,14 @@ class MirrorSearch {
       call.transmission = call_.transmission && !plane.pane;
       mirror_.see(sets_, call, plane, known.depth);
       if (plane.pane)
-        remainder.add(known, mirror_);
+        pane.add(known, mirror_.seen(), mirror_.picture());
       else
-        likeness.add(*known.view, mirror_);
+        mirror.add(*known.view, mirror_);
     }
     if (plane.pane)
-      plane.likeness = remainder.correlation();
+      plane.likeness = pane.partial_correlation();
     else
-      likeness.tell(plane, kLeastWindows / every_);
+      mirror.tell(plane, kLeastWindows / every_);
   }
   bool try_moved(MirrorPlane& best, double forth, double about_up, double about_across) {
     MirrorPlane moved = best;
@@ -277,10 +193,16 @@ class MirrorSearch {
         best.normal + std::tan(about_up) * best.across + std::tan(about_across) * best.up()
     );
     moved.across = normalize(best.across - dot(best.across, moved.normal) * moved.normal);
+    if (!is_near_outlines(moved)) return false;
     look_at(moved);
     if (moved.likeness <= best.likeness) return false;
     best = moved;
     return true;
+  }
+  bool is_near_outlines(const MirrorPlane& moved) const {
+    return !outlined_ ||
+           (std::abs(outlined_->signed_distance(moved.center)) <= kOutlinedReach * fit_.tolerance &&
+            dot(outlined_->normal, moved.normal) >= kOutlinedCosine);
   }
   MirrorPlane best_of_scan(const MirrorPlane& start, double step) {
     MirrorPlane best = start;
@@ -288,6 +210,7 @@ class MirrorSearch {
     for (int k = -kScan; k <= kScan; ++k) {
       MirrorPlane moved = start;
       moved.center += (k * step) * start.normal;
+      if (!is_near_outlines(moved)) continue;
       look_at(moved);
       if (moved.likeness > best.likeness) best = moved;
     }
@@ -324,6 +247,8 @@ class MirrorSearch {
   std::vector<KnownView> views_;
   std::vector<SurfacePoint> points_;  // of all dark pixels
   PlaneFit fit_;
+  PaneOutlines outlines_;
+  std::optional<MirrorPlane> outlined_;  // what is placed stays near it
   MirrorView mirror_;
   double step_ = 0;        // metres
   std::size_t every_ = 1;  // of the views that are looked at

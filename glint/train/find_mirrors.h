@@ -15,13 +15,14 @@ struct FindMirrors {
   float low_albedo = 0.05f;  // of what may be a mirror; a view's albedo prior
   // Correlation with the photos from which a plane is a mirror, and of what is left of the photos
   // from which it is a pane. Measured (docs/design/glint.md).
-  double least_likeness = 0.55, least_remainder = 0.1;
+  double least_likeness = 0.55, least_remainder = 0.2;
   bool panes = false;  // looks whether a plane that is no mirror is a pane
 };
 
-// Whether it shows what it mirrors: by its likeness.
+// Whether it shows what it mirrors: by its likeness or, for a pane, by its outlines.
 inline bool is_mirroring(const MirrorPlane& plane, const FindMirrors& settings) {
-  return plane.likeness >= (plane.pane ? settings.least_remainder : settings.least_likeness);
+  if (plane.pane) return plane.outlined > 0 || plane.likeness >= settings.least_remainder;
+  return plane.likeness >= settings.least_likeness;
 }
 
 // The planes that were looked at, with their likeness and tint; those that are no mirrors as panes,

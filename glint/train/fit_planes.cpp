@@ -88,6 +88,10 @@ std::vector<SurfacePoint> points_on(
   return on;
 }
 
+bool lies_on(const MirrorPlane& plane, const MirrorPlane& other, const PlaneFit& settings) {
+  return is_on(other, {plane.center, plane.normal, {}}, settings) && other.holds(plane.center);
+}
+
 void fit_rectangle(PlaneOfPoints& fitted) {
   const MirrorPlane from = fitted.plane;
   const std::vector<Vec3d> seen = seen_on(from, fitted.points);

@@ -29,6 +29,8 @@ struct PlaneOfPoints {
 std::vector<SurfacePoint> points_on(
     const MirrorPlane& plane, const std::vector<SurfacePoint>& points, const PlaneFit& settings
 );
+// Whether a plane's middle lies on the other's rectangle, and so.
+bool lies_on(const MirrorPlane& plane, const MirrorPlane& other, const PlaneFit& settings);
 // The planes of most points first, each without the points of those before it: mean normal, median
 // distance, fitted rectangle.
 std::vector<PlaneOfPoints> fit_planes(std::vector<SurfacePoint> points, const PlaneFit& settings);

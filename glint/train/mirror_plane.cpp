@@ -17,7 +17,7 @@ std::array<double, 3> numbers(Vec3d v) { return {v.x, v.y, v.z}; }
 // MirrorPlane as JSON has it.
 struct StoredMirror {
   std::array<double, 3> center{}, normal{}, across{};
-  double half_width = 0, half_height = 0, likeness = 0;
+  double half_width = 0, half_height = 0, likeness = 0, outlined = 0;
   std::array<float, 3> tint{};
   bool pane = false;
 
@@ -30,11 +30,21 @@ struct StoredMirror {
     v("half_height", half_height, "metres");
     v("tint", tint, "displayed values, times this");
     v("likeness", likeness, "correlation with the photos when it was found");
+    v("outlined", outlined, "agreement of outlines by which a pane was placed; 0: was not");
     v("pane", pane, "true: of glass");
   }
   MirrorPlane plane() const {
     const auto vec = [](const std::array<double, 3>& a) { return Vec3d{a[0], a[1], a[2]}; };
-    return {vec(center), vec(normal), vec(across), half_width, half_height, tint, likeness, pane};
+    return {
+        vec(center),
+        vec(normal),
+        vec(across),
+        half_width,
+        half_height,
+        tint,
+        likeness,
+        outlined,
+        pane};
   }
 };
 
@@ -104,6 +114,7 @@ std::string mirrors_text(const std::vector<MirrorPlane>& planes) {
         p.half_width,
         p.half_height,
         p.likeness,
+        p.outlined,
         p.tint,
         p.pane}));
   return list.dump(1) + "\n";

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,9 @@ struct MirrorPlane {
   double half_width = 0, half_height = 0;  // metres, along across and up()
   std::array<float, 3> tint{1, 1, 1};      // displayed: what it mirrors, times this
   double likeness = 0;  // correlation of what it should mirror with the photos, at most 1
-  bool pane = false;    // of glass: what it mirrors comes on top of what is seen through it
+  double outlined =
+      0;              // a pane: share of what should show it that does, or 0: outlines tell nothing
+  bool pane = false;  // of glass: what it mirrors comes on top of what is seen through it
 
   Vec3d up() const { return cross(normal, across); }
   // Seen from its other side.
@@ -27,6 +30,11 @@ struct MirrorPlane {
     return back;
   }
   double signed_distance(Vec3d point) const { return dot(normal, point - center); }
+  // Whether the rectangle has it, once it is moved into the plane.
+  bool holds(Vec3d point) const {
+    return std::abs(dot(point - center, across)) <= half_width &&
+           std::abs(dot(point - center, up())) <= half_height;
+  }
   // The point behind the plane that a mirror shows it at.
   Vec3d mirrored(Vec3d point) const { return point - (2 * signed_distance(point)) * normal; }
 };

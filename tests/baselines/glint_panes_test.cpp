@@ -126,6 +126,33 @@ TEST_CASE("A pane mirrors what the camera behind it sees, at k_s of the picture"
   CHECK(same_bytes(f.picture(), dull));
 }
 
+TEST_CASE("Maps of the first surface have a pane's plane where it is seen") {
+  Fixture f;
+  f.phase.transmission = f.phase.reflection = true;
+  const MapSet without = f.model.render(camera(), f.config, f.phase);
+  MirrorPlane plane = pane();
+  plane.center.z -= 0.04;  // where its surfels are not
+  f.model.set_planes({plane});
+  const MapSet with = f.model.render(camera(), f.config, f.phase);
+  const Vec3d center = camera().to_cam(plane.center);
+  const Vec3d normal = camera().rotation_cam_from_world * plane.normal;
+  int num_seen = 0;
+  for (int y = 0; y < kSize.height; ++y)
+    for (int x = 0; x < kSize.width; ++x) {
+      const Vec3d ray = camera().ray_in_cam(x + 0.5, y + 0.5);
+      const double z = dot(normal, center) / dot(normal, ray);
+      const bool is_seen = plane.holds(camera().to_world(z * ray));
+      const auto depth = static_cast<double>(with["depth"].at(x, y));
+      const Vec3d n = cast<double>(get3(with["normal"].pixel(x, y), 0));
+      num_seen += is_seen ? 1 : 0;
+      CHECK(depth == Approx(is_seen ? z : static_cast<double>(without["depth"].at(x, y))));
+      if (is_seen) CHECK(length(n - normal) < 1e-5);
+    }
+  CHECK(num_seen > 20);
+  CHECK(num_seen < 200);
+  CHECK(same_bytes(with["transparency"], without["transparency"]));
+}
+
 TEST_CASE("What is behind the pane may be traced, to the same picture") {
   Fixture f;
   const Image rasterized = f.picture();

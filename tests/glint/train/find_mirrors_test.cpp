@@ -146,6 +146,35 @@ struct DarkWall {
 
 }  // namespace
 
+TEST_CASE("A pane is one by its outlines or its likeness, a mirror by its likeness") {
+  const FindMirrors settings;
+  MirrorPlane plane = wall_mirror();
+  plane.likeness = 0.5;
+  CHECK_FALSE(is_mirroring(plane, settings));
+  plane.outlined = 0.9;
+  CHECK_FALSE(is_mirroring(plane, settings));
+  plane.pane = true;
+  plane.likeness = 0;
+  CHECK(is_mirroring(plane, settings));
+  plane.outlined = 0;
+  CHECK_FALSE(is_mirroring(plane, settings));
+  plane.likeness = 0.21;
+  CHECK(is_mirroring(plane, settings));
+}
+
+TEST_CASE("A plane lies on another where its middle does and it faces the same way") {
+  const PlaneFit settings{.tolerance = 0.1};
+  const MirrorPlane wall = wall_mirror();
+  MirrorPlane other = wall;
+  other.center += Vec3d{1.3, 0.8, 0.09};
+  CHECK(lies_on(other, wall, settings));
+  CHECK_FALSE(lies_on(other.turned(), wall, settings));
+  other.center.z += 0.02;
+  CHECK_FALSE(lies_on(other, wall, settings));
+  other.center = wall.center + Vec3d{1.5, 0, 0};
+  CHECK_FALSE(lies_on(other, wall, settings));
+}
+
 TEST_CASE("A mirror is found where the photos show it, with its place and tint") {
   DarkWall wall;
   wall.photograph_mirror(0.8f);
