@@ -2,7 +2,8 @@
 // Which planes of a half-trained scene are mirrors, and where its panes of glass are (beyond the
 // paper). Priors call both a dark plane. What tells a mirror: the camera behind the plane sees in
 // the room that was learnt so far what the photos show there. A pane lies as the mean of normal
-// priors says, where that camera explains best what the photos have beside what is seen through it.
+// priors says, where all views see the same outline; where they see none of it, it is one if that
+// camera explains what the photos have beside what is seen through it.
 #pragma once
 
 #include "glint/scene/scene.h"
@@ -14,7 +15,7 @@ namespace glint {
 struct FindMirrors {
   float low_albedo = 0.05f;  // of what may be a mirror; a view's albedo prior
   // Correlation with the photos from which a plane is a mirror, and of what is left of the photos
-  // from which it is a pane. Measured (docs/design/glint.md).
+  // from which one without outlines is a pane. Measured (docs/design/glint.md).
   double least_likeness = 0.55, least_remainder = 0.2;
   bool panes = false;  // looks whether a plane that is no mirror is a pane
 };
