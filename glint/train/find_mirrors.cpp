@@ -44,8 +44,8 @@ bool is_seen_through(const MirrorPlane& plane, Vec3d eye, Vec3d behind) {
   return plane.holds(eye + (a / (a - b)) * (behind - eye));
 }
 
-// f(pixel's offset, what is there) for every so manieth pixel of a view with albedo priors;
-// `normal`: camera space, unit or 0. What has none is not dark: nothing can be said of it.
+// f(pixel's index, what is there) for every step-th pixel of a view with albedo priors, along each
+// side; `normal`: camera space, unit or 0. What has none is not dark: nothing can be said of it.
 template <class F>
 void visit_pixels(const View& view, const Image& normal, float low, int step, F&& f) {
   const Camera& camera = view.camera;

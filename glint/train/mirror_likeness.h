@@ -39,7 +39,7 @@ class PaneLikeness {
  public:
   // seen: [H][W][1] above 0 where the plane is seen; mirrored: [H][W][3], left to right.
   void add(const KnownView& known, const Image& seen, const Image& mirrored);
-  // 0 where one of them does not vary.
+  // 0 where what is left or mirrored does not vary, or k_s explains it.
   double partial_correlation() const;
 
  private:

@@ -18,9 +18,8 @@ struct MirrorPlane {
   double half_width = 0, half_height = 0;  // metres, along across and up()
   std::array<float, 3> tint{1, 1, 1};      // displayed: what it mirrors, times this
   double likeness = 0;  // correlation of what it should mirror with the photos, at most 1
-  double outlined =
-      0;              // a pane: share of what should show it that does, or 0: outlines tell nothing
-  bool pane = false;  // of glass: what it mirrors comes on top of what is seen through it
+  double outlined = 0;  // of a pane: agreement of its outlines; 0: they do not tell where it is
+  bool pane = false;    // of glass: what it mirrors comes on top of what is seen through it
 
   Vec3d up() const { return cross(normal, across); }
   // Seen from its other side.

@@ -250,11 +250,14 @@ TEST_CASE("A frozen interface gets no gradient through a mirror") {
 TEST_CASE("Mirrors are written and read, and other texts are errors that say what is wrong") {
   std::vector<MirrorPlane> planes{mirror(), mirror()};
   planes[1].pane = true;
+  planes[1].likeness = 0.4, planes[1].outlined = 0.8;
   const std::string text = mirrors_text(planes);
   const auto read = mirrors_of(text, "mirrors.json");
   REQUIRE(read.size() == 2);
   CHECK_FALSE(read[0].pane);
   CHECK(read[1].pane);
+  CHECK(read[1].likeness == 0.4);
+  CHECK(read[1].outlined == 0.8);
   CHECK(mirrors_text(read) == text);
   CHECK(mirrors_of(mirrors_text({}), "f").empty());
   const auto error_of = [](const std::string& bad) {
