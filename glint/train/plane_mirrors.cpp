@@ -151,8 +151,11 @@ const Image& PlaneMirrors::put(
   return image_;
 }
 
-void PlaneMirrors::put_surface(Image& depth, Image& normal) const {
-  std::vector<float> nearest(depth.num_pixels(), std::numeric_limits<float>::infinity());
+void PlaneMirrors::put_surface(Image& depth, Image& normal, bool over_nothing) const {
+  constexpr float kNever = std::numeric_limits<float>::infinity();
+  std::vector<float> nearest(depth.num_pixels(), kNever);
+  for (std::size_t i = 0; i < nearest.size(); ++i)
+    if (!over_nothing && depth.data()[i] <= 0) nearest[i] = 0;
   auto view = views_.begin();
   for (std::size_t k = 0; k < num_seen_; ++k, ++view)
     for (std::size_t i = 0; i < nearest.size(); ++i) {

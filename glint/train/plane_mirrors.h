@@ -84,8 +84,8 @@ class PlaneMirrors {
   const Image& put_vjp(const Image& dL_dpicture);
   void put_maps(MapSet& maps) const;
   // Depth [H][W][1] in metres and normals [H][W][3] of the planes, where the last put() shows one:
-  // the nearest.
-  void put_surface(Image& depth, Image& normal) const;
+  // the nearest. Where nothing was (depth 0), only if told so: surfels may have been cut away.
+  void put_surface(Image& depth, Image& normal, bool over_nothing) const;
   // Puts what the last put() has put in into another picture of the same view [H][W][3].
   void put_again(Image& image) const;
   // Takes it out of one.

@@ -153,6 +153,16 @@ TEST_CASE("Maps of the first surface have a pane's plane where it is seen") {
   CHECK(same_bytes(with["transparency"], without["transparency"]));
 }
 
+TEST_CASE("A pane whose surfels are cut away is in no map of the first surface") {
+  Fixture f;
+  f.phase.transmission = f.phase.reflection = true;
+  f.model.set_planes({pane()});
+  SurfelCloud& surfels = f.model.interface.cloud();
+  for (std::size_t i = 0; i < surfels.size(); ++i) surfels.opacity_logits.data()[i] = -1e3f;
+  MapSet maps = f.model.render(camera(), f.config, f.phase);
+  for (const float depth : maps["depth"].values()) CHECK(depth == 0);
+}
+
 TEST_CASE("What is behind the pane may be traced, to the same picture") {
   Fixture f;
   const Image rasterized = f.picture();
