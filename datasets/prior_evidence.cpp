@@ -10,6 +10,7 @@
 #include "datasets/known_surfaces.h"
 #include "datasets/prior_files.h"
 #include "datasets/prior_maps.h"
+#include "glint/core/correlation.h"
 #include "glint/core/error.h"
 #include "glint/core/median.h"
 #include "glint/scene/image_files.h"
@@ -114,20 +115,6 @@ std::optional<NormalEvidence> PriorScale::weigh_normals() {
   return evidence;
 }
 
-// Pearson's correlation; 0 where either does not vary.
-double correlation_of(const std::vector<double>& a, const std::vector<double>& b) {
-  const auto count = static_cast<double>(a.size());
-  const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / count;
-  const double mean_b = std::accumulate(b.begin(), b.end(), 0.0) / count;
-  double aa = 0, bb = 0, ab = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    aa += (a[i] - mean_a) * (a[i] - mean_a);
-    bb += (b[i] - mean_b) * (b[i] - mean_b);
-    ab += (a[i] - mean_a) * (b[i] - mean_b);
-  }
-  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
-}
-
 // The place of each value in ascending order.
 std::vector<double> ranks(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
@@ -178,16 +165,16 @@ std::optional<DepthEvidence> PriorScale::weigh_depth() {
     const DepthPairs pairs = depth_pairs(read(*view, row));
     if (pairs.z.size() < kEnoughOfView) continue;
     evidence.num_samples += pairs.z.size();
-    of_views.push_back(correlation_of(ranks(pairs.stored), ranks(pairs.z)));
+    of_views.push_back(correlation(ranks(pairs.stored), ranks(pairs.z)));
     DepthPairs middle = pairs.middle();
-    evidence.correlation += correlation_of(middle.stored, middle.z);
+    evidence.correlation += correlation(middle.stored, middle.z);
     for (double& z : middle.z) z = 1 / z;
-    evidence.inverse_correlation += correlation_of(middle.stored, middle.z);
+    evidence.inverse_correlation += correlation(middle.stored, middle.z);
   }
   if (of_views.empty()) return std::nullopt;
   evidence.num_views = of_views.size();
   const auto views = static_cast<double>(of_views.size());
-  evidence.rank_correlation = std::accumulate(of_views.begin(), of_views.end(), 0.0) / views;
+  evidence.rank_correlation = mean_of(of_views);
   evidence.correlation /= views;
   evidence.inverse_correlation /= views;
   const auto agreeing = std::count_if(of_views.begin(), of_views.end(), [&](double r) {

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "glint/core/correlation.h"
 
 namespace glint {
 
@@ -17,22 +18,6 @@ constexpr double kLeastUnexplained = 1e-9;  // of a variance, by k_s
 // A window of a photo and of what the camera in the mirror sees.
 struct Window {
   std::vector<double> photo, mirrored;
-
-  // None (0) where the photo is flat.
-  bool correlation(double& result) const {
-    const auto n = static_cast<double>(photo.size());
-    const double a = std::accumulate(photo.begin(), photo.end(), 0.0) / n;
-    const double b = std::accumulate(mirrored.begin(), mirrored.end(), 0.0) / n;
-    double aa = 0, bb = 0, ab = 0;
-    for (std::size_t i = 0; i < photo.size(); ++i) {
-      aa += (photo[i] - a) * (photo[i] - a);
-      bb += (mirrored[i] - b) * (mirrored[i] - b);
-      ab += (photo[i] - a) * (mirrored[i] - b);
-    }
-    if (aa < kLeastVariance * n) return false;
-    result = bb > 0 ? ab / std::sqrt(aa * bb) : 0;
-    return true;
-  }
 };
 
 double sum_of(Vec3f v) { return static_cast<double>(v.x + v.y + v.z); }
@@ -47,10 +32,7 @@ void MirrorLikeness::add(const View& view, const MirrorView& mirror) {
 }
 
 void MirrorLikeness::tell(MirrorPlane& plane, std::size_t least_windows) const {
-  const auto count = static_cast<double>(correlations_.size());
-  plane.likeness = correlations_.size() < least_windows
-                       ? 0
-                       : std::accumulate(correlations_.begin(), correlations_.end(), 0.0) / count;
+  plane.likeness = correlations_.size() < least_windows ? 0 : mean_of(correlations_);
   for (std::size_t c = 0; c < 3; ++c)
     plane.tint[c] =
         static_cast<float>(mirrored_[c] > 0 ? std::min(1.0, photo_[c] / mirrored_[c]) : 1);
@@ -73,10 +55,9 @@ void MirrorLikeness::add_window(
         mirrored_[static_cast<std::size_t>(c)] += static_cast<double>(b[c]);
       }
     }
-  double correlation = 0;
-  if (static_cast<double>(window.photo.size()) >= kLeastSeen * side * side &&
-      window.correlation(correlation))
-    correlations_.push_back(correlation);
+  if (static_cast<double>(window.photo.size()) < kLeastSeen * side * side) return;
+  if (covariance(window.photo, window.photo) < kLeastVariance) return;
+  correlations_.push_back(correlation(window.photo, window.mirrored));
 }
 
 void PaneLikeness::add(const KnownView& known, const Image& seen, const Image& mirrored) {
@@ -86,16 +67,17 @@ void PaneLikeness::add(const KnownView& known, const Image& seen, const Image& m
     for (int x = 0; x < size.width; x += side) add_window(known, seen, mirrored, x, y, side);
 }
 
-double PaneLikeness::correlation(Quantity a, Quantity b) const {
+double PaneLikeness::correlation_of(Quantity a, Quantity b) const {
   const double both = products_[a][a] * products_[b][b];
   return both > 0 ? products_[a][b] / std::sqrt(both) : 0;
 }
 
 double PaneLikeness::partial_correlation() const {
-  const double of_left = correlation(kLeft, kShare), of_mirrored = correlation(kMirrored, kShare);
+  const double of_left = correlation_of(kLeft, kShare),
+               of_mirrored = correlation_of(kMirrored, kShare);
   const double rest = (1 - of_left * of_left) * (1 - of_mirrored * of_mirrored);
   if (rest < kLeastUnexplained) return 0;
-  return (correlation(kLeft, kMirrored) - of_left * of_mirrored) / std::sqrt(rest);
+  return (correlation_of(kLeft, kMirrored) - of_left * of_mirrored) / std::sqrt(rest);
 }
 
 void PaneLikeness::add_window(

@@ -47,7 +47,7 @@ class PaneLikeness {
   void add_window(
       const KnownView& known, const Image& seen, const Image& mirrored, int left, int top, int side
   );
-  double correlation(Quantity a, Quantity b) const;
+  double correlation_of(Quantity a, Quantity b) const;
 
   double products_[kCount][kCount] = {};  // of what differs from a window's mean
 };
