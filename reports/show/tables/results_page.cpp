@@ -170,6 +170,7 @@ ResultsSection results_section(const ResultsInfo& info, std::vector<Record> reco
     std::erase_if(definition.columns, [&](const TableColumn& column) {
       return is_in(info.without, column.metric);
     });
+    if (info.measured_alone) keep_rows_with_records(definition, records);
     Table table = build_table(definition, records);
     if (info.other_data) table = of_other_data(table);
     if (has_measurement(table)) section.tables.push_back(std::move(table));

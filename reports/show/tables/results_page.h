@@ -21,6 +21,7 @@ struct ResultsInfo {
   std::vector<std::string> cells;    // globs of scene/method/seed; empty: all
   std::vector<std::string> without;  // metrics whose columns say nothing here, as "train-minutes"
   bool other_data = false;           // not our rooms: without published columns, captions and notes
+  bool measured_alone = false;       // a study of some methods: no rows of those it leaves out
   template <class V>
   void visit(V&& v) {
     v("records", records, "file of the records");
@@ -29,6 +30,7 @@ struct ResultsInfo {
     v("title", title, "of their part of the page");
     v("cells", cells, "globs of the scene/method/seed shown");
     v("without", without, "metrics without a column");
+    v("measured_alone", measured_alone, "true: no rows of methods without records");
     v("other_data", other_data, "true: not our rooms");
     v("tables", tables, "ids of the tables shown");
   }

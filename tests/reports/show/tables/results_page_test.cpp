@@ -70,4 +70,9 @@ TEST_CASE("A part of the page may have a title and some tables alone") {
   ResultsInfo other = info;
   other.other_data = true;
   CHECK_THAT(results_part(other, {record}), !Catch::Contains("Mean over test views"));
+  CHECK_THAT(part, Catch::Contains("| EnvGS | missing"));
+  ResultsInfo study = info;
+  study.measured_alone = true;
+  CHECK_THAT(results_part(study, {record}), !Catch::Contains("EnvGS"));
+  CHECK_THAT(results_part(study, {record}), Catch::Contains("| GLINT | "));
 }
