@@ -130,6 +130,10 @@ void MirrorView::put_maps(MapSet& maps) const {
   }
 }
 
+bool MirrorView::is_drawn_at(float z, float drawn) const {
+  return drawn > 0 && z > SeeMirror::kBefore * drawn - call_.gap;
+}
+
 const Image& PlaneMirrors::put(
     MirroredSets sets, const MirrorsCall& call, const Image& depth, const Image& image
 ) {
@@ -151,16 +155,15 @@ const Image& PlaneMirrors::put(
   return image_;
 }
 
-void PlaneMirrors::put_surface(Image& depth, Image& normal, bool over_nothing) const {
-  constexpr float kNever = std::numeric_limits<float>::infinity();
-  std::vector<float> nearest(depth.num_pixels(), kNever);
-  for (std::size_t i = 0; i < nearest.size(); ++i)
-    if (!over_nothing && depth.data()[i] <= 0) nearest[i] = 0;
+void PlaneMirrors::put_surface(Image& depth, Image& normal, bool everywhere) const {
+  const Image drawn = depth;
+  std::vector<float> nearest(drawn.num_pixels(), std::numeric_limits<float>::infinity());
   auto view = views_.begin();
   for (std::size_t k = 0; k < num_seen_; ++k, ++view)
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const float z = view->depth().data()[i];
       if (z <= 0 || z >= nearest[i]) continue;
+      if (!everywhere && !view->is_drawn_at(z, drawn.data()[i])) continue;
       depth.data()[i] = nearest[i] = z;
       put3(normal.data(), i, view->normal());
     }

@@ -52,6 +52,8 @@ class MirrorView {
   Vec3f normal() const { return normal_; }             // camera space
   const Image& depth() const { return plane_depth_; }  // [H][W][1] metres; 0: not seen
   Image& gradient() { return dL_dpicture_; }           // of picture()
+  // Whether a first surface at `drawn` metres, 0: none, may be the plane, which is at z there.
+  bool is_drawn_at(float z, float drawn) const;
 
  private:
   void mark_pixels(const MirrorPlane& plane, const Image& depth);
@@ -84,8 +86,8 @@ class PlaneMirrors {
   const Image& put_vjp(const Image& dL_dpicture);
   void put_maps(MapSet& maps) const;
   // Depth [H][W][1] in metres and normals [H][W][3] of the planes, where the last put() shows one:
-  // the nearest. Where nothing was (depth 0), only if told so: surfels may have been cut away.
-  void put_surface(Image& depth, Image& normal, bool over_nothing) const;
+  // the nearest. Unless everywhere, only where `depth` is about there: surfels may be cut away.
+  void put_surface(Image& depth, Image& normal, bool everywhere) const;
   // Puts what the last put() has put in into another picture of the same view [H][W][3].
   void put_again(Image& image) const;
   // Takes it out of one.
