@@ -194,7 +194,7 @@ SeenLayer opaque_layer(const RasterOutput& out) {
 // In pixels where a pane is known by its plane: itself as the second layer, and as the third what
 // the transmission set has, which is not parted there.
 void put_known(const PlaneMirrors& backs, SeenLayer& second) {
-  backs.put_surface(second.depth, second.normal, true);
+  backs.put_surface(second.depth, second.normal, PlanesPut::kAll);
   for (std::size_t i = 0; i < second.depth.num_pixels(); ++i)
     if (backs.seen()->data()[i] > 0) second.transparency.data()[i] = 1;
 }

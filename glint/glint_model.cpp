@@ -266,7 +266,7 @@ MapSet GlintModel::render(
   if (phase.reflection) out["reflection"] = layers_.reflection;
   add_components(config.linear_light, out);
   // Surfels of a pane are off by some centimetres and degrees, for photos show other things there.
-  if (phase.reflection) panes.put_surface(out["depth"], out["normal"], false);
+  if (phase.reflection) panes.put_surface(out["depth"], out["normal"], PlanesPut::kNearDepth);
   if (layered_) inner_.add_maps(buffer(), backs_, out);
   mirrors.put_maps(out);
   return out;

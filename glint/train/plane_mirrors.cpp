@@ -155,7 +155,7 @@ const Image& PlaneMirrors::put(
   return image_;
 }
 
-void PlaneMirrors::put_surface(Image& depth, Image& normal, bool everywhere) const {
+void PlaneMirrors::put_surface(Image& depth, Image& normal, PlanesPut which) const {
   const Image drawn = depth;
   std::vector<float> nearest(drawn.num_pixels(), std::numeric_limits<float>::infinity());
   auto view = views_.begin();
@@ -163,7 +163,7 @@ void PlaneMirrors::put_surface(Image& depth, Image& normal, bool everywhere) con
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const float z = view->depth().data()[i];
       if (z <= 0 || z >= nearest[i]) continue;
-      if (!everywhere && !view->is_drawn_at(z, drawn.data()[i])) continue;
+      if (which == PlanesPut::kNearDepth && !view->is_drawn_at(z, drawn.data()[i])) continue;
       depth.data()[i] = nearest[i] = z;
       put3(normal.data(), i, view->normal());
     }

@@ -71,6 +71,10 @@ class MirrorView {
   RasterOutputGradient dL_dinterface_, dL_dtransmission_;
 };
 
+// Of the planes in a view: all, or those where the depth at hand is about theirs, for a viewer may
+// cut their surfels away.
+enum class PlanesPut { kAll, kNearDepth };
+
 class PlaneMirrors {
  public:
   std::vector<MirrorPlane> planes;
@@ -86,8 +90,8 @@ class PlaneMirrors {
   const Image& put_vjp(const Image& dL_dpicture);
   void put_maps(MapSet& maps) const;
   // Depth [H][W][1] in metres and normals [H][W][3] of the planes, where the last put() shows one:
-  // the nearest. Unless everywhere, only where `depth` is about there: surfels may be cut away.
-  void put_surface(Image& depth, Image& normal, bool everywhere) const;
+  // the nearest.
+  void put_surface(Image& depth, Image& normal, PlanesPut which) const;
   // Puts what the last put() has put in into another picture of the same view [H][W][3].
   void put_again(Image& image) const;
   // Takes it out of one.

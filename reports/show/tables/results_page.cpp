@@ -149,11 +149,6 @@ ResultsInfo read_results_info(const fs::path& file) {
 // Captions, scenes of means and published columns are those of our rooms.
 Table of_other_data(const Table& table) {
   Table result = without_empty_columns(without_published(table));
-  std::erase_if(result.rows, [](const TableRow& row) {
-    return std::none_of(row.cells.begin(), row.cells.end(), [](const TableCell& cell) {
-      return cell.has_value();
-    });
-  });
   result.caption.clear();
   result.notes.clear();
   return result;
@@ -170,7 +165,7 @@ ResultsSection results_section(const ResultsInfo& info, std::vector<Record> reco
     std::erase_if(definition.columns, [&](const TableColumn& column) {
       return is_in(info.without, column.metric);
     });
-    if (info.measured_alone) keep_rows_with_records(definition, records);
+    if (info.measured_alone || info.other_data) keep_rows_with_records(definition, records);
     Table table = build_table(definition, records);
     if (info.other_data) table = of_other_data(table);
     if (has_measurement(table)) section.tables.push_back(std::move(table));

@@ -54,8 +54,7 @@ std::vector<ResultsSection> results_sections(const fs::path& root);
 // A part of docs/results/RESULTS.md: command, scenes, resolution, revisions, dates, machine,
 // tables.
 std::string results_part(const ResultsInfo& info, std::vector<Record> records);
-// A table of data that are not our rooms: without what is said of those, published columns and rows
-// without a value.
+// A table of data that are not our rooms: without what is said of those and published columns.
 Table of_other_data(const Table& table);
 
 // The whole page of a project's folder, from docs/results/. Errors (kBadPrediction): no records.
