@@ -3,7 +3,7 @@
 """Tables of runs of one room with several seeds: those of docs/design/tried.md.
 
     scripts/seed_table.py RECORDS.jsonl [--base NAME]
-    scripts/seed_table.py docs/results/priors.jsonl --scenes perfect good default poor bad
+    scripts/seed_table.py docs/results/priors_8000.jsonl --scenes perfect good default poor bad
 
 Mean and standard deviation over seeds of each variant (the record's `name`, else its method); with --base the
 differences of runs with the same seed to that variant, from the smallest to the largest; with --scenes a table for
