@@ -5,7 +5,7 @@
     scripts/inner_case.py ROOM RUN...
 
 ROOM is the folder of the dataset, RUN a folder that `glint-bench train` or `all --keep` left. Its pixels are those
-of test views whose second layer is a pane of the inner case; views with fewer than --least of them are left out.
+of test views whose second layer is a pane of the inner case; views with fewer than 20 of them are left out.
 Mean over pixels of a view, then over views. A method without layers gives what it has farthest: the depth behind
 glass, else depth. Needs the Python module (PYTHONPATH=build/release/python) and NumPy.
 """
@@ -17,6 +17,7 @@ import glint_bench
 import numpy as np
 
 SLACK = 0.02  # metres around the case: its panes' thickness and the maps' rounding
+LEAST = 20  # pixels of a view that counts
 
 
 def points_in_case(points, case):
@@ -45,34 +46,30 @@ def inner_pixels(view, case):
     return is_glass & (depth > 0) & points_in_case(world_points(view.camera, depth), case)
 
 
-def absrel(depth, truth, mask):
-    known = mask & (truth > 0)
-    return (np.abs(depth - truth)[known] / truth[known]).mean()
-
-
 def scores(view, maps, mask):
-    """PSNR (dB, 8 bits are not rounded to), AbsRel of layers 2 and 3."""
-    error = ((np.clip(maps["rgb"], 0, 1) - view.image) ** 2).mean(-1)
+    """PSNR (dB), AbsRel of layers 2 and 3."""
     behind = ("behind_depth", "depth")
-    return [-10 * np.log10(error[mask].mean())] + [
-        absrel(plane(maps, f"layer_{k}_depth", *behind), plane(view.truth, f"layer_{k}_depth"), mask) for k in (2, 3)
+    layers = [
+        glint_bench.depth(plane(maps, f"layer_{k}_depth", *behind), plane(view.truth, f"layer_{k}_depth"), mask)
+        for k in (2, 3)
     ]
+    psnr = glint_bench.psnr(np.clip(maps["rgb"], 0, 1), view.image, mask)
+    return [psnr["mean"]["psnr"]] + [layer["mean"]["depth-absrel"] for layer in layers]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("room", type=pathlib.Path)
     parser.add_argument("runs", type=pathlib.Path, nargs="+")
-    parser.add_argument("--least", type=int, default=20, help="fewest pixels of a view")
     options = parser.parse_args()
 
     facts = json.loads((options.room / "scene.json").read_text(encoding="utf-8"))
     if "inner_container" not in facts:
         raise SystemExit(f"{options.room}/scene.json: no inner_container; expected a room like nested_1")
     masks = [(view, inner_pixels(view, facts["inner_container"])) for view in glint_bench.load_scene(options.room).test]
-    masks = [(view, mask) for view, mask in masks if mask.sum() >= options.least]
+    masks = [(view, mask) for view, mask in masks if mask.sum() >= LEAST]
     if not masks:
-        raise SystemExit(f"{options.room}: no test view has {options.least} pixels within the inner case")
+        raise SystemExit(f"{options.room}: no test view has {LEAST} pixels within the inner case")
     print("| run | views | pixels | PSNR (dB) | layer 2 | layer 3 |\n|---|---:|---:|---:|---:|---:|")
     for folder in options.runs:
         run = glint_bench.load_run(folder, options.room)
