@@ -15,6 +15,7 @@ import pathlib
 
 import glint_bench
 import numpy as np
+from truth_maps import plane, world_points
 
 SLACK = 0.02  # metres around the case: its panes' thickness and the maps' rounding
 LEAST = 20  # pixels of a view that counts
@@ -26,18 +27,6 @@ def points_in_case(points, case):
     local = (points - np.array(case["pose"]["translation"])) @ np.array(case["pose"]["rotation_world_from_local"])
     local[..., 2] -= half[2]  # its origin is the middle of its floor
     return (np.abs(local) < half + SLACK).all(-1)
-
-
-def world_points(camera, depth):
-    """Points [H][W][3] of the pixels' middles at these depths (metres along the axis)."""
-    x, y = np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
-    seen = np.stack([(x - camera.cx) / camera.fx * depth, (y - camera.cy) / camera.fy * depth, depth], -1)
-    return (seen - np.array(camera.translation_cam_from_world)) @ np.array(camera.rotation_cam_from_world)
-
-
-def plane(maps, *names):
-    """The first of these maps [H][W][1] that is there, as [H][W]."""
-    return np.array(next(maps[name] for name in names if name in maps))[..., 0]
 
 
 def inner_pixels(view, case):

@@ -1,0 +1,87 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Are reflections baked into what stands behind glass? PSNR of runs by what training views see through glass.
+
+    scripts/seen_through.py ROOM RUN...
+
+ROOM is the folder of a dataset with true depth, glass and depth behind it; RUN a folder that `glint-bench train` or
+`all` left. Pixels of test views that are not glass fall into parts by the share, of the training views that see their
+surface, that see it through glass. A method without reflections can give that surface the colour of what the pane
+mirrors before it, and training views, which never see it bare, do not object; test views that see it bare do. PSNR is
+of the mean squared error of all pixels of a part, of colours clipped to [0, 1]. Needs the Python module
+(PYTHONPATH=build/release/python) and NumPy.
+"""
+import argparse
+import pathlib
+
+import glint_bench
+import numpy as np
+from truth_maps import plane, world_points
+
+SAME = 0.03  # of the depth: two views see one surface
+# Title of a part, and its shares of views: above the first, at most the second.
+PARTS = [("never", -1, 0), ("to 1/3", 0, 1 / 3), ("to 2/3", 1 / 3, 2 / 3), ("above", 2 / 3, 1)]
+
+
+def is_glass(view):
+    return plane(view.truth, "glass") > 0.5
+
+
+def views_of(points, views):
+    """How many of the views see each point [H][W][3] bare, and how many through glass: [H][W] each."""
+    bare, through = np.zeros(points.shape[:2], int), np.zeros(points.shape[:2], int)
+    for view in views:
+        x, y, z = np.moveaxis(view.camera.project(points.reshape(-1, 3)).reshape(points.shape), -1, 0)
+        with np.errstate(invalid="ignore"):
+            inside = (z > 0) & (x >= 0) & (x < view.camera.width) & (y >= 0) & (y < view.camera.height)
+        column, row = np.where(inside, x, 0).astype(int), np.where(inside, y, 0).astype(int)
+        glass = is_glass(view)[row, column]
+        depth = np.where(glass, plane(view.truth, "behind_depth")[row, column], plane(view.truth, "depth")[row, column])
+        seen = inside & (np.abs(depth - z) < SAME * z)
+        bare += seen & ~glass
+        through += seen & glass
+    return bare, through
+
+
+def parts_of(view, train):
+    """Masks [H][W] by title: glass, then the parts of what is not."""
+    glass, depth = is_glass(view), plane(view.truth, "depth")
+    bare, through = views_of(world_points(view.camera, depth), train)
+    counted = ~glass & (depth > 0) & (bare + through > 0)
+    share = through / np.maximum(bare + through, 1)
+    return {"glass": glass} | {title: counted & (share > low) & (share <= high) for title, low, high in PARTS}
+
+
+def squared_errors(run, views):
+    """[H][W] of each view, mean of the channels."""
+    return [np.square(np.clip(run.render(view)["rgb"], 0, 1) - view.image).mean(-1) for view in views]
+
+
+def psnr(errors, masks):
+    values = np.concatenate([error[mask] for error, mask in zip(errors, masks)])
+    return f"{-10 * np.log10(values.mean()):.2f}" if values.size else "-"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("room", type=pathlib.Path)
+    parser.add_argument("runs", type=pathlib.Path, nargs="+")
+    options = parser.parse_args()
+
+    scene = glint_bench.load_scene(options.room)
+    lacks = {"depth", "glass", "behind_depth"} - set(scene.test[0].truth)
+    if lacks:
+        raise SystemExit(f"{options.room}: no true {', '.join(sorted(lacks))}; expected a room with both layers of glass")
+    parts = [parts_of(view, scene.train) for view in scene.test]
+    titles = list(parts[0])
+    print(f"| run | {' | '.join(titles)} |\n|---|{'---:|' * len(titles)}")
+    shares = [np.mean([part[title].mean() for part in parts]) for title in titles]
+    print(f"| share of pixels (%) | {' | '.join(f'{100 * share:.1f}' for share in shares)} |")
+    for folder in options.runs:
+        errors = squared_errors(glint_bench.load_run(folder, options.room), scene.test)
+        values = [psnr(errors, [part[title] for part in parts]) for title in titles]
+        print(f"| {'/'.join(folder.parts[-3:])} | {' | '.join(values)} |")
+
+
+if __name__ == "__main__":
+    main()
