@@ -169,12 +169,14 @@ class PointsOfTable {
     const auto [it, is_new] = points_.try_emplace(steps, measured);
     if (is_new) return;
     if (pairs(measured.point) > pairs(it->second.point)) std::swap(it->second, measured);
+    const bool is_tied = pairs(measured.point) == pairs(it->second.point);
     left_out_.push_back(fmt::format(
-        "{} steps at {} ({}): {} has more rooms and seeds",
+        "{} steps at {} ({}): {} {}",
         steps,
         measured.point.resolution,
         measured.point.records,
-        it->second.point.records
+        it->second.point.records,
+        is_tied ? "has as many rooms and seeds, and stands first" : "has more rooms and seeds"
     ));
   }
 

@@ -39,7 +39,7 @@ struct RecordsOfFile {
 
 // Of files with all methods that the paper's tables compare. A method without records of a length
 // may have them of a longer one in the same file: the paper trains GLINT twice as long. Of several
-// files of one length the one with most rooms and seeds counts.
+// files of one length the one with most rooms and seeds counts, of equals the first.
 OrderByLength order_by_length(const std::vector<RecordsOfFile>& files);
 
 // Of a project's folder: the files of its results (results_page.h) and of

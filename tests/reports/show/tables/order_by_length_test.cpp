@@ -83,6 +83,15 @@ TEST_CASE("of two files of one length the one with more rooms and seeds counts")
   }
 }
 
+TEST_CASE("of two files of one length with as many rooms and seeds the first counts") {
+  const OrderByLength order = order_by_length(std::vector{
+      file_of("first.jsonl", 3000, false), file_of("second.jsonl", 3000, true)});
+  REQUIRE(order.points.size() == 1);
+  CHECK(order.points[0].records == "first.jsonl");
+  const char* why = "second.jsonl): first.jsonl has as many rooms and seeds, and stands first";
+  CHECK(is_left_out(order, why));
+}
+
 TEST_CASE("a method may have been trained longer, as the paper's GLINT is") {
   RecordsOfFile file = file_of("long.jsonl", 30000, true);
   for (Record& record : file.records)
