@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: MIT
 """Are reflections baked into what stands behind glass? PSNR of runs by what training views see through glass.
 
-    scripts/seen_through.py ROOM RUN...
+    scripts/seen_through.py ROOM RUN... [--picture FILE --views NAME...]
 
 ROOM is the folder of a dataset with true depth, glass and depth behind it; RUN a folder that `glint-bench train` or
 `all` left. Pixels of test views that are not glass fall into parts by the share, of the training views that see their
 surface, that see it through glass. A method without reflections can give that surface the colour of what the pane
 mirrors before it, and training views, which never see it bare, do not object; test views that see it bare do. PSNR is
-of the mean squared error of all pixels of a part, of colours clipped to [0, 1]. Needs the Python module
-(PYTHONPATH=build/release/python) and NumPy.
+of the mean squared error of all pixels of a part, of colours clipped to [0, 1]. --picture: a row for each of the
+views, its photo, then its render by each run. Needs the Python module (PYTHONPATH=build/release/python), NumPy, and
+for the picture Pillow.
 """
 import argparse
 import pathlib
@@ -62,10 +63,19 @@ def psnr(errors, masks):
     return f"{-10 * np.log10(values.mean()):.2f}" if values.size else "-"
 
 
+def picture(scene, runs, names):
+    """uint8 [H][W][3]: rows of views, columns of the photo and of the runs."""
+    views = {view.name: view for view in [*scene.train, *scene.test]}
+    rows = [np.concatenate([views[n].image, *(run.render(views[n])["rgb"] for run in runs)], 1) for n in names]
+    return (255 * np.clip(np.concatenate(rows), 0, 1) + 0.5).astype(np.uint8)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("room", type=pathlib.Path)
     parser.add_argument("runs", type=pathlib.Path, nargs="+")
+    parser.add_argument("--picture", type=pathlib.Path, help="file of a format that Pillow knows by its ending")
+    parser.add_argument("--views", nargs="+", default=[], help="names of views that it shows")
     options = parser.parse_args()
 
     scene = glint_bench.load_scene(options.room)
@@ -77,10 +87,15 @@ def main():
     print(f"| run | {' | '.join(titles)} |\n|---|{'---:|' * len(titles)}")
     shares = [np.mean([part[title].mean() for part in parts]) for title in titles]
     print(f"| share of pixels (%) | {' | '.join(f'{100 * share:.1f}' for share in shares)} |")
-    for folder in options.runs:
-        errors = squared_errors(glint_bench.load_run(folder, options.room), scene.test)
+    runs = [glint_bench.load_run(folder, options.room) for folder in options.runs]
+    for folder, run in zip(options.runs, runs):
+        errors = squared_errors(run, scene.test)
         values = [psnr(errors, [part[title] for part in parts]) for title in titles]
         print(f"| {'/'.join(folder.parts[-3:])} | {' | '.join(values)} |")
+    if options.picture:
+        from PIL import Image
+
+        Image.fromarray(picture(scene, runs, options.views)).save(options.picture, quality=90)
 
 
 if __name__ == "__main__":

@@ -60,6 +60,15 @@ class SeenThrough(unittest.TestCase):
         self.assertEqual(seen_through.psnr(errors, [columns < 2]), f"{-10 * np.log10((0.25 + 0.01) / 2):.2f}")
         self.assertEqual(seen_through.psnr(errors, [columns > 8]), "-")
 
+    def test_picture_has_photo_and_runs_beside_each_other(self):
+        view = view_of_wall([7])
+        view.name = "b"
+        scene = types.SimpleNamespace(train=[view], test=[])
+        runs = [types.SimpleNamespace(render=lambda _, v=v: {"rgb": np.full((4, 8, 3), v, np.float32)}) for v in (0, 7)]
+        sheet = seen_through.picture(scene, runs, ["b", "b"])
+        self.assertEqual((sheet.shape, sheet.dtype), ((8, 24, 3), np.uint8))
+        self.assertEqual(sheet[5, [0, 8, 16], 1].tolist(), [128, 0, 255])
+
 
 class Program(RoomCase):
     def test_a_run_of_a_room(self):
