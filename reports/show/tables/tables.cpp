@@ -432,15 +432,15 @@ void add_seeds_notes(Table& table) {
   int most = 0;
   for (const TableRow& row : table.rows)
     for (const TableCell& cell : row.cells) most = std::max(most, cell.num_seeds);
+  RowNotes notes;
   for (const TableRow& row : table.rows) {
     int fewest = most;
     for (const TableCell& cell : row.cells)
       if (cell.num_seeds > 0) fewest = std::min(fewest, cell.num_seeds);
-    if (fewest < most)
-      table.notes.push_back(fmt::format(
-          "{}: {} of {}.", row.title, fewest, counted(static_cast<std::size_t>(most), "seed")
-      ));
+    const std::string of_all = counted(static_cast<std::size_t>(most), "seed");
+    if (fewest < most) notes.add(row.title, fmt::format("{} of {}", fewest, of_all));
   }
+  notes.append_to(table, "", "");
 }
 
 // Rows are compared as if they were trained alike.
