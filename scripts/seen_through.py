@@ -7,7 +7,7 @@
 ROOM is the folder of a dataset with true depth, glass and depth behind it; RUN a folder that `glint-bench train` or
 `all` left. Pixels of test views that are not glass fall into parts by the share, of the training views that see their
 surface, that see it through glass. A method without reflections can give that surface the colour of what the pane
-mirrors before it, and training views, which never see it bare, do not object; test views that see it bare do. PSNR is
+mirrors before it, and training views, which seldom see it bare, hardly object; test views that see it bare do. PSNR is
 of the mean squared error of all pixels of a part, of colours clipped to [0, 1]. --picture: a row for each of the
 views, its photo, then its render by each run. Needs the Python module (PYTHONPATH=build/release/python), NumPy, and
 for the picture Pillow.
