@@ -63,11 +63,28 @@ def psnr(errors, masks):
     return f"{-10 * np.log10(values.mean()):.2f}" if values.size else "-"
 
 
-def picture(scene, runs, names):
-    """uint8 [H][W][3]: rows of views, columns of the photo and of the runs."""
+def named_views(scene, names):
+    """The views of these names; ends the program where the scene lacks one."""
     views = {view.name: view for view in [*scene.train, *scene.test]}
-    rows = [np.concatenate([views[n].image, *(run.render(views[n])["rgb"] for run in runs)], 1) for n in names]
+    unknown = sorted(set(names) - set(views))
+    if unknown:
+        raise SystemExit(f"--views: no view {', '.join(unknown)}; expected names such as {', '.join(list(views)[:3])}")
+    return [views[name] for name in names]
+
+
+def picture(views, runs):
+    """uint8 [H][W][3]: rows of views, columns of the photo and of the runs."""
+    rows = [np.concatenate([view.image, *(run.render(view)["rgb"] for run in runs)], 1) for view in views]
     return (255 * np.clip(np.concatenate(rows), 0, 1) + 0.5).astype(np.uint8)
+
+
+def write_picture(path, values):
+    """To a temporary name, then renamed."""
+    from PIL import Image
+
+    temporary = path.with_stem(path.stem + ".tmp")
+    Image.fromarray(values).save(temporary, quality=90)
+    temporary.replace(path)
 
 
 def main():
@@ -77,11 +94,14 @@ def main():
     parser.add_argument("--picture", type=pathlib.Path, help="file of a format that Pillow knows by its ending")
     parser.add_argument("--views", nargs="+", default=[], help="names of views that it shows")
     options = parser.parse_args()
+    if bool(options.picture) != bool(options.views):
+        parser.error("--picture and --views belong together: the file, and the names of the views in it")
 
     scene = glint_bench.load_scene(options.room)
     lacks = {"depth", "glass", "behind_depth"} - set(scene.test[0].truth)
     if lacks:
         raise SystemExit(f"{options.room}: no true {', '.join(sorted(lacks))}; expected a room with both layers of glass")
+    shown = named_views(scene, options.views)
     parts = [parts_of(view, scene.train) for view in scene.test]
     titles = list(parts[0])
     print(f"| run | {' | '.join(titles)} |\n|---|{'---:|' * len(titles)}")
@@ -93,9 +113,7 @@ def main():
         values = [psnr(errors, [part[title] for part in parts]) for title in titles]
         print(f"| {'/'.join(folder.parts[-3:])} | {' | '.join(values)} |")
     if options.picture:
-        from PIL import Image
-
-        Image.fromarray(picture(scene, runs, options.views)).save(options.picture, quality=90)
+        write_picture(options.picture, picture(shown, runs))
 
 
 if __name__ == "__main__":

@@ -62,21 +62,21 @@ class SeenThrough(unittest.TestCase):
 
     def test_picture_has_photo_and_runs_beside_each_other(self):
         view = view_of_wall([7])
-        view.name = "b"
-        scene = types.SimpleNamespace(train=[view], test=[])
         runs = [types.SimpleNamespace(render=lambda _, v=v: {"rgb": np.full((4, 8, 3), v, np.float32)}) for v in (0, 7)]
-        sheet = seen_through.picture(scene, runs, ["b", "b"])
+        sheet = seen_through.picture([view, view], runs)
         self.assertEqual((sheet.shape, sheet.dtype), ((8, 24, 3), np.uint8))
         self.assertEqual(sheet[5, [0, 8, 16], 1].tolist(), [128, 0, 255])
 
 
 class Program(RoomCase):
+    def seen_through(self, *arguments):
+        command = [sys.executable, ROOT / "scripts/seen_through.py", self.room, *arguments]
+        return subprocess.run(command, capture_output=True, text=True)
+
     def test_a_run_of_a_room(self):
         run = self.folder / "run"
         glint_bench.train(self.room, "2dgs", iterations=20, run=run)
-        done = subprocess.run(
-            [sys.executable, ROOT / "scripts/seen_through.py", self.room, run], capture_output=True, text=True
-        )
+        done = self.seen_through(run)
         self.assertEqual(done.returncode, 0, done.stderr)
         head, _, shares, row = done.stdout.splitlines()
         self.assertEqual(head, "| run | glass | never | to 1/3 | to 2/3 | above |")
@@ -84,6 +84,16 @@ class Program(RoomCase):
         self.assertGreater(percent[0], 5)
         self.assertLessEqual(sum(percent), 100.3)
         self.assertGreater(float(row.split("|")[2]), 5)
+
+    def test_a_picture_needs_views_that_exist(self):
+        picture = self.folder / "sheet.png"
+        without = self.seen_through(self.folder, "--picture", picture)
+        self.assertEqual(without.returncode, 2)
+        self.assertIn("--picture and --views belong together", without.stderr)
+        unknown = self.seen_through(self.folder, "--picture", picture, "--views", "nobody")
+        self.assertEqual(unknown.returncode, 1)
+        self.assertIn("no view nobody; expected names such as", unknown.stderr)
+        self.assertFalse(picture.exists())
 
 
 if __name__ == "__main__":
