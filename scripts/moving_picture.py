@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """An animated WebP of a camera path, for pages that show no video: what README opens with.
 
-    glint-bench dataset make glassroom --scene room_2 --width 128 --height 72 --views 48 --spp 64 --out ROOM
-    glint-bench train --dataset ROOM --method glint/plus --iterations 8000 --run RUN
+    glint-bench dataset make glassroom --scene room_2 --width 128 --height 72 --views 178 --spp 64 --out ROOM
+    glint-bench train --dataset ROOM --method glint/plus --iterations 30000 --run RUN
     glint-bench render --run RUN --path orbit --frames 60 --size 320x180 \\
         --maps rgb,away,reflection,depth,behind_depth,normal --to FOLDER
     scripts/moving_picture.py FOLDER docs/images/moving.webp --columns 3 --quality 66

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <utility>
 
 #include "glint/method.h"
 #include "reports/show/tables/main_methods.h"
@@ -34,7 +34,20 @@ std::set<std::string> ablation_variants() {
   return ids;
 }
 
+// Place in the summary; behind all others where it has no row of its own.
+std::size_t row_of(const std::string& id) {
+  static const std::vector<TableRowDefinition> rows = table_definition("summary").rows;
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const TableRowDefinition& candidate) {
+    return candidate.method == id;
+  });
+  return static_cast<std::size_t>(row - rows.begin());
+}
+
 }  // namespace
+
+bool InTableOrder::operator()(const std::string& a, const std::string& b) const {
+  return std::pair(row_of(a), a) < std::pair(row_of(b), b);
+}
 
 bool MethodChoice::in_pictures(const std::string& id) const {
   return globs.empty() ? !is_variant(id) || is_main_method(id) : any_matches(globs, id);

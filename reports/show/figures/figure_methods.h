@@ -2,6 +2,7 @@
 // The methods of a store as figures name them: the same words, colours and lines in all.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ struct MethodChoice {
   bool in_curves(const std::string& id) const;
   bool in_studies(const std::string& id) const;  // without globs: all that there are
 };
+
+// Columns and rows of pictures stand as the rows of the summary do: the paper's order, then others
+// by id.
+struct InTableOrder {
+  bool operator()(const std::string& a, const std::string& b) const;
+};
+using PictureMethods = std::set<std::string, InTableOrder>;
 
 // Every method with a finished record: methods, then variants, each by id. The place in the list is
 // the index of series_style().

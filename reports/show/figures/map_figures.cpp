@@ -2,7 +2,6 @@
 #include "reports/show/figures/map_figures.h"
 
 #include <algorithm>
-#include <set>
 
 #include "reports/show/figures/figure_methods.h"
 #include "reports/show/figures/map_crops.h"
@@ -45,17 +44,15 @@ Image mask_panel(const MaskImage& mask) {
   return fit_panel(picture);
 }
 
-std::set<std::string> methods_with(
-    const std::vector<FigureScene>& scenes, const std::string& layer
-) {
-  std::set<std::string> methods;
+PictureMethods methods_with(const std::vector<FigureScene>& scenes, const std::string& layer) {
+  PictureMethods methods;
   for (const FigureScene& scene : scenes)
     for (const auto& [method, maps] : scene.methods)
       if (has(&maps, layer)) methods.insert(method);
   return methods;
 }
 
-std::vector<Crop> crops_of(const FigureScene& scene, const std::set<std::string>& methods) {
+std::vector<Crop> crops_of(const FigureScene& scene, const PictureMethods& methods) {
   if (!scene.crops.empty()) return scene.crops;
   std::vector<Image> errors;
   for (const std::string& method : methods)
@@ -114,7 +111,7 @@ std::string row_title(const FigureScene& scene, const MapRow& map) {
 }
 
 void add_qualitative_rows(
-    PictureGrid& grid, const FigureScene& scene, const std::set<std::string>& methods
+    PictureGrid& grid, const FigureScene& scene, const PictureMethods& methods
 ) {
   const std::vector<Crop> crops = crops_of(scene, methods);
   std::vector<const FigureLayers*> columns{&scene.truth};

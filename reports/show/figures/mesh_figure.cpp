@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "datasets/released_truth.h"
 #include "glint/core/presence.h"
@@ -109,7 +108,7 @@ class MeshPainter {
   std::map<fs::path, std::optional<SeenMesh>> seen_;
 };
 
-bool any_has(const FigureScene& scene, const std::set<std::string>& methods, const char* mesh) {
+bool any_has(const FigureScene& scene, const PictureMethods& methods, const char* mesh) {
   return std::any_of(methods.begin(), methods.end(), [&](const std::string& method) {
     const auto run = scene.runs.find(method);
     return run != scene.runs.end() && or_warn([&] { return is_there(run->second / mesh); });
@@ -119,7 +118,7 @@ bool any_has(const FigureScene& scene, const std::set<std::string>& methods, con
 void add_rows(
     PictureGrid& grid,
     const FigureScene& scene,
-    const std::set<std::string>& methods,
+    const PictureMethods& methods,
     const MeshKind& kind,
     MeshPainter& painter
 ) {
@@ -153,7 +152,7 @@ std::vector<LegendLine> mesh_legend() {
 
 PictureGrid meshes_figure(const std::vector<FigureScene>& scenes) {
   PictureGrid grid;
-  std::set<std::string> methods;
+  PictureMethods methods;
   for (const FigureScene& scene : scenes)
     for (const auto& [method, folder] : scene.runs) methods.insert(method);
   for (const FigureScene& scene : scenes) {

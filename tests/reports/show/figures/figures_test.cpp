@@ -381,6 +381,18 @@ TEST_CASE("columns of a figure are the truth and every method, empty where one h
   CHECK(grid.rows[1][1].size() == grid.rows[0][1].size());
 }
 
+TEST_CASE("methods of a figure stand as the rows of the summary do, others behind them by id") {
+  const LayerMaps maps = {{"rgb", Image(kWidth, kHeight, 3)}};
+  std::map<std::string, LayerMaps> methods;
+  for (const char* id : {"a", "glint", "glint/plus", "envgs", "tsgs", "pgsr", "2dgs", "ref-gs"})
+    methods[id] = maps;
+  CHECK(
+      qualitative_figure({scene_of(methods)}).titles ==
+      std::vector<std::string>{
+          "truth", "2DGS", "PGSR", "Ref-GS", "EnvGS", "TSGS", "GLINT", "a", "GLINT+"}
+  );
+}
+
 TEST_CASE("the full model stands first in the ablation, variants keep the table's order") {
   const LayerMaps maps = {{"rgb", Image(kWidth, kHeight, 3)}};
   const auto scene =
