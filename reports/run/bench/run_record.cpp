@@ -97,6 +97,7 @@ Record make_record(
   record.score_key = key_of_stage(spec.folder, Stage::kScore);
   record.dataset_hash = scene.spec_hash;
   record.iterations = spec.options.iterations;
+  if (record.iterations > 0) record.training_views = static_cast<int>(scene.train.size());
   const std::optional<TrainCost> cost = trained_cost(spec);
   add_unmeasured(record, spec, cost);
   record.not_applicable = without_truth(record, spec);

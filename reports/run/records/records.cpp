@@ -33,6 +33,7 @@ void visit_fields(R& record, V&& v) {
   v("score_key", record.score_key);
   v("dataset_hash", record.dataset_hash);
   v("iterations", record.iterations);
+  v("training_views", record.training_views);
   v("num_surfels", record.num_surfels);
   v("estimated_memory_mb", record.estimated_memory_mb);
   v("process_memory_mb", record.process_memory_mb);

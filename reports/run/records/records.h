@@ -49,6 +49,7 @@ struct Record {
   std::string train_key, score_key;
   std::string dataset_hash;  // as the loader knows the data
   int iterations = 0;        // of its training; 0: unknown, or trained elsewhere
+  int training_views = 0;    // photos it was trained on; 0: unknown, or trained elsewhere
   std::size_t num_surfels = 0;
   double estimated_memory_mb = 0;     // before its training
   double process_memory_mb = 0;       // the most that its process took; metrics have the training's

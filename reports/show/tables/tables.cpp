@@ -15,6 +15,7 @@
 #include "reports/show/tables/published.h"
 #include "reports/show/tables/statistics.h"
 #include "reports/show/tables/table_cells.h"
+#include "reports/show/tables/training_notes.h"
 
 namespace glint {
 
@@ -443,40 +444,6 @@ void add_seeds_notes(Table& table) {
   notes.append_to(table, "", "");
 }
 
-// Rows are compared as if they were trained alike.
-void add_steps_note(Table& table, const std::vector<Record>& records) {
-  std::map<int, std::vector<std::string>> titles;  // by steps
-  for (const TableRow& row : table.rows) {
-    std::set<int> steps;
-    for (const Record& record : records)
-      if (record.cell.method == row.method && record.ok() && record.iterations > 0)
-        steps.insert(record.iterations);
-    for (const int count : steps) titles[count].push_back(row.title);
-  }
-  if (titles.size() < 2) return;
-  std::vector<std::string> groups;
-  for (const auto& [steps, rows] : titles)
-    groups.push_back(fmt::format("{}: {}", steps, fmt::join(rows, ", ")));
-  table.notes.push_back(
-      fmt::format("Trained for different numbers of steps ({}).", fmt::join(groups, "; "))
-  );
-}
-
-// Title and caption: what runs of a few steps say of methods is not what published ones do.
-void warn_of_short_runs(Table& table, const std::vector<Record>& records) {
-  constexpr int kLong = 8000;
-  int most = 0;
-  for (const Record& record : records)
-    if (record.ok()) most = std::max(most, record.iterations);
-  if (most == 0 || most >= kLong) return;
-  table.title += fmt::format(" (a smoke test: {} steps)", most);
-  table.caption = fmt::format(
-      "A smoke test: {} steps, of published 30,000 and more, at which the order can be another. {}",
-      most,
-      table.caption
-  );
-}
-
 // Where what a machine lacked is to be had.
 void add_weights_note(Table& table) {
   const auto lacks = [](const TableCell& cell) {
@@ -507,7 +474,7 @@ void add_notes(
   add_interval_note(table);
   add_priors_note(table, records);
   add_seeds_notes(table);
-  add_steps_note(table, records);
+  add_training_notes(table, records);
   add_failures(table, records);
   add_method_notes(table, records);
   add_weights_note(table);

@@ -54,6 +54,7 @@ TEST_CASE("a single run lands in the records of OUT/single when it is scored") {
   CHECK(records[0].cell == CellKey{"room_1", "2dgs", 0});
   CHECK(records[0].metrics.contains("psnr"));
   CHECK(records[0].resolution == "64x36");
+  CHECK(records[0].training_views == static_cast<int>(test::small_room().train.size()));
   CHECK(records[0].num_surfels > 0);
   CHECK(records[0].metrics.at("num-surfels") == static_cast<double>(records[0].num_surfels));
   CHECK(records[0].metrics.at("train-minutes") > 0);

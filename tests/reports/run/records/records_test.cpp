@@ -22,6 +22,7 @@ Record sample_record() {
   record.metrics = {{"psnr", 31.23456789012345}, {"psnr@glass", 27.5}};
   record.train_key = "c0ffee";
   record.score_key = "beef";
+  record.training_views = 42;
   record.num_surfels = 20000;
   record.not_applicable = {"transparency-iou"};
   record.timings["train"] = 12.5;
@@ -36,6 +37,7 @@ TEST_CASE("a record reads back as it was written, to the last bit of its numbers
   const auto records = read_records(folder.path() / "records.jsonl");
   REQUIRE(records.size() == 1);
   CHECK(record_to_json(records[0]) == record_to_json(sample_record()));
+  CHECK(records[0].training_views == 42);
   CHECK(records[0].metrics.at("psnr") == 31.23456789012345);
   CHECK(records[0].not_applicable == sample_record().not_applicable);
 }

@@ -87,6 +87,25 @@ TEST_CASE("rows that were trained for different numbers of steps are told") {
   );
 }
 
+TEST_CASE("tables say on how many photos scenes were trained, and whether those are few") {
+  std::vector<Record> records{record_of("2dgs", 30), record_of("glint", 31)};
+  const auto notes = [&] {
+    const Table table = build_table(definition_of("table1_photometric"), records);
+    return fmt::format("{}", fmt::join(table.notes, " "));
+  };
+  CHECK_THAT(notes(), !Catch::Contains("Photos for training"));  // records of older versions
+  records[0].training_views = 155;
+  CHECK_THAT(notes(), Catch::Contains("Photos for training, a scene: 155."));
+  records[1].training_views = 42;
+  CHECK_THAT(
+      notes(),
+      Catch::Contains("Photos for training, a scene: 42 to 155 (a scene of 3D-FRONT-T: 156); with "
+                      "so few, the order by pictures can be another.")
+  );
+  records[1].failure.emplace();
+  CHECK_THAT(notes(), Catch::Contains("a scene: 155."));
+}
+
 TEST_CASE("methods that were not run are missing, in every format a word") {
   const Table table = golden_table("table1_photometric");
   CHECK(cell_of(table, "pgsr", "psnr").status == CellStatus::kMissing);
