@@ -76,11 +76,11 @@ std::string order_figure(const OrderByLength& order) {
   chart.y = {-1, 1};
   for (const OrderPoint& point : order.points) {
     const auto known = std::find_if(chart.series.begin(), chart.series.end(), [&](const auto& one) {
-      return one.name == point.title;
+      return one.name == point.series();
     });
     SvgSeries& series = known != chart.series.end()
                             ? *known
-                            : chart.series.emplace_back(SvgSeries{point.title, {}, {}, {}});
+                            : chart.series.emplace_back(SvgSeries{point.series(), {}, {}, {}});
     series.x.push_back(std::log(static_cast<double>(point.steps)));
     series.y.push_back(point.mean.tau);
     series.intervals.push_back(point.mean.interval);

@@ -10,7 +10,7 @@ namespace glint {
 namespace {
 
 // Pixels. The legend stands right of the axes.
-constexpr double kWidth = 690, kLeast = 280, kLeft = 62, kRight = 480, kTop = 16, kBottom = 232;
+constexpr double kWidth = 770, kLeast = 280, kLeft = 62, kRight = 480, kTop = 16, kBottom = 232;
 constexpr double kEnd = 40;    // from the axes' ends to the first and the last tick
 constexpr double kBeside = 7;  // between points of two series at one place
 constexpr int kYTicks = 4;     // parts of the y axis

@@ -7,6 +7,7 @@
 #include "glint/core/presence.h"
 #include "reports/show/tables/results_page.h"
 #include "reports/show/tables/table_writers.h"
+#include "reports/show/tables/training_notes.h"
 
 namespace glint {
 namespace {
@@ -23,9 +24,18 @@ TableDefinition compared_definition(const std::string& id) {
   return definition;
 }
 
-// Records of the table's methods in one file at one size, by method and steps.
+// Of scenes as of whole tables: what few photos say is not what many do.
+enum class Photos { kUnknown, kFew, kMany };
+
+Photos class_of(int photos) {
+  if (photos <= 0) return Photos::kUnknown;
+  return photos < kFewPhotos ? Photos::kFew : Photos::kMany;
+}
+
+// Records of the table's methods in one file at one size and number of photos, by method and steps.
 struct Lengths {
   std::string file, resolution;
+  int photos = 0;
   std::map<std::string, std::map<int, std::vector<Record>>> methods;
 
   std::set<int> steps() const {
@@ -36,9 +46,9 @@ struct Lengths {
   }
 };
 
-// By size. Records whose steps nobody knows, and failed ones, are left out.
+// By size and photos. Records whose steps nobody knows, and failed ones, are left out.
 std::vector<Lengths> lengths_of(const RecordsOfFile& file, const TableDefinition& definition) {
-  std::map<std::string, Lengths> by_size;
+  std::map<std::pair<std::string, int>, Lengths> by_size;
   std::set<std::string> compared;
   for (const TableRowDefinition& row : definition.rows) compared.insert(row.method);
   for (const Record& record : file.records) {
@@ -46,9 +56,11 @@ std::vector<Lengths> lengths_of(const RecordsOfFile& file, const TableDefinition
     if (!record.ok() || steps <= 0 || record.dataset != definition.dataset ||
         !compared.contains(record.cell.method))
       continue;
-    Lengths& lengths = by_size[record.resolution];
+    const int photos = record.training_views > 0 ? record.training_views : file.photos;
+    Lengths& lengths = by_size[{record.resolution, photos}];
     lengths.file = file.file;
     lengths.resolution = record.resolution;
+    lengths.photos = photos;
     lengths.methods[record.cell.method][steps].push_back(record);
   }
   std::vector<Lengths> all;
@@ -119,6 +131,7 @@ MeasuredPoint measured_point(
   point.title = definition.title;
   point.records = lengths.file;
   point.resolution = lengths.resolution;
+  point.photos = lengths.photos;
   point.longer = candidate.longer;
   for (const TableColumn& column : definition.columns) point.titles[column.id] = column.title;
   for (const TableCell& cell : table.rows.front().cells) {
@@ -146,7 +159,7 @@ class PointsOfTable {
 
   void give(OrderByLength& order) {
     const std::set<std::string> shared = shared_columns();
-    for (auto& [steps, measured] : points_) {
+    for (auto& [place, measured] : points_) {
       fill(measured, shared);
       if (!measured.point.columns.empty()) order.points.push_back(std::move(measured.point));
     }
@@ -166,7 +179,7 @@ class PointsOfTable {
     MeasuredPoint measured = measured_point(lengths, candidate, definition_);
     if (measured.columns.empty()) return;  // of another table alone
     const auto pairs = [](const OrderPoint& point) { return point.num_scenes * point.num_seeds; };
-    const auto [it, is_new] = points_.try_emplace(steps, measured);
+    const auto [it, is_new] = points_.try_emplace({class_of(lengths.photos), steps}, measured);
     if (is_new) return;
     if (pairs(measured.point) > pairs(it->second.point)) std::swap(it->second, measured);
     const bool is_tied = pairs(measured.point) == pairs(it->second.point);
@@ -206,31 +219,48 @@ class PointsOfTable {
   }
 
   TableDefinition definition_;
-  std::map<int, MeasuredPoint> points_;  // by steps
+  std::map<std::pair<Photos, int>, MeasuredPoint> points_;  // by photos, then by steps
   std::vector<std::string> left_out_;
 };
 
-RecordsOfFile read_file_of(const fs::path& root, const std::string& file, int steps) {
+RecordsOfFile read_file_of(const fs::path& root, RecordsOfFile file) {
   GLINT_CHECK(
-      is_file(root / file), kBadReference, "{}: no such file, which {} names", file, kLengths
+      is_file(root / file.file),
+      kBadReference,
+      "{}: no such file, which {} names",
+      file.file,
+      kLengths
   );
-  return {file, steps, read_records(root / file)};
+  file.records = read_records(root / file.file);
+  return file;
+}
+
+// What lengths.json says of a file's records.
+RecordsOfFile entry_of(const Json& entry) {
+  const Json file = entry.is_object() ? entry.value("records", Json()) : Json();
+  GLINT_CHECK(file.is_string(), kBadReference, "{}: an entry without 'records'", kLengths);
+  RecordsOfFile one{file.get<std::string>(), 0, {}};
+  one.steps = static_cast<int>(number_or(entry, "steps", 0));
+  one.photos = static_cast<int>(number_or(entry, "photos", 0));
+  return one;
 }
 
 std::vector<RecordsOfFile> files_of(const fs::path& root) {
-  std::map<std::string, int> steps;
-  for (const fs::path& part : results_parts(root)) steps[read_results_info(part).records];
+  std::map<std::string, RecordsOfFile> named;
+  for (const fs::path& part : results_parts(root)) {
+    const std::string file = read_results_info(part).records;
+    named[file].file = file;
+  }
   if (is_file(root / kLengths)) {
     const Json lengths = parse_json(read_file(root / kLengths));
     GLINT_CHECK(lengths.is_array(), kBadReference, "{}: expected a JSON list", kLengths);
     for (const Json& entry : lengths) {
-      const Json file = entry.is_object() ? entry.value("records", Json()) : Json();
-      GLINT_CHECK(file.is_string(), kBadReference, "{}: an entry without 'records'", kLengths);
-      steps[file.get<std::string>()] = static_cast<int>(number_or(entry, "steps", 0));
+      RecordsOfFile one = entry_of(entry);
+      named[one.file] = one;
     }
   }
   std::vector<RecordsOfFile> files;
-  for (const auto& [file, number] : steps) files.push_back(read_file_of(root, file, number));
+  for (const auto& [name, file] : named) files.push_back(read_file_of(root, file));
   return files;
 }
 
@@ -263,7 +293,21 @@ std::string OrderPoint::measured_on() const {
   const auto counted = [](int count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
-  return fmt::format("{}, {}", counted(num_scenes, "room"), counted(num_seeds, "seed"));
+  std::string text = fmt::format("{}, {}", counted(num_scenes, "room"), counted(num_seeds, "seed"));
+  if (photos > 0) text += fmt::format(", {}", counted(photos, "photo"));
+  return text;
+}
+
+std::string OrderPoint::series() const {
+  switch (class_of(photos)) {
+    case Photos::kUnknown:
+      return title;
+    case Photos::kFew:
+      return title + ", few photos";
+    case Photos::kMany:
+      return title + ", many photos";
+  }
+  return title;
 }
 
 OrderByLength order_by_length(const std::vector<RecordsOfFile>& files) {
@@ -283,7 +327,8 @@ std::vector<std::string> order_notes(const OrderByLength& order) {
       "Kendall's tau of the order of the paper's six methods, measured against published on "
       "3D-FRONT-T: 1 the same order, -1 the reverse. Of a table: the mean over its columns.",
       "[low, high]: 95 % by bootstrap over rooms and seeds, too narrow where they are few. Chance: "
-      "95 % of random orders lie within."};
+      "95 % of random orders lie within.",
+      fmt::format("Photos: of a scene, for training; few are less than {}.", kFewPhotos)};
   for (const OrderPoint& point : order.points)
     for (const std::string& longer : point.longer)
       if (const std::string note = fmt::format("At {} steps: {}.", point.steps, longer);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How long must trainings be before they order methods as the paper does? Kendall's tau of the
-// method order of a table, measured against published, at each number of steps that committed
-// records have (agreement.h).
+// How long must trainings be, and on how many photos, before they order methods as the paper does?
+// Kendall's tau of the method order of a table, measured against published, at each number of steps
+// that committed records have (agreement.h), of scenes with few photos and with many apart.
 #pragma once
 
 #include <map>
@@ -16,13 +16,15 @@ namespace glint {
 struct OrderPoint {
   int steps = 0;
   std::string table, title, records, resolution;  // `records`: the file
+  int photos = 0;                                 // of a scene for training; 0: not known
   int num_scenes = 0, num_seeds = 0;
   OrderAgreement mean;                        // over the columns
   std::vector<OrderAgreement> columns;        // those that every point of the table has
   std::map<std::string, std::string> titles;  // of columns, by id
   std::vector<std::string> longer;            // "GLINT 60000 steps": methods with more steps
 
-  std::string measured_on() const;  // "5 rooms, 1 seed"
+  std::string measured_on() const;  // "5 rooms, 1 seed, 155 photos"
+  std::string series() const;       // the line in the figure that it belongs to: table, photos
 };
 
 struct OrderByLength {
@@ -35,17 +37,19 @@ struct RecordsOfFile {
   std::string file;
   int steps = 0;  // of records that do not say; 0: they are left out
   std::vector<Record> records;
+  int photos = 0;  // for training, of records that do not say
 };
 
 // Of files with all methods that the paper's tables compare. A method without records of a length
 // may have them of a longer one in the same file: the paper trains GLINT twice as long. Of several
-// files of one length the one with most rooms and seeds counts, of equals the first.
+// files of one length, few photos or many (kFewPhotos), the one with most rooms and seeds counts,
+// of equals the first.
 OrderByLength order_by_length(const std::vector<RecordsOfFile>& files);
 
 // Of a project's folder: the files of its results (results_page.h) and of
 // docs/results/lengths.json,
-// [{"records": FILE, "steps": N}]. Errors: read_records()'s; kBadReference: lengths.json is
-// damaged.
+// [{"records": FILE, "steps": N, "photos": N}]. Errors: read_records()'s; kBadReference:
+// lengths.json is damaged.
 OrderByLength order_by_length(const fs::path& root);
 
 // Where its figure lies, below the project's folder.

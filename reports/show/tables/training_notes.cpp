@@ -27,11 +27,10 @@ void add_steps_note(Table& table, const std::vector<Record>& records) {
   );
 }
 
-// A scene of 3D-FRONT-T has 156 photos for training (779 of five scenes). With 42 a method without
-// reflections gave what panes hide the colours that they mirror, more so with more steps
-// (docs/design/glint.md), and the order by pictures was another.
+// With 42 photos a method without reflections gave what panes hide the colours that they mirror,
+// more so with more steps (docs/design/glint.md), and the order by pictures was another.
 void add_photos_note(Table& table, const std::vector<Record>& records) {
-  constexpr int kPublished = 156, kFew = 100;
+  constexpr int kPublished = 156;
   std::set<int> photos;
   for (const Record& record : records)
     if (record.ok() && record.training_views > 0) photos.insert(record.training_views);
@@ -43,7 +42,7 @@ void add_photos_note(Table& table, const std::vector<Record>& records) {
   table.notes.push_back(fmt::format(
       "Photos for training, a scene: {}{}.",
       fewest == most ? std::to_string(most) : fmt::format("{} to {}", fewest, most),
-      fewest < kFew ? few : ""
+      fewest < kFewPhotos ? few : ""
   ));
 }
 

@@ -10,6 +10,9 @@
 
 namespace glint {
 
+// Fewer photos for training, a scene, are few. A scene of 3D-FRONT-T has 156 (779 of five).
+inline constexpr int kFewPhotos = 100;
+
 // Title and caption of short runs: a smoke test.
 void warn_of_short_runs(Table& table, const std::vector<Record>& records);
 

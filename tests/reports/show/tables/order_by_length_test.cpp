@@ -92,6 +92,28 @@ TEST_CASE("of two files of one length with as many rooms and seeds the first cou
   CHECK(is_left_out(order, why));
 }
 
+TEST_CASE("scenes with few photos and with many are points and lines of their own") {
+  RecordsOfFile few = file_of("few.jsonl", 8000, false), many = file_of("many.jsonl", 8000, true);
+  few.photos = 42;  // the records do not say
+  for (Record& record : many.records) record.training_views = 155;
+  std::erase_if(many.records, [](const Record& record) { return record.cell.scene != "room_1"; });
+  const OrderByLength order = order_by_length(std::vector{few, many});
+  REQUIRE(order.points.size() == 2);
+  CHECK(order.points[0].records == "few.jsonl");
+  CHECK(order.points[0].measured_on() == "3 rooms, 1 seed, 42 photos");
+  CHECK(order.points[0].series() == order.points[0].title + ", few photos");
+  CHECK(order.points[1].measured_on() == "1 room, 1 seed, 155 photos");
+  CHECK(order.points[1].series() == order.points[1].title + ", many photos");
+  CHECK(order.left_out.empty());
+}
+
+TEST_CASE("a file's own photos go before those of the list") {
+  RecordsOfFile file = file_of("own.jsonl", 8000, true);
+  file.photos = 42;
+  for (Record& record : file.records) record.training_views = 155;
+  CHECK(order_by_length(std::vector{file}).points.at(0).photos == 155);
+}
+
 TEST_CASE("a method may have been trained longer, as the paper's GLINT is") {
   RecordsOfFile file = file_of("long.jsonl", 30000, true);
   for (Record& record : file.records)
