@@ -29,12 +29,12 @@ std::vector<std::string> point_row(const OrderPoint& point) {
   const auto& interval = point.mean.interval;
   return {
       fmt::format("{}", point.steps),
+      point.measured_on(),
       point.title,
       fmt::format("{:.2f}", point.mean.tau),
       interval ? fmt::format("{:.2f} to {:.2f}", interval->low, interval->high) : "none",
       fmt::format("±{:.2f}", point.mean.chance.high),
       columns,
-      point.measured_on(),
       point.records};
 }
 
@@ -48,7 +48,7 @@ std::string order_html(const OrderByLength& order) {
       page_text(kOrderTitle),
       order_figure(order),
       plain_table_html(
-          {"Steps", "Table", "Mean tau", "95 %", "Chance", "Columns", "Measured on", "Records"},
+          {"Steps", "Measured on", "Table", "Mean tau", "95 %", "Chance", "Columns", "Records"},
           rows
       ),
       list_html(notes)

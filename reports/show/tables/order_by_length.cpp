@@ -276,13 +276,13 @@ std::string point_row(const OrderPoint& point) {
   for (const OrderAgreement& one : point.columns)
     columns.push_back(fmt::format("{} {:.2f}", point.titles.at(one.column), one.tau));
   return fmt::format(
-      "| {} | {} | {} | ±{:.2f} | {} | {} | `{}` |\n",
+      "| {} | {} | {} | {} | ±{:.2f} | {} | `{}` |\n",
       point.steps,
+      point.measured_on(),
       markdown_text(point.title),
       interval_of(point.mean),
       point.mean.chance.high,
       markdown_text(fmt::format("{}", fmt::join(columns, ", "))),
-      point.measured_on(),
       point.records
   );
 }
@@ -344,8 +344,8 @@ std::string order_markdown(const OrderByLength& order) {
       kOrderTitle,
       fs::path(kOrderFigure).filename().string()
   );
-  text += "| Steps | Table | Mean tau | Chance | Tau of columns | Measured on | Records |\n";
-  text += "| ---: | --- | ---: | ---: | --- | --- | --- |\n";
+  text += "| Steps | Measured on | Table | Mean tau | Chance | Tau of columns | Records |\n";
+  text += "| ---: | --- | --- | ---: | ---: | --- | --- |\n";
   for (const OrderPoint& point : order.points) text += point_row(point);
   text += "\n";
   for (const std::string& note : order_notes(order))
