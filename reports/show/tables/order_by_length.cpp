@@ -32,10 +32,11 @@ Photos class_of(int photos) {
   return photos < kFewPhotos ? Photos::kFew : Photos::kMany;
 }
 
-// Records of the table's methods in one file at one size and number of photos, by method and steps.
+// Records of the table's methods in one file at one size, of scenes with few photos or with many,
+// by method and steps.
 struct Lengths {
   std::string file, resolution;
-  int photos = 0;
+  int photos = 0, most_photos = 0;  // of the scenes with fewest and with most
   std::map<std::string, std::map<int, std::vector<Record>>> methods;
 
   std::set<int> steps() const {
@@ -48,7 +49,7 @@ struct Lengths {
 
 // By size and photos. Records whose steps nobody knows, and failed ones, are left out.
 std::vector<Lengths> lengths_of(const RecordsOfFile& file, const TableDefinition& definition) {
-  std::map<std::pair<std::string, int>, Lengths> by_size;
+  std::map<std::pair<std::string, Photos>, Lengths> by_size;
   std::set<std::string> compared;
   for (const TableRowDefinition& row : definition.rows) compared.insert(row.method);
   for (const Record& record : file.records) {
@@ -57,10 +58,11 @@ std::vector<Lengths> lengths_of(const RecordsOfFile& file, const TableDefinition
         !compared.contains(record.cell.method))
       continue;
     const int photos = record.training_views > 0 ? record.training_views : file.photos;
-    Lengths& lengths = by_size[{record.resolution, photos}];
+    Lengths& lengths = by_size[{record.resolution, class_of(photos)}];
     lengths.file = file.file;
     lengths.resolution = record.resolution;
-    lengths.photos = photos;
+    lengths.photos = lengths.methods.empty() ? photos : std::min(lengths.photos, photos);
+    lengths.most_photos = std::max(lengths.most_photos, photos);
     lengths.methods[record.cell.method][steps].push_back(record);
   }
   std::vector<Lengths> all;
@@ -132,6 +134,7 @@ MeasuredPoint measured_point(
   point.records = lengths.file;
   point.resolution = lengths.resolution;
   point.photos = lengths.photos;
+  point.most_photos = lengths.most_photos;
   point.longer = candidate.longer;
   for (const TableColumn& column : definition.columns) point.titles[column.id] = column.title;
   for (const TableCell& cell : table.rows.front().cells) {
@@ -294,7 +297,10 @@ std::string OrderPoint::measured_on() const {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
   std::string text = fmt::format("{}, {}", counted(num_scenes, "room"), counted(num_seeds, "seed"));
-  if (photos > 0) text += fmt::format(", {}", counted(photos, "photo"));
+  if (most_photos > photos)
+    text += fmt::format(", {} to {} photos", photos, most_photos);
+  else if (photos > 0)
+    text += fmt::format(", {}", counted(photos, "photo"));
   return text;
 }
 

@@ -16,7 +16,7 @@ namespace glint {
 struct OrderPoint {
   int steps = 0;
   std::string table, title, records, resolution;  // `records`: the file
-  int photos = 0;                                 // of a scene for training; 0: not known
+  int photos = 0, most_photos = 0;  // for training, of the scenes with fewest, most; 0: not known
   int num_scenes = 0, num_seeds = 0;
   OrderAgreement mean;                        // over the columns
   std::vector<OrderAgreement> columns;        // those that every point of the table has
