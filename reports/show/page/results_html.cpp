@@ -21,11 +21,6 @@ std::string section_html(const ResultsSection& section) {
 }
 
 std::vector<std::string> point_row(const OrderPoint& point) {
-  std::string columns;
-  for (const OrderAgreement& one : point.columns)
-    columns += fmt::format(
-        "{}{} {:.2f}", columns.empty() ? "" : ", ", point.titles.at(one.column), one.tau
-    );
   const auto& interval = point.mean.interval;
   return {
       fmt::format("{}", point.steps),
@@ -34,7 +29,7 @@ std::vector<std::string> point_row(const OrderPoint& point) {
       fmt::format("{:.2f}", point.mean.tau),
       interval ? fmt::format("{:.2f} to {:.2f}", interval->low, interval->high) : "none",
       fmt::format("±{:.2f}", point.mean.chance.high),
-      columns,
+      point.columns_text(),
       point.records};
 }
 

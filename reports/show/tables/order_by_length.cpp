@@ -275,9 +275,6 @@ std::string interval_of(const OrderAgreement& order) {
 }
 
 std::string point_row(const OrderPoint& point) {
-  std::vector<std::string> columns;
-  for (const OrderAgreement& one : point.columns)
-    columns.push_back(fmt::format("{} {:.2f}", point.titles.at(one.column), one.tau));
   return fmt::format(
       "| {} | {} | {} | {} | ±{:.2f} | {} | `{}` |\n",
       point.steps,
@@ -285,7 +282,7 @@ std::string point_row(const OrderPoint& point) {
       markdown_text(point.title),
       interval_of(point.mean),
       point.mean.chance.high,
-      markdown_text(fmt::format("{}", fmt::join(columns, ", "))),
+      markdown_text(point.columns_text()),
       point.records
   );
 }
@@ -302,6 +299,13 @@ std::string OrderPoint::measured_on() const {
   else if (photos > 0)
     text += fmt::format(", {}", counted(photos, "photo"));
   return text;
+}
+
+std::string OrderPoint::columns_text() const {
+  std::vector<std::string> texts;
+  for (const OrderAgreement& one : columns)
+    texts.push_back(fmt::format("{} {:.2f}", titles.at(one.column), one.tau));
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 std::string OrderPoint::series() const {

@@ -23,8 +23,9 @@ struct OrderPoint {
   std::map<std::string, std::string> titles;  // of columns, by id
   std::vector<std::string> longer;            // "GLINT 60000 steps": methods with more steps
 
-  std::string measured_on() const;  // "5 rooms, 1 seed, 155 photos"
-  std::string series() const;       // the line in the figure that it belongs to: table, photos
+  std::string measured_on() const;   // "5 rooms, 1 seed, 155 photos"
+  std::string columns_text() const;  // "PSNR 0.60, SSIM -0.30"
+  std::string series() const;        // the line in the figure that it belongs to: table, photos
 };
 
 struct OrderByLength {
